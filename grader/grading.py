@@ -33,7 +33,7 @@ from grader.run.opening import open_submission
 from grader.run.processes import cores
 from grader.run.simulator_process import Audience
 from grader.scenes.scene import Scene
-from grader.submission.private_copy import not_handed_in
+from grader.submission.private_copy import missing_neighbours
 from grader.submission.start import Submission
 
 Progress = Callable[[float], None]
@@ -181,7 +181,9 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         budget=budget,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
-    missing = not_handed_in(submission.name, submission.copy, (*imports.surely, *imports.perhaps))
+    missing = missing_neighbours(
+        submission.name, submission.copy, (*imports.surely, *imports.perhaps)
+    )
     return [replace(nominal, flags=(*submission.remarks, *missing)), *varied]
 
 

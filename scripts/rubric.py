@@ -10,7 +10,7 @@ sys.path.insert(0, str(ROOT))
 
 from grader.exercise.exercise import Exercise  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
-from grader.exercise.sheet import rubric, told  # noqa: E402
+from grader.exercise.sheet import check_rubric, rubric  # noqa: E402
 from grader.text import points  # noqa: E402
 
 PAGE = ROOT / "docs" / "rubric.md"
@@ -23,21 +23,19 @@ FIRST, LAST = "<!-- from the checks: python scripts/rubric.py -->", "<!-- so far
 
 
 def page(old: str) -> str:
-    """Return the page with the current rubrics; a check of two exercises is described once."""
+    """The page with the rubrics as they are now; what two exercises share stands there once."""
     before, _, rest = old.partition(FIRST)
     _, _, after = rest.partition(LAST)
     parts = []
-    described_in: dict[str, str] = {}  # what a check measures -> the first exercise with it
+    first_in: dict[str, str] = {}  # what a check measures -> the first exercise with it
     for name in EXERCISES:
         exercise = load_exercise(name)
-        texts = {check.name: told(check, exercise.tolerances) for check in exercise.checks}
+        texts = {check.name: check_rubric(check, exercise.tolerances) for check in exercise.checks}
         above = {
-            check: described_in[texts[check]]
-            for check in exercise.points
-            if texts[check] in described_in
+            check: first_in[texts[check]] for check in exercise.points if texts[check] in first_in
         }
         first = (texts[check] for check in exercise.points if check not in above)
-        described_in |= {text: name for text in first if text}
+        first_in |= {text: name for text in first if text}
         parts.append(f"## {exercise.title!s}\n\n`{name}`\n")
         if above:
             parts.append("\n".join(_as_in(exercise, *each) for each in above.items()) + "\n")

@@ -42,7 +42,7 @@ from grader.recording.recording import Recordings
 from grader.reports import Report, render
 from grader.result import json_file
 from grader.result.error import ErrorResult
-from grader.result.result import PAGE, RESULT, HandedIn, Result, artifacts, put_artifacts
+from grader.result.result import PAGE, RESULT, Result, SubmissionInfo, artifacts, put_artifacts
 from grader.run.opening import open_submission
 from grader.run.processes import levels, started_process
 from grader.submission.start import Submission
@@ -209,7 +209,7 @@ def _judge(
 ) -> None:
     """Write the folder of a hand-in, except the recording, which `Store.put` links into it."""
     result = judging.judge(recordings, exercise, submission=hand_in.name)
-    whose = HandedIn.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
+    whose = SubmissionInfo.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
     result = replace(result, artifacts=artifacts(recordings.nominal), handed_in=whose)
     files.make_folder(folder)
     result.put(folder / RESULT)

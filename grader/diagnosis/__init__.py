@@ -1,1 +1,1 @@
-"""From all that is known of a run to the one cause that comes first; it never changes points."""
+"""Finds the one cause that comes first in a run; it never changes points."""

@@ -1,7 +1,7 @@
-"""A run as the rules see it, and how they put a place, a time and a foreign text into words.
+"""A run as the rules see it, and their words for a place, a time and an excerpt of its text.
 
-Where a process has told nothing of itself, its output tells of its end. What a program prints is as
-untrusted as what it tells.
+Where a process has reported no observations, its output is searched for how it ended. What a
+program prints is as untrusted as what it reports.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from grader.recording.recording import Recording, Run
 from grader.recording.subject import Endpoint, EndpointKind, load_subject
 from grader.text import clip, one_line, plain
 
-#: What an end of the submission's has to meet, to be of any use.
+#: The endpoint that an end of the submission's needs on the other side.
 OPPOSITE: dict[EndKind, EndpointKind] = {
     "subscription": "publisher",
     "publisher": "subscription",
@@ -28,8 +28,8 @@ OPPOSITE: dict[EndKind, EndpointKind] = {
 _LONGEST = 200
 #: Shown as 0.0 [s].
 _AT_ONCE_S = 0.05
-#: So much of the end of an output is looked at [characters].
-_LOOKED_AT = 65_536
+#: So much of the end of an output is searched [characters].
+_TAIL = 65_536
 # blanks of one line only: lines of nothing would be gone through again from each of them
 _FRAME = re.compile(
     r'^[^\S\n]*File "(?P<file>[^"\n]{1,1000})", line (?P<line>\d{1,9})'
@@ -43,7 +43,7 @@ _IN_THREAD = re.compile(
     r"^Exception in thread [^\n]{0,200}:\n(Traceback [^\n]*\n(?:[ \t][^\n]*\n)+[^\n]*)",
     re.MULTILINE,
 )
-#: Of Python's, of ROS's and of our own files; no submission's.
+#: Parts of the paths of Python's, ROS's and the grader's files; no submission's.
 _LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run/", "<frozen ")
 
 
@@ -55,18 +55,18 @@ class Case:
 
     @property
     def run(self) -> Run:
-        """How it went."""
+        """Its outcome and circumstances."""
         return self.recording.run
 
     @property
     def observed(self) -> Observations:
-        """What its process has told of itself."""
+        """The observations that its process has reported."""
         return self.recording.observations
 
     @property
     def tail(self) -> str:
-        """The end of its output, as far as that is looked at."""
-        return self.recording.output[-_LOOKED_AT:]
+        """The end of its output, as far as that is searched."""
+        return self.recording.output[-_TAIL:]
 
     @property
     def last_line(self) -> str:
@@ -85,12 +85,12 @@ class Case:
 
     @property
     def stop(self) -> Standstill | None:
-        """Where it got stuck."""
+        """The place where it got stuck; None for none."""
         return self.observed.stop if self.observed.is_known else None
 
     @property
     def ended_s(self) -> float | None:
-        """When the program came to its end by itself, without an error; None if it did not."""
+        """When the program ended by itself, without an error; None if it did not."""
         observed = self.observed
         if observed.is_known and observed.raised is not None and self.run.outcome == "exited":
             return observed.raised.time_s  # sys.exit()
@@ -109,23 +109,23 @@ class Case:
 
     @cached_property
     def scene_has(self) -> Sequence[Endpoint]:
-        """What the scene publishes, listens to and serves."""
+        """The endpoints of the scene: its topics, services and actions."""
         scene = load_subject(self.recording.scene)
         return scene.endpoints(self.recording.trace, self.run.interfaces)
 
     @cached_property
     def the_thing(self) -> Message:
-        """What is driven, with its article: 'the robot'."""
+        """What the submission drives, with its article: 'the robot'."""
         return load_subject(self.recording.scene).the_thing
 
 
-def told(text: str) -> str:
-    """A text of the submission's as it may stand in a line of ours; the same in any language."""
+def excerpt(text: str) -> str:
+    """Return a text of the submission's, clipped to one safe line; the same in any language."""
     return clip(one_line(plain(text[: 4 * _LONGEST])), _LONGEST)
 
 
 def sentences(*texts: Message) -> Message:
-    """One behind the other; what says nothing is left out."""
+    """Join sentences by blanks; empty ones are left out."""
     return joined([text for text in texts if text], " ")
 
 
@@ -133,12 +133,12 @@ def line(place: SourceLine | None) -> Message:
     """' (drive.py, line 39)', with a space before it; '' for no place."""
     if place is None:
         return NOTHING
-    return msg(" ({file}, line {line})", file=told(place.file), line=place.line)
+    return msg(" ({file}, line {line})", file=excerpt(place.file), line=place.line)
 
 
 def function(place: SourceLine | None) -> str:
     """'on_pose()'; '' for no function."""
-    name = told(place.function).rpartition(".")[2] if place is not None else ""
+    name = excerpt(place.function).rpartition(".")[2] if place is not None else ""
     return f"{name}()" if name else ""
 
 
@@ -167,18 +167,18 @@ def since(time_s: float) -> Message:
 
 
 def is_library(file: str) -> bool:
-    """Whether a file is of Python's, of ROS's or our own, and no submission's."""
+    """Whether a file is Python's, ROS's or the grader's, and not the submission's."""
     return any(part in file for part in _LIBRARIES)
 
 
 def thread_exception(text: str) -> Raised | None:
-    """The first exception that ended a thread, as Python tells of it."""
+    """Parse the first exception that ended a thread, as Python prints it."""
     found = _IN_THREAD.search(text)
     return last_exception(found[0]) if found else None
 
 
 def last_exception(text: str) -> Raised | None:
-    """The exception of the last traceback, with the last line of the submission's own in it."""
+    """Parse the last traceback: its exception, at the last line of the submission's files."""
     start = text.rfind("Traceback (most recent call last)")
     # a SyntaxError in the file that was started has no traceback of its own
     part = text[max(start, 0) :]
@@ -189,13 +189,12 @@ def last_exception(text: str) -> Raised | None:
     error = next((match for line in lines if (match := _ERROR.match(line))), None)
     if error is None:
         return None
-    return Raised(error["name"], error["text"] or "", 0.0, _own_place(frames))
+    return Raised(error["name"], error["text"] or "", 0.0, _submission_line(frames))
 
 
-def _own_place(frames: list[re.Match[str]]) -> SourceLine | None:
-    """The last of the frames that is no library's."""
-    own = (f for f in reversed(frames) if not is_library(f["file"]))
-    frame = next(own, None)
+def _submission_line(frames: list[re.Match[str]]) -> SourceLine | None:
+    """Return the last of the frames that is no library's."""
+    frame = next((f for f in reversed(frames) if not is_library(f["file"])), None)
     if frame is None:
         return None
     function, text = (frame["function"] or "").strip(), (frame["text"] or "").strip()

@@ -1,7 +1,7 @@
-"""Rules about connections: what the submission publishes, hears and calls, and who is there.
+"""Rules about connections: publishers, subscriptions and clients that meet no other end.
 
-A rule speaks only where it can name what was meant: something of the scene's that nearly has this
-name, or has this type. A program that has the right end as well tries several, and is let be.
+A rule applies only where it can name what was meant: an endpoint of the scene that has nearly this
+name, or this type. A program that has the right end as well tries several, and is not reported.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Callable
 from difflib import SequenceMatcher
 
 from grader.diagnosis import standstill
-from grader.diagnosis.case import OPPOSITE, Case, line, since, told
+from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import Message, msg
@@ -22,7 +22,7 @@ from grader.recording.subject import Endpoint
 _ALIKE = 0.75
 #: A longer name is nobody's mistake.
 _LONGEST_NAME = 100
-#: rclpy's warning that two ends of a topic do not fit, from either side.
+#: rclpy's warning that the QoS of two ends of a topic is incompatible, from either side.
 _UNFIT = re.compile(
     r"New (?P<other>subscription|publisher) discovered on topic '(?P<topic>[\w/~]{1,256})', "
     r"(?:requesting|offering) incompatible QoS\.[^\n]{0,100}"
@@ -37,7 +37,7 @@ _TOO_LITTLE = {
 
 
 def waits_in_vain(case: Case) -> Diagnosis | None:
-    """It waits to the end for a service or an action that nobody offers."""
+    """The program waits to the end for a service or an action that nobody offers."""
     for wait in case.observed.waits:
         if wait.lasted_s is not None or "/msg/" in wait.type:
             continue
@@ -49,7 +49,7 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
             if near.type == wait.type:
                 continue
             rest = msg(
-                " as {type}, but it is of type {wanted}", type=told(wait.type), wanted=near.type
+                " as {type}, but it is of type {wanted}", type=excerpt(wait.type), wanted=near.type
             )
         elif any(e.name == wait.name for e in there):
             continue
@@ -58,7 +58,7 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
         else:
             rest = msg(", which nobody offers")
         named = (each.place for each in case.ends if (each.kind, each.name) == (kind, wait.name))
-        place = next(named, None) or wait.place  # where the name stands is what is to be mended
+        place = next(named, None) or wait.place  # the line to be fixed is the one with the name
         return Diagnosis(
             "waits_in_vain",
             msg(
@@ -68,7 +68,7 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
                 rest=rest,
                 where=line(place),
             ),
-            _mending(end, near) if near else msg("Compare the name with `ros2 service list`."),
+            _fix(end, near) if near else msg("Compare the name with `ros2 service list`."),
             time_s=wait.since_s,
             place=place,
         )
@@ -76,13 +76,13 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
 
 
 def publishes_to_nobody(case: Case) -> Diagnosis | None:
-    """It publishes under a name or with a type that the scene does not listen to."""
+    """The program publishes under a name or with a type that the scene does not subscribe to."""
 
-    def told_of(end: End, near: Endpoint) -> Message:
+    def describe(end: End, near: Endpoint) -> Message:
         if end.name == near.name:
             return msg(
                 "You publish {type} on {name}, but {the_thing} listens to {wanted} there{where}.",
-                type=told(end.type),
+                type=excerpt(end.type),
                 name=near.name,
                 the_thing=case.the_thing,
                 wanted=near.type,
@@ -91,56 +91,56 @@ def publishes_to_nobody(case: Case) -> Diagnosis | None:
         return msg(
             "You publish {type} on {name}, where nobody listens; {the_thing} listens to "
             "{wanted}{where}.",
-            type=told(end.type),
-            name=told(end.name),
+            type=excerpt(end.type),
+            name=excerpt(end.name),
             the_thing=case.the_thing,
             wanted=_near(end, near),
             where=line(end.place),
         )
 
-    return _first(case, "publisher", "publishes_to_nobody", told_of)
+    return _first(case, "publisher", "publishes_to_nobody", describe)
 
 
 def hears_nobody(case: Case) -> Diagnosis | None:
-    """It subscribes under a name or with a type that nobody publishes."""
+    """The program subscribes under a name or with a type that nobody publishes."""
 
-    def told_of(end: End, near: Endpoint) -> Message:
+    def describe(end: End, near: Endpoint) -> Message:
         if end.name == near.name:
             return msg(
                 "You subscribe to {name} as {type}, but {wanted} is published there, so no "
                 "message reaches you{where}.",
                 name=near.name,
-                type=told(end.type),
+                type=excerpt(end.type),
                 wanted=near.type,
                 where=line(end.place),
             )
         return msg(
             "You subscribe to {name}, which nobody publishes; there is {wanted}{where}.",
-            name=told(end.name),
+            name=excerpt(end.name),
             wanted=_near(end, near),
             where=line(end.place),
         )
 
-    return _first(case, "subscription", "hears_nobody", told_of)
+    return _first(case, "subscription", "hears_nobody", describe)
 
 
 def misses_what_it_hears(case: Case) -> Diagnosis | None:
-    """It crashed for want of a message that could not come: nobody sends it, or it never spins."""
+    """The program crashed for want of a message: nobody sends it, or the program never spins."""
     if not misses_message(case):
         return None
     return hears_nobody(case) or standstill.is_deaf(case)
 
 
 def calls_nobody(case: Case) -> Diagnosis | None:
-    """It calls a service or an action under a name or with a type that nobody offers."""
+    """The program calls a service or an action under a name or with a type that nobody offers."""
 
-    def told_of(end: End, near: Endpoint) -> Message:
+    def describe(end: End, near: Endpoint) -> Message:
         words: dict[str, str | Message] = {
             "what": _served(end.kind, end.name),
             "where": line(end.place),
         }
         if end.name == near.name:
-            words |= {"type": told(end.type), "wanted": near.type}
+            words |= {"type": excerpt(end.type), "wanted": near.type}
             if end.used:
                 return msg("You call {what} as {type}, but it is {wanted}{where}.", **words)
             return msg(
@@ -153,15 +153,15 @@ def calls_nobody(case: Case) -> Diagnosis | None:
             "You have a client for {what}, which nobody offers; there is {wanted}{where}.", **words
         )
 
-    return _first(case, "client", "calls_nobody", told_of) or _first(
-        case, "action_client", "calls_nobody", told_of
+    return _first(case, "client", "calls_nobody", describe) or _first(
+        case, "action_client", "calls_nobody", describe
     )
 
 
 def _first(
-    case: Case, kind: EndKind, key: str, told_of: Callable[[End, Endpoint], Message]
+    case: Case, kind: EndKind, key: str, describe: Callable[[End, Endpoint], Message]
 ) -> Diagnosis | None:
-    """About the first end of a kind that meets nobody, and is near to what the scene has."""
+    """Diagnose the first end of a kind that meets nobody and is near an endpoint of the scene."""
     for end in case.ends:
         if end.kind != kind:
             continue
@@ -172,12 +172,12 @@ def _first(
             continue
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
-        return Diagnosis(key, told_of(end, near), _mending(end, near), place=end.place)
+        return Diagnosis(key, describe(end, near), _fix(end, near), place=end.place)
     return None
 
 
 def has_unfit_qos(case: Case) -> Diagnosis | None:
-    """An end of a topic that nothing goes through, for its QoS does not fit the other's."""
+    """An end of a topic gets no message through, because its QoS does not fit the other end's."""
     for found in _UNFIT.finditer(case.tail):
         kind: EndKind = "publisher" if found["other"] == "subscription" else "subscription"
         topic = found["topic"]
@@ -195,7 +195,7 @@ def has_unfit_qos(case: Case) -> Diagnosis | None:
 
 
 def _unfit(case: Case, kind: EndKind, topic: str, policy: str, where: Message) -> Message:
-    """In what a publisher or subscription and the other end differ."""
+    """Say in which QoS policy a publisher or subscription differs from the other end."""
     sends, wants = _TOO_LITTLE.get(policy, ("", ""))
     words = {"topic": topic, "where": where, "sends": sends, "wants": wants, "policy": policy}
     if kind == "publisher" and sends:
@@ -225,7 +225,7 @@ def _unfit(case: Case, kind: EndKind, topic: str, policy: str, where: Message) -
 
 
 def nearest(end: End, case: Case) -> Endpoint | None:
-    """What of the scene's was meant; None where that is right as it is, or cannot be told."""
+    """Return the endpoint that was meant; None where the end is right, or nothing is near."""
     there = [each for each in case.scene_has if each.kind == OPPOSITE[end.kind]]
     same = next((each for each in there if each.name == end.name), None)
     if same is not None:
@@ -241,7 +241,7 @@ def nearest(end: End, case: Case) -> Endpoint | None:
 
 
 def _likeness(end: End, other: Endpoint) -> float:
-    """From 0 to 2: how alike the names are; more where only what stands before is different."""
+    """How alike two names are, from 0 to 2; more than 1 where only their namespaces differ."""
     a, b = end.name.lower(), other.name.lower()
     alike = SequenceMatcher(None, a, b).ratio()
     return 1 + alike if _last(a) == _last(b) else alike
@@ -262,21 +262,21 @@ def _meets_itself(case: Case, end: End) -> bool:
 
 
 def _served(kind: EndKind, name: str) -> Message:
-    """What a client of this kind is for: 'the service /spawn'."""
+    """Name what a client of this kind calls: 'the service /spawn'."""
     if kind == "action_client":
-        return msg("the action {name}", name=told(name))
-    return msg("the service {name}", name=told(name))
+        return msg("the action {name}", name=excerpt(name))
+    return msg("the service {name}", name=excerpt(name))
 
 
 def _near(end: End, near: Endpoint) -> str | Message:
-    """The scene's own, with its type where that is another one."""
+    """Name the scene's endpoint, with its type where that differs."""
     if end.type == near.type:
         return near.name
     return msg("{name} of type {type}", name=near.name, type=near.type)
 
 
-def _mending(end: End, near: Endpoint) -> Message:
-    """What to write instead."""
+def _fix(end: End, near: Endpoint) -> Message:
+    """Say what to write instead."""
     package, kind, name = near.type.split("/")
     imported = f"`from {package}.{kind} import {name}`"
     if end.type == near.type:

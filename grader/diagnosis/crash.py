@@ -1,4 +1,4 @@
-"""Rules about programs that ended with an error: what Python, a message or a signal says of it."""
+"""Rules about programs that ended with an error: an exception, a refused value, a signal."""
 
 from __future__ import annotations
 
@@ -6,23 +6,22 @@ import re
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis import slips, usual
-from grader.diagnosis.case import Case, at, line, sentences, thread_exception, told
+from grader.diagnosis import known_exceptions, lint_findings
+from grader.diagnosis.case import Case, at, excerpt, line, sentences, thread_exception
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, plain_text
 from grader.recording.observations import Raised, SourceLine
 from grader.text import clip
 
-#: What generated messages say of a value that they refuse.
+#: The error of a generated message class that refuses a value.
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
 _RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
 _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
-#: What Python adds to some texts, and what is said in other words here.
+#: Python's suffix to some errors; the cause has the place in words of its own.
 _PLACE = re.compile(r" \([^()]*, line \d+\)$")
 #: So much of an exception's text is in the cause, which is to be one short sentence [characters].
 _LONGEST_ERROR = 120
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
-_NONE = "'NoneType'"
 #: For people who do not know the kernel's words.
 _SIGNALS = {
     "SIGABRT": msg("a library gave up on a value that it cannot take"),
@@ -34,11 +33,11 @@ _SIGNALS = {
 
 
 def unreadable(case: Case) -> Diagnosis | None:
-    """Python cannot read the file: its encoding, or its syntax."""
+    """Python cannot read the file: its encoding or its syntax is wrong."""
     raised = case.raised
     if raised is None:
         return None
-    text = told(raised.text)
+    text = excerpt(raised.text)
     if "null bytes" in text and raised.type in (*_NOT_READ, "ValueError"):
         cause = msg(
             "Python cannot read your file{where}: it holds NUL bytes, as text in UTF-16 does.",
@@ -84,17 +83,17 @@ def _saved_wrongly(cause: Message, raised: Raised) -> Diagnosis:
 
 
 def wrong_value(case: Case) -> Diagnosis | None:
-    """It gives a field of a message a value of the wrong type, or out of its range."""
+    """The program gives a field of a message a value of the wrong type, or out of its range."""
     raised = case.raised
-    # a program may have caught the exception, and printed what it says
+    # a program may have caught the exception, and printed its text
     found = _FIELD.search(case.tail if raised is None else raised.text)
     if found is None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
-    what, help_ = _wanted(found["field"], told(found["what"]), place)
+    what, help_ = _wanted(found["field"], excerpt(found["what"]), place)
     cause = msg(
         "The field {field} of a message must be {what}; something else was given{at}{where}.",
-        field=told(found["field"]),
+        field=excerpt(found["field"]),
         what=what,
         at=at(when),
         where=line(place),
@@ -103,7 +102,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
 
 
 def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, Message]:
-    """What a field must be, and how to make it so."""
+    """Return what a field must be, and how to write it."""
     text = place.text if place is not None else ""
     literal = re.search(rf"\b{field}\s*=\s*([-+]?\d{{1,20}}(?:\.\d{{0,20}})?)(?![\w.])", text)
     number = literal[1] if literal else ""
@@ -145,7 +144,7 @@ def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, M
                 "Write .to_msg() behind it: a clock's now().to_msg()."
             )
         return msg("a {name}", name=name), msg(
-            "Set the parts of {field} one by one, as in msg.{field}.x = 2.0.", field=told(field)
+            "Set the parts of {field} one by one, as in msg.{field}.x = 2.0.", field=excerpt(field)
         )
     return plain_text(what.rstrip(".")), msg(
         "`ros2 interface show TYPE` lists the fields of a message."
@@ -153,7 +152,7 @@ def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, M
 
 
 def ended_itself(case: Case) -> Diagnosis | None:
-    """It left by sys.exit() with a text or a number."""
+    """The program ended by sys.exit() with a text or a number."""
     if case.run.outcome != "crashed":
         return None
     raised = case.raised
@@ -163,8 +162,8 @@ def ended_itself(case: Case) -> Diagnosis | None:
     )
     if raised is not None and raised.type == "SystemExit":
         when = _when(case, raised)
-        said = told(raised.text)
-        value = said if said.isdecimal() else repr(said)
+        text = excerpt(raised.text)
+        value = text if text.isdecimal() else repr(text)
         cause = msg(
             "Your program ended itself{at} by sys.exit({value}){where}.",
             at=at(when),
@@ -183,7 +182,7 @@ def ended_itself(case: Case) -> Diagnosis | None:
             "Your program ended with exit code {exit_code}, by no exception; the last that it "
             "printed is: {last!r}.",
             exit_code=exit_code,
-            last=told(last),
+            last=excerpt(last),
         )
     return Diagnosis("ended_itself", cause, help_)
 
@@ -194,67 +193,65 @@ def crashed(case: Case) -> Diagnosis | None:
     if case.run.outcome != "crashed" or raised is None:
         return None
     when = _when(case, raised)
-    said = slips.explains(case, raised) or usual.known(raised)
-    place = said.place if said is not None and said.place is not None else raised.place
-    at_line = place if said is not None and said.text else raised.place
+    hint = lint_findings.explain(case, raised) or known_exceptions.explain(raised)
+    place = hint.place or raised.place
+    at_line = place if hint.text else raised.place
     cause = msg(
         "Your node crashed{at}{error}{where}.",
         at=at(when),
-        error=_error(raised, said),
+        error=_error(raised, hint),
         where=line(at_line),
     )
     cause = sentences(cause, _limit(case))
-    return Diagnosis("crashed", cause, _mending(raised, said), time_s=when, place=place)
+    return Diagnosis("crashed", cause, _help(raised, hint), time_s=when, place=place)
 
 
 def thread_crashed(case: Case) -> Diagnosis | None:
-    """An exception ended one of its threads, and the rest went on."""
+    """An exception ended one of the program's threads, and the rest went on."""
     raised = case.raised or thread_exception(case.tail)
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
-    said = usual.known(raised)
+    hint = known_exceptions.explain(raised)
     cause = msg(
         "A thread of your program crashed{error}{where}.",
-        error=_error(raised, said),
+        error=_error(raised, hint),
         where=line(raised.place),
     )
-    return Diagnosis("crashed", cause, _mending(raised, said), place=raised.place)
+    return Diagnosis("crashed", cause, _help(raised, hint), place=raised.place)
 
 
 def misses_message(case: Case) -> bool:
-    """Whether it crashed because something was not there yet, as what a message brings."""
+    """Whether the program crashed because it had no value yet, as one that a message brings."""
     raised = case.raised
     return raised is not None and (
-        _NONE in raised.text
-        or "NoneType" in raised.text
+        "NoneType" in raised.text
         or (raised.type == "AttributeError" and "has no attribute" in raised.text)
     )
 
 
-def _error(raised: Raised, said: usual.Said | None) -> Message:
-    """': TypeError: what it says', or ' (TypeError): ' and what we say instead."""
-    name, text = told(raised.type).rpartition(".")[2], told(raised.text).rstrip(".")
-    if said is not None and said.text:
-        return msg(" ({name}): {error}", name=name, error=said.text)
+def _error(raised: Raised, hint: known_exceptions.Hint) -> Message:
+    """Return ': TypeError: its text', or ' (TypeError): ' and the hint's text."""
+    name, text = excerpt(raised.type).rpartition(".")[2], excerpt(raised.text).rstrip(".")
+    if hint.text:
+        return msg(" ({name}): {error}", name=name, error=hint.text)
     text = clip(text, _LONGEST_ERROR)
     return msg(": {error}", error=f"{name}: {text}" if text else name)
 
 
-def _mending(raised: Raised, said: usual.Said | None) -> Message:
-    whole = msg("The whole traceback is in output.txt.")
-    help_ = said.help if said is not None else usual.meaning(raised)
+def _help(raised: Raised, hint: known_exceptions.Hint) -> Message:
+    help_ = hint.help
     if not help_ and raised.place is None:
         help_ = msg("None of its lines is in your own files.")
-    return sentences(help_, whole)
+    return sentences(help_, msg("The whole traceback is in output.txt."))
 
 
 def killed(case: Case) -> Diagnosis | None:
-    """A signal ended it: from itself, from a library, from the kernel."""
+    """A signal ended the program: its own, a library's or the kernel's."""
     run = case.run
     if run.outcome != "killed":
         return None
     raised = case.raised
-    name = told(raised.type) if raised is not None else _signal(run.exit_code)
+    name = excerpt(raised.type) if raised is not None else _signal(run.exit_code)
     when = None if raised is None else _when(case, raised)
     place = None if raised is None else raised.place
     signal = msg(" by the signal {name}", name=name) if name else ""
@@ -265,11 +262,11 @@ def killed(case: Case) -> Diagnosis | None:
             "Your program was killed{at}{signal}{where}: {why}.", why=_SIGNALS[name], **words
         )
     cause = sentences(cause, _limit(case))
-    return Diagnosis("killed", cause, _after(name), time_s=when, place=place)
+    return Diagnosis("killed", cause, _signal_help(name), time_s=when, place=place)
 
 
 def _signal(exit_code: int | None) -> str:
-    """By its name; '' where the grader itself ended the program."""
+    """Name the signal of an exit code; '' where the grader itself ended the program."""
     if exit_code is None:
         return ""
     with suppress(ValueError):
@@ -277,7 +274,7 @@ def _signal(exit_code: int | None) -> str:
     return str(-exit_code)
 
 
-def _after(signal: str) -> Message:
+def _signal_help(signal: str) -> Message:
     if signal == "SIGABRT":
         return msg(
             "Look at the values that this line gives to a message: 2.0 for a float,"
@@ -291,7 +288,7 @@ def _after(signal: str) -> Message:
 
 
 def _limit(case: Case) -> Message:
-    """A sentence of the run's remarks on what it was refused; nothing for none."""
+    """Return the run's remark on a limit that was exceeded; nothing where there is none."""
     for flag in case.run.flags:
         if limit := flag.values.get("limit"):
             return msg("{remark!u}.", remark=limit)

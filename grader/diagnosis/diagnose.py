@@ -1,9 +1,9 @@
-"""Puts the earliest cause first: asks one rule after another, each about one kind of mistake.
+"""Finds the earliest cause of lost points: applies one rule after another, each for one mistake.
 
 The rules stand in the order in which things happen in the life of a program: Python reads it, it
-imports, it finds the others, it spins, it waits. A crash says by itself what it is, and comes
-before what may or may not have led to it; only one for want of a message waits for the question
-whether any could come. A rule is silent when it is not sure.
+imports, it finds the others, it spins, it waits. A crash names its own cause, and comes before what
+may or may not have led to it; only one for want of a message comes after the rule whether any could
+come. A rule returns None when it is not sure.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
-from grader.diagnosis import connections, crash, imports, slips, standstill, unnoticed
-from grader.diagnosis.case import Case, line, sentences, told
+from grader.diagnosis import connections, crash, imports, lint_findings, standstill, unnoticed
+from grader.diagnosis.case import Case, excerpt, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.verdict import Verdict
 from grader.message import msg
@@ -22,7 +22,7 @@ from grader.recording.recording import Recordings
 from grader.text import in_one_line
 
 Rule = Callable[[Case], Diagnosis | None]
-#: What keeps a run from going on.
+#: Rules about what keeps a run from going on.
 RULES: Final[tuple[Rule, ...]] = (
     crash.unreadable,
     imports.not_importable,
@@ -43,14 +43,14 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.stuck_in_callback,
     standstill.stuck_in_call,
     standstill.endless_loop,
-    slips.called_at_once,
+    lint_findings.called_at_once,
     standstill.stays_in_init,
     standstill.spins_in_loop,
     standstill.never_spins,
     standstill.ends_early,
     unnoticed.waits_for_timer,
 )
-#: What only disturbs it; asked when nothing keeps any run from going on.
+#: Rules about what only disturbs a run; applied when nothing keeps any run from going on.
 DISTURBING: Final[tuple[Rule, ...]] = (
     unnoticed.hides_errors,
     unnoticed.never_awaits,
@@ -62,11 +62,11 @@ DISTURBING: Final[tuple[Rule, ...]] = (
 
 
 def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagnosis | None:
-    """The earliest cause of lost points; it changes none of them.
+    """Return the earliest cause of lost points; it changes none of them.
 
     Args:
-        recordings: of all runs; what is wrong in the nominal one comes before the others.
-        verdicts: of the exercise's checks; without any, only what the runs show is looked at.
+        recordings: of all runs; a cause in the nominal one comes before one in the others.
+        verdicts: of the exercise's checks; without any, only the rules about runs are applied.
 
     Returns: None where no point is lost, or no verdict is known and the runs show nothing.
     """
@@ -87,7 +87,7 @@ def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
 
 
 def _in_run(found: Diagnosis, number: int) -> Diagnosis:
-    """What was found in a run, fit to be shown."""
+    """Add the run's number to a diagnosis, and make it fit to be shown."""
     cause = found.cause
     if number:
         cause = msg("In varied run {number}: {cause}", number=number, cause=cause)
@@ -99,19 +99,19 @@ def _shown(found: Diagnosis) -> Diagnosis:
     if place is not None:
         place = replace(
             place,
-            file=told(place.file),
-            function=told(place.function),
-            text=told(place.text),
+            file=excerpt(place.file),
+            function=excerpt(place.function),
+            text=excerpt(place.text),
         )
     cause, help_ = in_one_line(found.cause), in_one_line(found.help)
     return replace(found, cause=cause, help=help_, place=place)
 
 
 def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
-    """The finding of a check, with what is known of the source that it may come from."""
-    with_slip = slips.beside(found, case)
-    if with_slip is not found:
-        return _shown(with_slip)
+    """Add to a check's finding what the source shows about its possible cause."""
+    with_finding = lint_findings.beside(found, case)
+    if with_finding is not found:
+        return _shown(with_finding)
     return _shown(_with_unused(found, case) or _with_place(found, case))
 
 
@@ -120,7 +120,7 @@ def _text(found: Diagnosis) -> str:
 
 
 def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
-    """The finding with the end that it speaks of, where that was never used."""
+    """Add the publisher or client that a finding names, where it was never used."""
     if case.observed.spun_s is None:
         return None
     there = {(each.name, each.type) for each in case.scene_has}
@@ -132,17 +132,17 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
             unsent = msg("Your publisher{where} has sent no message.", where=line(end.place))
             return replace(found, help=sentences(found.help, unsent), place=end.place)
         unsent = msg("Your client{where} has sent no request.", where=line(end.place))
-        said = sentences(found.cause, unsent)
-        made = slips.unsent(case)
+        cause = sentences(found.cause, unsent)
+        made = lint_findings.unsent(case)
         if made is None:
-            return replace(found, cause=said, place=end.place)
+            return replace(found, cause=cause, place=end.place)
         help_ = msg("Send the request that you make: call_async(request).")
-        return replace(found, cause=said, help=help_, place=made)
+        return replace(found, cause=cause, help=help_, place=made)
     return None
 
 
 def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
-    """The finding with the line that sends what its text speaks of first."""
+    """Add the line that sends what a finding's text names first."""
     text = _text(found)
     driven_by = {(each.name, each.type) for each in case.scene_has if each.kind == "subscription"}
     first, place = len(text), found.place

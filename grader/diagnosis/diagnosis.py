@@ -1,4 +1,4 @@
-"""What a diagnosis is: one cause, for the first line of a report; at worst the costliest check."""
+"""A diagnosis: one cause, for the first line of a report; at worst the costliest check's."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Diagnosis:
         cause: what was found and what was expected, in one line.
         help: what to do.
         run: in which run: 0 nominal, 1, 2, ... varied.
-        time_s: when in it [s]; None where that is not known or says nothing.
+        time_s: when in it [s]; None where that is not known or does not matter.
         place: in the submission's own files; None where that is not known.
         check: the check that found it; '' for what a run shows by itself.
     """
@@ -39,7 +39,7 @@ class Diagnosis:
 
 
 def costliest(verdicts: Sequence[Verdict]) -> Diagnosis | None:
-    """The finding of the check that costs most, with those that wait for it."""
+    """Make a diagnosis of the check that costs most, counting those that depend on it."""
     failed = [verdict for verdict in verdicts if verdict.status == "failed"]
     failed = failed or [verdict for verdict in verdicts if not verdict.passed]
     if not failed:
@@ -57,7 +57,7 @@ def costliest(verdicts: Sequence[Verdict]) -> Diagnosis | None:
 
 
 def _cost(failed: Verdict, verdicts: Sequence[Verdict]) -> float:
-    """What it costs, and all that is not judged because of it [points]."""
+    """Return what a failed check costs, with all that is not judged because of it [points]."""
     lost = {failed.check: failed.max_score - failed.score}
     for _ in verdicts:  # one that waits may be waited for
         for verdict in verdicts:

@@ -1,18 +1,18 @@
-"""Rules about imports: of what is not there, is hidden, or has another name."""
+"""Rules about imports: of modules that are missing, hidden, or have another name."""
 
 from __future__ import annotations
 
 import re
 import sys
 
-from grader.diagnosis.case import Case, line, told
+from grader.diagnosis.case import Case, excerpt, line
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import msg
 from grader.recording.observations import Raised
 
-#: What Python adds to some texts, and nobody needs.
+#: Python's suffix to some errors, which helps nobody.
 _PATH = re.compile(r" \((/[^()]*|unknown location)\)$")
-#: A module that was found in place of a package, or of one's own.
+#: Errors where a module was found in place of a package.
 _NO_PACKAGE = re.compile(r"No module named '(\w{1,60})\.[\w.]{1,100}'; '\1' is not a package")
 _INTERFACES = re.compile(r"No module named '\w{1,60}_(?:interfaces|msgs|srvs)'")
 _FROM = re.compile(
@@ -21,14 +21,14 @@ _FROM = re.compile(
 
 
 def not_importable(case: Case) -> Diagnosis | None:
-    """It imports what is not there."""
+    """The program imports what is not there."""
     raised = case.raised
     if raised is None or raised.type not in ("ModuleNotFoundError", "ImportError"):
         return None
     hidden = _hides_package(raised) or _lies_beside(case, raised)
     if hidden is not None:
         return hidden
-    text = _PATH.sub("", told(raised.text))
+    text = _PATH.sub("", excerpt(raised.text))
     cause = msg(
         "Your program cannot import what it needs: {type}: {text}{where}.",
         type=raised.type,
@@ -50,7 +50,7 @@ def not_importable(case: Case) -> Diagnosis | None:
 
 
 def _hides_package(raised: Raised) -> Diagnosis | None:
-    """A file of its own has the name of the package that it asks for."""
+    """A file of the submission has the name of the package that it imports."""
     found = _NO_PACKAGE.search(raised.text) or _FROM.search(raised.text)
     if found is None or raised.place is None:
         return None
@@ -58,7 +58,7 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
     is_named_so = file == f"{name}.py"
     if not is_named_so and (found.re is _FROM or name in sys.stdlib_module_names):
         return None
-    name = told(name)
+    name = excerpt(name)
     which = (
         msg("Your file is itself called {name}.py", name=name)
         if is_named_so
@@ -78,16 +78,16 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
 
 
 def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
-    """What it asks for is in its own package."""
+    """The module that is imported lies in the submission's own package."""
     file = raised.place.file if raised.place else ""
     beside = (each for each in case.observed.lint_findings if each.kind == "beside")
     found = (each for each in beside if each.place.file == file)
-    slip = next((each for each in found if f"'{each.name}'" in raised.text), None)
-    if slip is None:
+    finding = next((each for each in found if f"'{each.name}'" in raised.text), None)
+    if finding is None:
         return None
-    name, near = told(slip.name), told(slip.near)
+    name, near = excerpt(finding.name), excerpt(finding.near)
     package = near.rpartition(".")[0]
-    written = told(slip.place.text)
+    written = excerpt(finding.place.text)
     instead = f"from {package} import {name}"
     if written.startswith(f"from {name} import "):
         instead = written.replace(f"from {name} ", f"from {near} ", 1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.diagnosis.case import Case, after, function, line, sentences, since, told
+from grader.diagnosis.case import Case, after, excerpt, function, line, sentences, since
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, msg_many
 from grader.recording.observations import SourceLine
@@ -13,7 +13,7 @@ _SOON_S = 5.0
 #: A callback that lets so much time pass, so often, has no good reason. In real time a busy machine
 #: may have.
 _SLOW_S, _SLOW_REAL_S, _SLOW_TIMES = 0.04, 0.15, 3
-#: What a run's remarks say of a program that computes without end.
+#: Part of a run's remark on a program that computes without end.
 _WITHOUT_WAITING = "without waiting for ROS"
 #: Messages a second that no program sends that waits between them.
 _FLOOD_PER_S = 500.0
@@ -28,7 +28,7 @@ _SPIN = msg(
 
 
 def stuck_in_callback(case: Case) -> Diagnosis | None:
-    """It waits in a callback for what only another callback could bring."""
+    """The program waits in a callback for what only another callback could bring."""
     stop = case.stop
     if stop is None or stop.kind != "callback":
         return None
@@ -51,7 +51,7 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
 
 
 def stuck_in_call(case: Case) -> Diagnosis | None:
-    """It waits in a call while nobody spins."""
+    """The program waits in a call while nobody spins."""
     stop = case.stop
     if stop is None or stop.kind != "call":
         return None
@@ -78,7 +78,7 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
 
 
 def endless_loop(case: Case) -> Diagnosis | None:
-    """It computes without end."""
+    """The program computes without end."""
     stop = case.stop
     help_ = msg(
         "Nothing else of your node can happen while a loop runs. Let a timer "
@@ -105,7 +105,7 @@ def endless_loop(case: Case) -> Diagnosis | None:
 
 
 def stays_in_init(case: Case) -> Diagnosis | None:
-    """It makes its node, and never gets to what comes after: the rest of it, or the spin."""
+    """The program stays in a node's `__init__`, and never gets to what comes after it."""
     stop, observed = case.stop, case.observed
     if stop is None or stop.kind != "init" or stop.place is None:
         return None
@@ -134,7 +134,7 @@ def stays_in_init(case: Case) -> Diagnosis | None:
 
 
 def spins_in_loop(case: Case) -> Diagnosis | None:
-    """A loop that would send something calls spin() first, which does not come back."""
+    """A loop that would send something calls spin() first, which does not return."""
     stop = case.stop
     publishers = [end for end in case.observed.ends if end.kind == "publisher"]
     if stop is None or stop.kind != "spin" or not publishers or any(e.used for e in publishers):
@@ -157,7 +157,7 @@ def spins_in_loop(case: Case) -> Diagnosis | None:
 
 
 def does_nothing(case: Case) -> Diagnosis | None:
-    """It came to its end without having made anything of ROS."""
+    """The program ended without a publisher, a subscription or a client."""
     if case.ended_s is None or case.observed.ends or case.observed.spun_s is not None:
         return None
     cause = msg(
@@ -170,13 +170,13 @@ def does_nothing(case: Case) -> Diagnosis | None:
 
 
 def is_deaf(case: Case) -> Diagnosis | None:
-    """Nobody ever spins its node, and it has a subscription."""
+    """The program never spins its node, which has a subscription."""
     has_subscription = any(end.kind == "subscription" for end in case.observed.ends)
     return never_spins(case) if has_subscription else None
 
 
 def never_spins(case: Case) -> Diagnosis | None:
-    """Nobody ever spins its node, and something of it waits for that."""
+    """The program never spins its node, which waits for messages or timers."""
     observed = case.observed
     if not observed.is_known or observed.spun_s is not None:
         return None
@@ -213,7 +213,7 @@ def never_spins(case: Case) -> Diagnosis | None:
 
 
 def ends_early(case: Case) -> Diagnosis | None:
-    """It came to its end when it had hardly begun."""
+    """The program ended when it had hardly begun."""
     ended_s = case.ended_s
     if ended_s is None or ended_s > _SOON_S or case.run.outcome not in ("exited", "finished"):
         return None
@@ -225,7 +225,7 @@ def ends_early(case: Case) -> Diagnosis | None:
         what = msg(
             "{what}, and the last that it printed is: {last!r}",
             what=what,
-            last=clip(told(last), _LONGEST_CODE),
+            last=clip(excerpt(last), _LONGEST_CODE),
         )
     raised = case.observed.raised
     place = raised.place if raised is not None else None
@@ -277,7 +277,7 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
         if end.kind != "publisher" or not case.observed.is_known or rate < _FLOOD_PER_S:
             continue
         loop = _loop_at_end(case)
-        words = {"sent": end.used, "topic": told(end.name), "run_s": run_s}
+        words = {"sent": end.used, "topic": excerpt(end.name), "run_s": run_s}
         if loop is not None:
             cause = msg(
                 "You published {sent} messages on {topic} in {run_s:.0f} s: nothing in the loop "
@@ -303,13 +303,13 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
 
 
 def sends_too_much(case: Case) -> Diagnosis | None:
-    """The same, where the grader has ended the program for it, which then has no exit code."""
+    """The program published so fast that the grader ended it; it has no exit code then."""
     is_ended = case.run.outcome == "killed" and case.run.exit_code is None
     return publishes_without_waiting(case) if is_ended else None
 
 
 def hears_once(case: Case) -> Diagnosis | None:
-    """A topic that the scene publishes all the time has reached it once, and then no more."""
+    """The program received a topic once, though the scene publishes it all the time."""
     run_s = case.run.simulated_s
     loop = _loop_at_end(case)
     least_s = _LONG_S if loop is None else _LONG_IN_LOOP_S
@@ -326,7 +326,7 @@ def hears_once(case: Case) -> Diagnosis | None:
             cause = msg(
                 "Your node received {topic} hardly more than once in {run_s:.0f} s{where}, "
                 "though it is published all the time.",
-                topic=told(end.name),
+                topic=excerpt(end.name),
                 run_s=run_s,
                 where=line(end.place),
             )
@@ -336,7 +336,7 @@ def hears_once(case: Case) -> Diagnosis | None:
                     "more than once in {run_s:.0f} s.",
                     code=_code(loop),
                     where=line(loop),
-                    topic=told(end.name),
+                    topic=excerpt(end.name),
                     run_s=run_s,
                 )
             help_ = msg(
@@ -351,16 +351,16 @@ def hears_once(case: Case) -> Diagnosis | None:
 
 
 def _loop_at_end(case: Case) -> SourceLine | None:
-    """The loop that its main thread was in when the run ended."""
+    """Return the loop that the main thread was in when the run ended."""
     stop = case.stop
     return stop.place if stop is not None and stop.kind == "going" else None
 
 
 def _code(place: SourceLine) -> str:
-    """'`while True:`', a line as it stands there."""
-    return f"`{clip(told(place.text), _LONGEST_CODE)}`"
+    """Quote a line of code: '`while True:`'."""
+    return f"`{clip(excerpt(place.text), _LONGEST_CODE)}`"
 
 
 def _in_call(call: str) -> Message:
     """' in Client.call()'; '' where that is not known."""
-    return msg(" in {call}()", call=told(call)) if call else NOTHING
+    return msg(" in {call}()", call=excerpt(call)) if call else NOTHING

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import PurePath
 
-from grader.diagnosis.case import Case, after, function, is_library, line, sentences, told
+from grader.diagnosis.case import Case, after, excerpt, function, is_library, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.usual import known, meaning
+from grader.diagnosis.known_exceptions import explain
 from grader.message import NOTHING, Message, joined, msg, plain_text
 from grader.recording.observations import Caught, SourceLine
 
@@ -29,13 +29,13 @@ _NEVER_AWAITED = re.compile(
 )
 #: A timer that a program drives by comes sooner than that [s].
 _LONG_PERIOD_S = 5.0
-#: Who makes one after the other makes fewer a second.
+#: A program that makes timers on purpose makes fewer a second.
 _MOST_TIMERS_PER_S = 30.0
 NOT_CAUGHT = msg("Without the try/except Python would say so itself.")
 
 
 def ended_by_caught(case: Case) -> Diagnosis | None:
-    """It came to its end by an exception that it caught itself."""
+    """The program ended by an exception that it caught itself."""
     ended_s = case.ended_s
     if ended_s is None or case.observed.raised is not None:
         return None
@@ -48,13 +48,13 @@ def ended_by_caught(case: Case) -> Diagnosis | None:
                 where=line(caught.place),
             )
             return Diagnosis(
-                "ended_by_caught", cause, _mending(caught), time_s=ended_s, place=caught.place
+                "ended_by_caught", cause, _help(caught), time_s=ended_s, place=caught.place
             )
     return None
 
 
 def hides_errors(case: Case) -> Diagnosis | None:
-    """A callback fails again and again, and the program goes on after it."""
+    """A callback fails again and again, and the program catches that and goes on."""
     for caught in case.observed.caught:
         if not _is_mistake(caught):
             continue
@@ -65,18 +65,18 @@ def hides_errors(case: Case) -> Diagnosis | None:
             error=_error(caught),
             where=line(caught.place),
         )
-        return Diagnosis("hides_errors", cause, _mending(caught), place=caught.place)
+        return Diagnosis("hides_errors", cause, _help(caught), place=caught.place)
     return None
 
 
 def never_awaits(case: Case) -> Diagnosis | None:
-    """It calls an `async def` like any function: nothing of it is ever run."""
+    """The program calls an `async def` like any function: nothing of it is ever run."""
     for found in _NEVER_AWAITED.finditer(case.tail):
         if is_library(found["file"]):
             continue
         text = (found["text"] or "").strip()
         place = SourceLine(PurePath(found["file"]).name, int(found["line"]), "", text)
-        name = told(found["name"].rpartition(".")[2])
+        name = excerpt(found["name"].rpartition(".")[2])
         return Diagnosis(
             "never_awaits",
             msg(
@@ -95,7 +95,7 @@ def never_awaits(case: Case) -> Diagnosis | None:
 
 
 def waits_for_timer(case: Case) -> Diagnosis | None:
-    """It sends nothing, and has a timer whose time does not come."""
+    """The program sends nothing, and has a timer whose period is longer than the run."""
     publishers = [end for end in case.observed.ends if end.kind == "publisher"]
     if not publishers or any(end.used for end in publishers):
         return None
@@ -115,7 +115,7 @@ def waits_for_timer(case: Case) -> Diagnosis | None:
 
 
 def makes_timers(case: Case) -> Diagnosis | None:
-    """It makes a timer each time that something is called, and all of them go on."""
+    """The program makes a timer each time that a function is called, and all of them go on."""
     for timer in case.observed.timers:
         if timer.times < _MOST_TIMERS_PER_S * max(case.run.simulated_s, 1.0):
             continue
@@ -139,14 +139,9 @@ def _is_mistake(caught: Caught) -> bool:
 
 
 def _error(caught: Caught) -> Message:
-    said = known(caught)
-    text = (
-        said.text if said is not None and said.text else plain_text(told(caught.text).rstrip("."))
-    )
-    return joined([told(caught.type), text] if text else [told(caught.type)], ": ")
+    text = explain(caught).text or plain_text(excerpt(caught.text).rstrip("."))
+    return joined([excerpt(caught.type), text] if text else [excerpt(caught.type)], ": ")
 
 
-def _mending(caught: Caught) -> Message:
-    said = known(caught)
-    help_ = said.help if said is not None else meaning(caught)
-    return sentences(help_, NOT_CAUGHT)
+def _help(caught: Caught) -> Message:
+    return sentences(explain(caught).help, NOT_CAUGHT)

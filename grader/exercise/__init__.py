@@ -1,4 +1,4 @@
-"""What an exercise is: exercise.yaml, checks, verdicts."""
+"""An exercise: exercise.yaml, checks, verdicts."""
 
 #: The exercise that is meant where none is named.
 DEFAULT = "turtlesim_challenge"

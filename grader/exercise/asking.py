@@ -1,7 +1,7 @@
-"""Asks the checks of an exercise for their findings, in one copy of this process with one limit.
+"""Runs the checks of an exercise in one copy of this process, with one limit for all of them.
 
-Each finding comes as it is made, as strict JSON. Where a check ends the copy, or its time is over,
-that one and those after it have none.
+Each finding is sent as it is made, as strict JSON. Where a check ends the copy, or exceeds its
+limit, that one and those after it have none.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from grader.message import NOTHING, Message
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 
 CheckFunction = Callable[[Recordings, Mapping[str, Any]], Finding]
-#: Makes a text of what a check raised.
-Told = Callable[[CheckFunction, BaseException], str]
-#: Of all checks of a judging together; an ordinary one takes 0.04 s.
+#: Describes the exception that a check raised.
+DescribeError = Callable[[CheckFunction, BaseException], str]
+#: Of all checks of a judging together; an ordinary judging needs 0.04 s.
 LIMITS = WorkLimits(cpu_s=60.0, wall_s=180.0)
 
 
 class NoFinding(Exception):
-    """A check raised something, or returned what is no finding; the text says what and where."""
+    """A check raised an exception, or returned no finding; the text says what and where."""
 
     def __init__(self, text: str, *, was_raised: bool) -> None:
         super().__init__(text)
@@ -35,7 +35,7 @@ class NoFinding(Exception):
 
 
 class NotReached(Exception):
-    """A check has no finding since one, `by`, took too much; `what` goes on from its name."""
+    """A check has no finding since one, `by`, exceeded a limit; `what` goes on from its name."""
 
     def __init__(self, what: Message, by: str) -> None:
         super().__init__(what)
@@ -43,11 +43,11 @@ class NotReached(Exception):
 
 
 class Answers:
-    """What checks have answered; asked for one by its name.
+    """The findings of one round of checks; called with a check's name, it returns one.
 
     Attributes:
         answers: by the check's name, as `_run` makes them.
-        not_reached: what is raised for all others.
+        not_reached: the exception for all others.
     """
 
     def __init__(self) -> None:
@@ -55,23 +55,23 @@ class Answers:
         self.not_reached = NotReached(NOTHING, "")
 
     def __call__(self, name: str) -> Finding:
-        """What a check has found.
+        """Return the finding of a check.
 
         Raises:
-            NoFinding: it raised something, or returned what is no finding.
-            NotReached: it, or one before it, did not come to an end.
-            NotOver: it asked for a run that is not over.
+            NoFinding: it raised an exception, or returned no finding.
+            NotReached: it, or one before it, exceeded a limit.
+            NotOver: it needs a run that is not over.
         """
-        words = self.answers.get(name, {"say": "nothing"})
-        match words["say"]:
+        answer = self.answers.get(name, {"say": "nothing"})
+        match answer["say"]:
             case "finding":
-                return strict_json.from_json(Finding, words["finding"], strict_json.OURS)
+                return strict_json.from_json(Finding, answer["finding"], strict_json.OURS)
             case "not over":
                 raise NotOver
             case "limit":
-                raise NotReached(Message.parse(words["text"]), name)
+                raise NotReached(Message.parse(answer["text"]), name)
             case "raised" | "wrong":
-                raise NoFinding(words["text"], was_raised=words["say"] == "raised")
+                raise NoFinding(answer["text"], was_raised=answer["say"] == "raised")
         raise self.not_reached
 
 
@@ -80,18 +80,18 @@ def ask(
     after: Mapping[str, Sequence[str]],
     recordings: Recordings,
     tolerances: Mapping[str, Any],
-    told: Told | None = None,
+    describe: DescribeError | None = None,
     rounds: int = 1,
 ) -> list[Answers]:
-    """Ask checks in their order about recordings; one that waits for one that fails is not asked.
+    """Run checks in their order; one that depends on one that fails is not run.
 
     Args:
         after: of each check those that have to pass before.
-        told: where it failed, for people, if not `where_it_failed`.
-        rounds: all of it so often, in the same process.
+        describe: an exception of a check for people; else `where_it_failed`.
+        rounds: how often all of them are run, in the same process.
 
     Returns:
-        A round each.
+        The findings of each round.
     """
 
     def work() -> Iterator[bytes]:
@@ -100,52 +100,55 @@ def ask(
             for name, function in functions.items():
                 if all(passed.get(each, True) for each in after[name]):
                     yield json.dumps([number, name, None]).encode()
-                    answer = _run(function, recordings, tolerances, told or where_it_failed)
+                    answer = _run(function, recordings, tolerances, describe or where_it_failed)
                     yield json.dumps([number, name, answer]).encode()
                     found = answer.get("finding")
                     passed[name] = bool(found and found["judged"] and found["share"] >= 1)
                 else:
                     passed[name] = False
 
-    made = [Answers() for _ in range(rounds)]
+    by_round = [Answers() for _ in range(rounds)]
     running = ""
     try:
         for answer in limited.stream(work, LIMITS):
-            number, running, words = strict_json.loads(answer.decode())
-            if words is not None:
-                made[number].answers[running] = words
+            number, running, found = strict_json.loads(answer.decode())
+            if found is not None:
+                by_round[number].answers[running] = found
     except LimitHit as hit:
-        for each in made:
+        for each in by_round:
             each.not_reached = NotReached(hit.why, running)
-    return made
+    return by_round
 
 
 def _run(
-    function: CheckFunction, recordings: Recordings, tolerances: Mapping[str, Any], told: Told
+    function: CheckFunction,
+    recordings: Recordings,
+    tolerances: Mapping[str, Any],
+    describe: DescribeError,
 ) -> dict[str, Any]:
-    """In the copy: ask one."""
+    """Run one check, in the copy; return its answer as JSON."""
     try:
         finding = function(recordings, tolerances)
     except NotOver:
         return {"say": "not over"}
-    except KeyboardInterrupt:  # a key's, where there is no copy, which is deaf to it
+    except KeyboardInterrupt:  # of a key, where there is no copy, which ignores it
         raise
     except MemoryError:
         return {"say": "limit", "text": limited.TOO_MUCH.serialise()}
     except RecursionError:
         return {"say": "limit", "text": limited.TOO_DEEP.serialise()}
     except BaseException as error:  # SystemExit too: a check must not end the others unjudged
-        return {"say": "raised", "text": told(function, error)}
+        return {"say": "raised", "text": describe(function, error)}
     is_alone = isinstance(recordings, NominalAlone)
     wrong = wrong_with(finding, 1 if is_alone else len(list(recordings)))
     if wrong:
         return {"say": "wrong", "text": wrong}
-    said = strict_json.to_json(replace(finding, share=float(finding.share)), strict_json.OURS)
-    return {"say": "finding", "finding": said}
+    data = strict_json.to_json(replace(finding, share=float(finding.share)), strict_json.OURS)
+    return {"say": "finding", "finding": data}
 
 
 def where_it_failed(function: CheckFunction, error: BaseException) -> str:
-    """An exception in a check, with the last line of the file that the check stands in."""
+    """Describe an exception in a check, with the last line of the check's file."""
     file = function.__code__.co_filename
     frames = traceback.extract_tb(error.__traceback__)
     lines = [frame.lineno for frame in frames if frame.filename == file]

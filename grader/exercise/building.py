@@ -1,6 +1,6 @@
-"""An exercise of the values of an exercise.yaml: each part is looked at, and refused by its key.
+"""Builds an exercise from the values of an exercise.yaml, each of which is checked.
 
-All functions here raise a `Mistake` where a value cannot be used.
+All functions here raise a `Mistake`, which names the key, where a value cannot be used.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from typing import Any
 
 from grader import content, extensions
 from grader.errors import ExerciseError
-from grader.exercise import handing_in, places, translated
+from grader.exercise import places, policies, translated
 from grader.exercise.check import Checks
-from grader.exercise.exercise import CPU, INSPECTIONS, LOOKS, PER_STUDENT, Exercise, VariedRuns
+from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
 from grader.exercise.yaml_file import Mistake, check_known, expect, is_amount
 from grader.extensions import SCENES
@@ -31,10 +31,10 @@ NO_LIMITS = Limits(0.0, 0.0, 0.0)
 LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
 MOST_RUNS = 100
-#: What of the keys is for people and judges nothing.
+#: Keys that are for people and judge nothing.
 WORDS = ("title", "task", "starter", translated.PART)
 SETTING = "setting"
-#: It is handed from process to process [characters].
+#: It is sent from process to process [characters].
 LONGEST_SETTING = 50_000
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 #: Of an exercise, a program, a package.
@@ -42,7 +42,7 @@ NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
 
 def build(data: dict[str, Any], place: Place) -> Exercise:
-    """What the values of an exercise.yaml describe, with the checks beside it."""
+    """Build an exercise from the values of its exercise.yaml and the checks beside it."""
     scene, subject = _subject(data.get("scene", DEFAULT_SCENE))
     setting = _setting(data.get("setting"), subject, place)
     limits = _limits(data) if isinstance(subject, Scene) else _without_clock(data, scene)
@@ -58,7 +58,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         raise Mistake(("tolerances", wrong[0]), wrong[1])
     points = _points(data["points"], checks)
     words = translated.translated(data.get(translated.PART), checks, tolerances)
-    checks = checks.said(words.titles, words.rubrics)
+    checks = checks.with_words(words.titles, words.rubrics)
     exercise = Exercise(
         name=data["exercise"],
         title=authored(str(data["title"]), words.title),
@@ -69,7 +69,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         checks=checks,
         scene=scene,
         setting=setting,
-        looks_at_package=data.get(LOOKS, False),
+        looks_at_package=data.get(INSPECTS, False),
         inspections=_inspections(data, scene, subject),
         cpu_s=_cpu_s(data.get(CPU)),
         program=data.get("program", ""),
@@ -77,14 +77,14 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, setting, place.folder),
         task=authored(data.get("task", ""), words.task),
-        visible=handing_in.visible(data.get("visible"), checks, points),
+        visible=policies.visible(data.get("visible"), checks, points),
         explained=words.tolerances,
     )
-    return replace(exercise, late=handing_in.late(data.get("late"), exercise.max_score))
+    return replace(exercise, late=policies.late(data.get("late"), exercise.max_score))
 
 
 def _subject(name: object) -> tuple[str, Subject]:
-    """What an exercise names as its scene."""
+    """Load the scene that an exercise names."""
     names = extensions.points(SCENES)
     if not isinstance(name, str) or name not in names:
         raise Mistake(
@@ -138,7 +138,7 @@ def _sha256(data: Mapping[str, Any], setting: str, folder: Path) -> str:
 
 
 def _setting(where: Any, subject: Subject, place: Place) -> str:
-    """The text of the file that a scene is set up with."""
+    """Read the file that a scene is set up with; '' for none."""
     is_file = where is None or isinstance(where, str)
     expect(is_file, (SETTING,), "expected a file beside exercise.yaml, found {found}", where)
     setting = ""
@@ -162,15 +162,21 @@ def _setting(where: Any, subject: Subject, place: Place) -> str:
 
 
 def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
-    """Refuse what is no text, no name, no switch where there has to be one."""
-    task, program, looks = data.get("task", ""), data.get("program", ""), data.get(LOOKS, False)
+    """Refuse a task, a program or a switch of another type."""
+    task, program, inspects = (
+        data.get("task", ""),
+        data.get("program", ""),
+        data.get(INSPECTS, False),
+    )
     expect(isinstance(task, str), ("task",), "expected a text, found {found}", task)
     is_name = isinstance(program, str) and (not program or NAME.fullmatch(program))
     expect(is_name, ("program",), "expected the name of a console script, found {found}", program)
-    expect(isinstance(looks, bool), (LOOKS,), "expected true or false, found {found}", looks)
-    if looks and not isinstance(subject, Scene):
+    expect(
+        isinstance(inspects, bool), (INSPECTS,), "expected true or false, found {found}", inspects
+    )
+    if inspects and not isinstance(subject, Scene):
         raise Mistake(
-            (LOOKS,), "the scene {scene} does nothing else: leave it out", scene=repr(scene)
+            (INSPECTS,), "the scene {scene} does nothing else: leave it out", scene=repr(scene)
         )
 
 
@@ -181,7 +187,7 @@ def _inspections(data: Mapping[str, Any], scene: str, subject: Subject) -> tuple
     is_known = isinstance(given, list) and all(isinstance(n, str) and n in known for n in given)
     what = "expected a list of some of {names}, found {found}"
     expect(is_known, (INSPECTIONS,), what, given, names=", ".join(known) or "none")
-    if given and isinstance(subject, Scene) and not data.get(LOOKS, False):
+    if given and isinstance(subject, Scene) and not data.get(INSPECTS, False):
         raise Mistake((INSPECTIONS,), "no package is examined here without looks_at_package: true")
     return tuple(given)
 
@@ -208,10 +214,10 @@ def _varied(data: Mapping[str, Any]) -> VariedRuns:
 
 
 def _check_varied(varied: VariedRuns, farthest_m: float) -> None:
-    """Refuse what gives runs that nobody can mean.
+    """Refuse varied runs that are too many or start outside.
 
     Args:
-        farthest_m: so far from the centre something can start in the scene.
+        farthest_m: from the centre a run can start in the scene.
     """
     part = "varied_runs"
     if varied.count > MOST_RUNS:

@@ -2,7 +2,7 @@
 
 A check is a function of a submission's recordings and the exercise's tolerances; the first line of
 its docstring is the title that a student reads. Checks run in the order of their definition. One
-that depends on a failed check is not judged, and says for which it waited.
+that depends on a failed check is not judged, and names that one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Tolerances = Mapping[str, Any]
 #: Name of a check -> language -> text.
 Words = Mapping[str, Mapping[str, str]]
 #: Raises a ValueError where a tolerance cannot be used.
-LookAt = Callable[[Any], None]
+Validator = Callable[[Any], None]
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Check:
     rubric: Message = NOTHING
 
 
-#: Asks a check, by its name, for its finding; see `grader.exercise.asking`.
+#: Returns the finding of a check by its name; see `grader.exercise.asking.Answers`.
 Ask = Callable[[str], Finding]
 
 
@@ -53,15 +53,15 @@ class Checks:
 
     def __init__(self) -> None:
         self._checks: list[Check] = []
-        self._looks: dict[str, LookAt] = {}
+        self._validators: dict[str, Validator] = {}
 
     def __iter__(self) -> Iterator[Check]:
         return iter(self._checks)
 
-    def said(self, titles: Words, rubrics: Words) -> Checks:
-        """The same checks with titles and rubrics in other languages, each by its check's name."""
+    def with_words(self, titles: Words, rubrics: Words) -> Checks:
+        """Return the checks with titles and rubrics in other languages, by the check's name."""
         made = Checks()
-        made._looks = self._looks
+        made._validators = self._validators
         made._checks = [
             replace(
                 check,
@@ -72,21 +72,21 @@ class Checks:
         ]
         return made
 
-    def tolerance(self, look: LookAt) -> LookAt:
-        """Have the tolerances looked at by the decorated function when the exercise is loaded.
+    def tolerance(self, validate: Validator) -> Validator:
+        """Register the decorated function as the validator of the tolerance that has its name.
 
-        Its name is that of the tolerance that it looks at; it raises a ValueError that says what
-        was expected and what was found. A tolerance that the yaml does not name is not looked at.
+        It is called when the exercise is loaded, if the yaml names the tolerance, and raises a
+        ValueError that says what was expected and what was found.
         """
-        self._looks[look.__name__] = look
-        return look
+        self._validators[validate.__name__] = validate
+        return validate
 
     def wrong_tolerance(self, tolerances: Tolerances) -> tuple[str, Message] | None:
-        """The name of the first tolerance that cannot be used, and why; None: all can."""
-        for name, look in self._looks.items():
+        """Return the name of the first invalid tolerance, and why; None: all are valid."""
+        for name, validate in self._validators.items():
             try:
                 if name in tolerances:
-                    look(tolerances[name])
+                    validate(tolerances[name])
             except ValueError as error:
                 return name, reason(error)
         return None
@@ -113,7 +113,7 @@ class Checks:
             name = function.__name__
             if name in {check.name for check in self._checks}:
                 raise ValueError(f"two checks are named {name!r}")
-            if not _takes_two(function):
+            if not _accepts_two(function):
                 found = inspect.signature(function)
                 raise TypeError(f"{name}: expected (recordings, tolerances), found {found}")
             texts = authored(title.strip().rstrip(".")), authored(rubric.strip())
@@ -124,7 +124,7 @@ class Checks:
         return register
 
 
-def _takes_two(function: CheckFunction) -> bool:
+def _accepts_two(function: CheckFunction) -> bool:
     try:
         inspect.signature(function).bind(None, None)
     except TypeError:
@@ -141,7 +141,7 @@ def judge(
     """Run every check that the exercise gives points for.
 
     Raises:
-        CheckFailed: a check raised something, or returned what is no finding.
+        CheckFailed: a check raised an exception, or returned no finding.
         KeyError: the exercise gives points to a check that does not exist.
     """
     lacking = next((each.run for each in recordings.varied if each.run.outcome == "not_run"), None)
@@ -164,18 +164,18 @@ def answers(
     checks: Checks,
     points: Mapping[str, float],
     tolerances: Tolerances,
-    told: asking.Told | None = None,
+    describe: asking.DescribeError | None = None,
     rounds: int = 1,
 ) -> list[Answers]:
-    """What the checks that the exercise gives points for say of recordings; see `asking.ask`."""
+    """Run the checks that the exercise gives points for; see `asking.ask`."""
     asked = [check for check in checks if check.name in points]
     functions = {check.name: check.function for check in asked}
     after = {check.name: check.depends_on for check in asked}
-    return asking.ask(functions, after, recordings, tolerances, told, rounds)
+    return asking.ask(functions, after, recordings, tolerances, describe, rounds)
 
 
 def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:
-    """The same, by somebody who knows the findings; raises what `judge` raises."""
+    """Make the verdicts from findings that are known already; raises what `judge` raises."""
     known = {check.name: check for check in checks}
     verdicts: dict[str, Verdict] = {}
     for name in points:
@@ -188,11 +188,11 @@ def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verd
 
 
 def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Verdict]) -> Verdict:
-    """Run one check, if the `earlier` verdicts of those that it depends on allow it.
+    """Make the verdict of one check, if those that it depends on passed in the `earlier` ones.
 
     Raises:
-        CheckFailed: it raised something, or returned what is no finding.
-        NotOver: it asked for a run that is not over.
+        CheckFailed: it raised an exception, or returned no finding.
+        NotOver: it needs a run that is not over.
     """
     blank = Verdict(
         *(check.name, check.title, "not_judged", 0.0, max_score, NOTHING),
@@ -228,7 +228,7 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
             ),
         )
     except NoFinding as error:
-        raise CheckFailed(_told(check, error)) from error
+        raise CheckFailed(_failure(check, error)) from error
     if not finding.judged:
         return not_judged(finding.rationale, finding.help)
     share = min(max(float(finding.share), 0.0), 1.0)
@@ -244,7 +244,7 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
     )
 
 
-def _told(check: Check, error: NoFinding) -> Message:
+def _failure(check: Check, error: NoFinding) -> Message:
     if error.was_raised:
         return msg(
             "the check {check!r} failed itself, so nothing was judged: {error}",
@@ -262,11 +262,9 @@ def _told(check: Check, error: NoFinding) -> Message:
 def judge_nominal(
     nominal: Recording, checks: Checks, points: Mapping[str, float], tolerances: Tolerances
 ) -> list[Verdict]:
-    """Run the checks of `grader.exercise.check.judge` as far as one run lets them come.
+    """Run the checks for which the nominal run is enough, and for those that they depend on.
 
-    A check has a verdict here if it looks at the nominal run alone, and so do all that it depends
-    on; all others are left out. One that fails itself is left out as well: who judges all runs is
-    told of it.
+    All others are left out. So is one that raises an exception: `judge` reports it.
     """
     (answered,) = answers(NominalAlone(nominal), checks, points, tolerances)
     verdicts: dict[str, Verdict] = {}

@@ -1,4 +1,4 @@
-"""The path that something drove, as arrays, and what exercises ask of it: where, how far, when.
+"""The path that something drove, as arrays, and measures of it: where, how far, when.
 
 Made for checks: an exercise derives a class of its own that adds the words of its task, or uses
 this one as it is. Nothing here raises for what a submission can do: a path may be empty, may have
@@ -27,9 +27,9 @@ Mask = npt.NDArray[np.bool_]
 
 #: A step that is longer by this than its speed explains is a jump [m].
 JUMP_M = 0.001
-#: How often corners are looked at again; a polygon needs two or three looks.
-MOST_LOOKS = 10
-#: A path with more corners is no polygon that anybody meant, and is not looked at any closer.
+#: How often corners are improved; a polygon needs two or three passes.
+MOST_PASSES = 10
+#: A path with more corners was not meant as a polygon, and is not simplified any further.
 MOST_CORNERS = 300
 
 
@@ -86,11 +86,11 @@ class DrivenPath:
     # Parts of it ------------------------------------------------------------------------------
 
     def part(self, rows: slice | Mask) -> DrivenPath:
-        """Some of its readings."""
+        """Return a part of the path: the readings at some rows."""
         return DrivenPath(self.recording, self.way[rows], self.number)
 
     def begun_at(self, start: Start) -> DrivenPath:
-        """The same with one reading more in front: at tick 0 it stood at rest at its start.
+        """Return the path with one reading more in front: at tick 0 it stood at rest at its start.
 
         The first reading of a recording lies after the first tick, which may have moved it.
         """
@@ -100,16 +100,16 @@ class DrivenPath:
         return DrivenPath(self.recording, way, self.number)
 
     def until_lost(self) -> DrivenPath:
-        """Up to the first pose that is not a number."""
+        """Return the path up to the first pose that is not a number."""
         return self.part(slice(self.lost))
 
     def stretches(self, ticks: Iterable[int]) -> list[DrivenPath]:
-        """The parts before, between and from these ticks on; some may be empty."""
+        """Split the path at these ticks; some of the parts may be empty."""
         cuts = [0, *np.searchsorted(self.ticks, sorted(set(ticks))).tolist(), len(self)]
         return [self.part(slice(first, last)) for first, last in pairwise(cuts)]
 
     def longest_stretch(self, ticks: Iterable[int]) -> DrivenPath:
-        """That of its `stretches` in which it moved in the most ticks."""
+        """Return that of its `stretches` which moved in the most ticks."""
         return max(self.stretches(ticks), key=lambda part: int(part.moving.sum()))
 
     # Motion -----------------------------------------------------------------------------------
@@ -122,7 +122,7 @@ class DrivenPath:
 
     @cached_property
     def steps_m(self) -> Floats:
-        """How far it is from the reading before [m], 0 for the first; float64 (n,)."""
+        """The distance to the reading before [m], 0 for the first; float64 (n,)."""
         steps = np.zeros(len(self))
         with np.errstate(invalid="ignore"):  # a path that is not cut may hold infinities
             steps[1:] = np.hypot(np.diff(self.x), np.diff(self.y))
@@ -130,12 +130,12 @@ class DrivenPath:
 
     @cached_property
     def moving(self) -> Mask:
-        """Whether the position differs from the reading before."""
+        """Whether the position differs from the reading before; bool (n,)."""
         return _changes(self.x) | _changes(self.y)
 
     @cached_property
     def jumping(self) -> Mask:
-        """Whether the way from the reading before is longer than its speed explains."""
+        """Whether the step from the reading before is longer than its speed explains; bool (n,)."""
         return self.steps_m > self.linear * self.tick_s + JUMP_M
 
     @property
@@ -165,20 +165,20 @@ class DrivenPath:
 
     @cached_property
     def driven_m(self) -> Floats:
-        """How long the way to each reading is [m], float64 (n,)."""
+        """The length of the path up to each reading [m], float64 (n,)."""
         return np.cumsum(self.steps_m)
 
     @property
     def length_m(self) -> float:
-        """How long all of it is [m]."""
+        """The length of the whole path [m]."""
         return float(self.driven_m[-1]) if len(self) else 0.0
 
     def length_from(self, row: int) -> float:
-        """How long the way is from there to the end [m]."""
+        """Return the length of the path from a row to the end [m]."""
         return float(self.driven_m[-1] - self.driven_m[row])
 
     def straight_pieces(self, error_m: float) -> list[Side]:
-        """The path as drawn with a ruler: it lies `error_m` at most beside straight lines."""
+        """Approximate the path by straight lines that lie `error_m` at most beside it."""
         marks = simplify(self.points, error_m)
         return [
             Side(self.points[b] - self.points[a], b, beside_m, at)
@@ -190,21 +190,21 @@ class DrivenPath:
 
     @cached_property
     def points(self) -> Floats:
-        """Where it was [m], float64 (n, 2)."""
+        """The positions [m], float64 (n, 2)."""
         return np.column_stack((self.x, self.y))
 
     def distance_from(self, x: float, y: float) -> Floats:
-        """How far each reading is from a place [m], float64 (n,)."""
+        """Return the distance of each reading from a place [m], float64 (n,)."""
         return np.hypot(self.x - x, self.y - y)
 
     @cached_property
     def to_walls(self) -> Floats:
-        """To the left, bottom, right and top wall [m], float64 (n, 4)."""
+        """The distances to the left, bottom, right and top wall [m], float64 (n, 4)."""
         return np.column_stack((self.x, self.y, self.size_m - self.x, self.size_m - self.y))
 
     @cached_property
     def wall_distance(self) -> Floats:
-        """To the nearest wall [m], float64 (n,)."""
+        """The distance to the nearest wall [m], float64 (n,)."""
         return np.asarray(self.to_walls.min(axis=1))
 
     @cached_property
@@ -214,21 +214,21 @@ class DrivenPath:
         return int(np.argmax(clamped)) if clamped.any() else None
 
     def row_at(self, tick: int) -> int:
-        """The row of the first reading at or after a tick, or of the last one."""
+        """Return the row of the first reading at or after a tick, or of the last one."""
         return int(np.clip(np.searchsorted(self.ticks, tick), 0, len(self) - 1))
 
     def place(self, row: int) -> Message:
-        """Where it was, in words."""
+        """Return the position at a row, in words."""
         return msg("({x:.2f}, {y:.2f})", x=self.x[row], y=self.y[row])
 
     def evidence(self, row: int, note: Message) -> Evidence:
-        """What a finding can point at: its place and time at a row. -1 is the last."""
+        """Make evidence of the place and time at a row; -1 is the last."""
         tick = int(self.ticks[row])
         x, y = round(float(self.x[row]), 3), round(float(self.y[row]), 3)
         return self._evidence(tick, note, x, y)
 
     def at(self, tick: int, note: Message) -> Evidence:
-        """The same for the first reading at or after a tick, or the last one.
+        """Make evidence of the first reading at or after a tick, or the last one.
 
         Where there is no reading at all, it has no place.
         """
@@ -245,7 +245,7 @@ class DrivenPath:
 
 
 def _changes(values: Floats) -> Mask:
-    """Where a value differs from the one before."""
+    """Mask the values that differ from the one before."""
     changed = np.zeros(len(values), dtype=bool)
     changed[1:] = values[1:] != values[:-1]
     return changed
@@ -257,11 +257,11 @@ def _last(mask: Mask) -> int:
 
 
 def simplify(points: Floats, error_m: float) -> list[int]:
-    """Which points to keep so that all lie within `error_m` of the lines between them.
+    """Return the points to keep so that all lie within `error_m` of the lines between them.
 
     The algorithm of Ramer, Douglas and Peucker finds as many as are needed or a few more, and not
     quite in the corners: a side that is parallel to its line of sight is farthest everywhere. So
-    each is then looked at again between its neighbours.
+    each is then improved between its neighbours.
     """
     keep = {0, len(points) - 1}
     pending = [(0, len(points) - 1)]
@@ -272,7 +272,7 @@ def simplify(points: Floats, error_m: float) -> list[int]:
             keep.add(middle)
             pending += [(first, middle), (middle, last)]
     marks = sorted(keep)
-    for _ in range(MOST_LOOKS):
+    for _ in range(MOST_PASSES):
         before = list(marks)
         for mark in before[1:-1]:
             at = marks.index(mark)
@@ -284,7 +284,7 @@ def simplify(points: Floats, error_m: float) -> list[int]:
 
 
 def farthest(points: Floats, first: int, last: int) -> tuple[int, float]:
-    """The index of the point that is farthest from the line between two, and how far it is [m]."""
+    """Return the index of the point farthest from the line between two, and its distance [m]."""
     from_first, along = points[first : last + 1] - points[first], points[last] - points[first]
     square = float(along @ along) or 1.0
     share = np.clip(from_first @ along / square, 0.0, 1.0)

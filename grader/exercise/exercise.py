@@ -1,4 +1,4 @@
-"""What an exercise is, when it has been loaded."""
+"""An exercise, as it is loaded."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from grader.exercise.check import Checks
-from grader.exercise.handing_in import LatePolicy
+from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
 from grader.message import NOTHING, Message
 from grader.recording.subject import Start, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
-LOOKS = "looks_at_package"
+INSPECTS = "looks_at_package"
 #: ... what examines packages besides ...
 INSPECTIONS = "inspections"
 #: ... how much processor time a whole grading may take [s] ...
@@ -53,31 +53,31 @@ class VariedRuns:
 
 @dataclass(frozen=True)
 class Exercise:
-    """What is asked and how it is weighed.
+    """The task of an exercise, its checks and their points.
 
     Attributes:
-        name: as `--exercise` takes it, and as a result names it.
-        title: what a student reads; as the task a phrase, which may have words of other languages.
-        task: what is to be done, in Markdown; '' where the title says it all.
+        name: as in `--exercise` and in a result.
+        title: for students; like the task a message, which may have other languages.
+        task: what is to be done, in Markdown; '' where the title is enough.
         limits: when a run ends; `NO_LIMITS` where nothing is started.
         varied: further runs that start elsewhere.
-        cpu_s: processor time that a whole grading may take [s]: what it has reached by then is
-            judged. Without one the limits of each run and each step are all there is.
+        cpu_s: limit of the processor time of a whole grading [s]: what it has reached by then is
+            judged. Without one there are only the limits of each run and each step.
         points: check name -> points, in the order of the report.
-        tolerances: what the checks may read; their names are the checks' own business.
+        tolerances: parameters of the checks, which give them their names.
         checks: the exercise's check functions.
-        visible: check name -> what students see of it; all of those that are not named.
-        late: what it costs to hand in late; None where nothing is said of that.
+        visible: check name -> what students see of it; everything for those that are not named.
+        late: what a late submission costs; None for nothing.
         explained: tolerance -> language -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
         setting: the text of the file that it is set up with; '' for none.
         looks_at_package: whether the package around what is started is inspected as well.
         inspections: the names of the inspectors that examine packages.
-        program: what is started of several that were handed in; '' for the usual one.
+        program: the one to start where a submission has several; '' for the usual one.
         folder: where its files are.
         starter: the folder that `grader new` copies; None where there is none.
-        sha256: of all that it judges by: the values of exercise.yaml, as they are in force, the
-            setting, and the Python files beside it.
+        sha256: of all that a verdict depends on: the values of exercise.yaml that are in force,
+            the setting, and the Python files beside it.
     """
 
     name: str
@@ -103,17 +103,17 @@ class Exercise:
 
     @property
     def subject(self) -> Subject:
-        """What runs beside a submission, or that it is examined."""
+        """The scene that runs beside a submission, or the subject `package`."""
         return load_subject(self.scene)
 
     @property
     def is_started(self) -> bool:
-        """Whether something of a submission is started; else it is only examined."""
+        """Whether a submission is started; else it is only inspected."""
         return isinstance(self.subject, Scene)
 
     @property
     def opening(self) -> Opening:
-        """How a submission to it is opened."""
+        """The arguments for opening a submission to it."""
         opening: Opening = {
             "is_started": self.is_started,
             "inspections": self.inspections if self.looks_at_package else None,
@@ -125,15 +125,15 @@ class Exercise:
 
     @property
     def conditions(self) -> dict[str, float]:
-        """What only a run can follow: a recording that was made with other values keeps them."""
+        """The values that decide a run: a recording that was made with others keeps them."""
         if not self.is_started:
             return {}
         parts = {"limits": asdict(self.limits), "varied_runs": asdict(self.varied)}
         if parts["varied_runs"].pop(PER_STUDENT):
             parts["varied_runs"][PER_STUDENT] = 1
-        looks = {LOOKS: 1.0} if self.looks_at_package else {}
+        inspects = {INSPECTS: 1.0} if self.looks_at_package else {}
         each = {f"{part}.{key}": v for part, values in parts.items() for key, v in values.items()}
-        return {**each, **looks}
+        return {**each, **inspects}
 
     @property
     def max_score(self) -> float:
@@ -141,19 +141,19 @@ class Exercise:
         return round(sum(self.points.values()), 2)
 
     def seed_for(self, student_id: str) -> int | None:
-        """What chooses where a student's varied runs start; None: they start as everybody's.
+        """Return the seed of a student's varied runs; None: that of the exercise.
 
-        It is made of the exercise's own seed and the student's id, and of nothing else: the same
-        each time, on any machine, however a file system writes the letters of the id.
+        It depends on the exercise's seed and the student's id alone: it is the same each time, on
+        any machine, however a file system writes the letters of the id.
         """
         if not self.varied.per_student:
             return None
-        told = f"{self.varied.seed} {unicodedata.normalize('NFC', student_id)}"
-        digest = hashlib.sha256(told.encode("utf-8", "surrogatepass")).digest()
+        text = f"{self.varied.seed} {unicodedata.normalize('NFC', student_id)}"
+        digest = hashlib.sha256(text.encode("utf-8", "surrogatepass")).digest()
         return int.from_bytes(digest[:4], "big")
 
     def starts(self, seed: int | None = None) -> list[Start]:
-        """Where the varied runs start; None takes the exercise's own seed. See `seed_for`."""
+        """Return where the varied runs start; None uses the exercise's seed. See `seed_for`."""
         varied = self.varied
         used = varied.seed if seed is None else seed
         subject = self.subject

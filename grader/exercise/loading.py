@@ -1,7 +1,6 @@
-"""An exercise: its exercise.yaml read, merged with an edited copy, and its checks beside.
+"""Loads an exercise: reads its exercise.yaml, merged with an edited copy, and its checks.py.
 
-Where it is read from, and its checks.py, is told by `grader.exercise.places`; what its values mean
-by `grader.exercise.building`.
+`grader.exercise.places` finds the files, `grader.exercise.building` interprets the values.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import Any
 from grader.errors import ExerciseError
 from grader.exercise import places, translated
 from grader.exercise.building import NAME, build
-from grader.exercise.exercise import CPU, INSPECTIONS, LOOKS, PER_STUDENT, Exercise
+from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.yaml_file import (
     Mistake,
@@ -29,7 +28,7 @@ from grader.message import reason
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
-    *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", LOOKS, CPU),
+    *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", INSPECTS, CPU),
     INSPECTIONS,
     *("points", "visible", "late", "tolerances", "starter", "program", translated.PART),
 )
@@ -83,7 +82,7 @@ def _from_place(place: Place) -> Exercise:
         try:
             return build(_described(file, place), place)
         except Mistake as mistake:
-            raise ExerciseError(file.told(mistake)) from mistake
+            raise ExerciseError(file.describe(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(
             "cannot read {description}: {strerror}",
@@ -106,7 +105,7 @@ def _from_file(path: Path) -> Exercise:
             place, original = _original(edited.data.get("exercise"), path.parent)
             return build(_merged(original, edited.data), place)
         except Mistake as mistake:
-            raise ExerciseError(edited.told(mistake)) from mistake
+            raise ExerciseError(edited.describe(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(
             "cannot read the exercise {path}: {strerror}", path=str(path), strerror=error.strerror
@@ -118,14 +117,14 @@ def _from_file(path: Path) -> Exercise:
 
 
 def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
-    """What an edited copy in a folder is a copy of."""
+    """Find the exercise that an edited copy in a folder is a copy of."""
     if all((folder / file).is_file() for file in (DESCRIPTION, CHECKS)):
         beside = places.in_folder(folder)
         file = _read(beside.description)
         try:
             described = _described(file, beside)
         except Mistake as mistake:  # of another file than the one that is being read
-            raise ExerciseError(file.told(mistake)) from mistake
+            raise ExerciseError(file.describe(mistake)) from mistake
         if described["exercise"] == name:
             return beside, described
     if not isinstance(name, str) or name not in names():
@@ -141,7 +140,7 @@ def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
 
 
 def _described(file: YamlFile, place: Place) -> dict[str, Any]:
-    """The exercise.yaml of an exercise, which must be whole."""
+    """Return the data of an exercise.yaml, which must be complete."""
     data: dict[str, Any] = file.data
     for key in ("exercise", "title", "points"):
         if key not in data:
@@ -184,7 +183,7 @@ def _read(path: Path) -> YamlFile:
 
 
 def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
-    """The original with what was edited; every key must exist there, with a like value."""
+    """Merge edited values into the original; every key must exist there, with a like value."""
     merged = {**original, **edited}
     for part in ("limits", "tolerances", "varied_runs"):
         known, given = original.get(part) or {}, edited.get(part, {})

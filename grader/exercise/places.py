@@ -1,4 +1,4 @@
-"""Where exercises lie, and how the files in one are found and read.
+"""Finds the folder of an exercise and imports the files in it.
 
 An exercise is a folder with exercise.yaml and checks.py. It lies in an installed package (entry
 points of the group `grader.exercises`, whose values name a package or a module in the exercise's
@@ -7,7 +7,6 @@ folder), or anywhere: then it is given as a path.
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import importlib.util
 import os
@@ -16,7 +15,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
 from importlib.machinery import SourceFileLoader
 from importlib.metadata import EntryPoint
@@ -33,19 +32,19 @@ from grader.message import NOTHING, Message, joined, msg, plain_text
 
 DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
 
-#: What the package of a folder that is in none is called, with a number.
+#: The name of the package that is made for a folder, before its number.
 _PACKAGE = "_grader_exercise_"
 _numbers = count(1)
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where an exercise lies.
+    """The folder of an exercise.
 
     Attributes:
-        folder: its files.
+        folder: with its files.
         package: by which the folder is imported; "" for a folder that is in no package.
-        name: what it is installed as; "" for a folder.
+        name: under which it is installed; "" for a folder.
     """
 
     folder: Path
@@ -59,7 +58,7 @@ class Place:
 
 
 def names() -> list[str]:
-    """The exercises that are installed."""
+    """Return the names of the installed exercises."""
     return list(extensions.points(EXERCISES))
 
 
@@ -69,7 +68,7 @@ def is_installed(name: str) -> bool:
 
 
 def installed(name: str) -> Place:
-    """The installed exercise of this name.
+    """Return the installed exercise of this name.
 
     Raises:
         ExerciseError: there is none, or there are two.
@@ -90,7 +89,7 @@ def installed(name: str) -> Place:
 
 
 def in_folder(folder: Path) -> Place:
-    """The exercise in a folder.
+    """Return the exercise in a folder.
 
     Raises:
         ExerciseError: one of its two files is missing.
@@ -106,13 +105,13 @@ def in_folder(folder: Path) -> Place:
 
 
 def _wrong_with(folder: Path) -> Message:
-    """Why there is no exercise in a folder; '' where there is one."""
+    """Say why there is no exercise in a folder; '' where there is one."""
     files = (folder / name for name in (DESCRIPTION, CHECKS))
     return next((_instead_of(file) for file in files if not file.is_file()), NOTHING)
 
 
 def _instead_of(file: Path) -> Message:
-    """What lies where a file should be."""
+    """Say what lies where a file should be."""
     if file.is_symlink() and not file.exists():
         return msg(
             "{name} is a link to {target}, which is not there",
@@ -127,7 +126,7 @@ def _instead_of(file: Path) -> Message:
 
 
 def import_checks(place: Place) -> Checks:
-    """The checks of an exercise; those of a folder are read anew every time.
+    """Import the checks of an exercise; those of a folder are read anew every time.
 
     The files of a folder see each other as those of a package do: `from . import shape`.
 
@@ -165,7 +164,7 @@ def _imported_folder(package: str, place: Place) -> ModuleType:
 
 
 def locate(folder: Path, where: str) -> Path:
-    """A file that an exercise names: below a folder, or as PACKAGE/PATH in an installed package.
+    """Find a file that an exercise names: below a folder, or as PACKAGE/PATH in a package.
 
     Raises:
         ExerciseError: there is nothing.
@@ -215,7 +214,7 @@ def _of_entry_point(point: EntryPoint) -> Place:
 
 
 def _make_package(name: str, folder: Path) -> None:
-    """A package of its own for a folder, whether it has an __init__.py or not."""
+    """Make a package of a folder, whether it has an __init__.py or not."""
     init = folder / "__init__.py"
     loader = SourceFileLoader(name, str(init)) if init.is_file() else None
     spec = importlib.util.spec_from_loader(name, loader, is_package=True)
@@ -224,21 +223,21 @@ def _make_package(name: str, folder: Path) -> None:
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     if loader is not None:
-        with _told_as_the_author_s(folder, init.name):
+        with _as_exercise_errors(folder, init.name):
             loader.exec_module(module)
 
 
 def _imported(name: str, place: Place) -> ModuleType:
-    with contained(), _told_as_the_author_s(place.folder, CHECKS):
+    with contained(), _as_exercise_errors(place.folder, CHECKS):
         return importlib.import_module(name)
 
 
 @contextmanager
-def _told_as_the_author_s(folder: Path, file: str) -> Iterator[None]:
-    """What goes wrong in the files of a folder, with file and line, as an ExerciseError.
+def _as_exercise_errors(folder: Path, file: str) -> Iterator[None]:
+    """Turn any exception in the files of a folder into an ExerciseError with file and line.
 
     Args:
-        file: that is imported, for errors that do not know where they are.
+        file: that is imported, for errors without a place.
     """
     try:
         yield
@@ -249,10 +248,10 @@ def _told_as_the_author_s(folder: Path, file: str) -> Iterator[None]:
 
 
 def describe(error: BaseException, folder: Path, file: str = "") -> Message:
-    """An exception in the files of a folder: 'checks.py, line 3: NameError: ...'.
+    """Describe an exception in the files of a folder: 'checks.py, line 3: NameError: ...'.
 
     Args:
-        file: in which it is if it does not know that itself.
+        file: of an error without a place.
     """
     name = type(error).__name__
     if isinstance(error, SyntaxError) and error.filename:
@@ -269,7 +268,7 @@ def describe(error: BaseException, folder: Path, file: str = "") -> Message:
             "{name}: there is no {absent} beside {checks}", name=name, absent=absent, checks=CHECKS
         )
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
+    inside = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
     missing = getattr(error, "name", None) if isinstance(error, ModuleNotFoundError) else None
     if missing and (folder / f"{missing}.py").is_file():
         way = msg(
@@ -278,18 +277,18 @@ def describe(error: BaseException, folder: Path, file: str = "") -> Message:
             missing=missing,
         )
         text = joined([text, way], ". ")
-    if not own:
+    if not inside:
         return joined([file, text], ": ") if file else text
     return msg(
         "{file}, line {line}: {what}",
-        file=_shown(own[-1].filename, folder),
-        line=str(own[-1].lineno),
+        file=_shown(inside[-1].filename, folder),
+        line=str(inside[-1].lineno),
         what=text,
     )
 
 
 def _absent(error: ImportError, folder: Path) -> str:
-    """The file beside checks.py that was imported from there and is not; '' for other errors."""
+    """Return the missing file beside checks.py that was imported; '' for other errors."""
     package, _, module = (error.name or "").partition(".")
     if not package.startswith(_PACKAGE):
         return ""
@@ -320,14 +319,14 @@ def _without_bytecode() -> Iterator[None]:
 _one_at_a_time = threading.RLock()
 
 
-@contextlib.contextmanager
+@contextmanager
 def contained() -> Iterator[None]:
-    """What is printed goes to standard error; the current folder is the same afterwards.
+    """Send what is printed to standard error, and restore the current folder afterwards.
 
     Standard output may be a result that a program reads, and paths of the command line may be
     relative.
     """
-    with _one_at_a_time, contextlib.redirect_stdout(sys.stderr):
+    with _one_at_a_time, redirect_stdout(sys.stderr):
         before: Path | None
         try:
             before = Path.cwd()
@@ -337,5 +336,5 @@ def contained() -> Iterator[None]:
             yield
         finally:
             if before is not None:
-                with contextlib.suppress(OSError):
+                with suppress(OSError):
                     os.chdir(before)

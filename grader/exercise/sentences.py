@@ -16,13 +16,13 @@ from grader.text import without_controls
 # blanks of one line only: lines of nothing would be gone through again from each of them
 _FRAME = re.compile(r'^[^\S\n]*File "(?P<file>[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
 _PLACE = re.compile(r" \([^()]*, line \d+\)$")
-#: What conditions do not tell while it is off.
+#: Conditions that are left out while they are off, with that value.
 _OFF: Mapping[str, float] = {"varied_runs.per_student": 0}
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
 
 
 def how_it_ended(recording: Recording) -> Message:
-    """A sentence (with a space before it) about an end that matters; '' where there is none."""
+    """Return a sentence, with a space before it, on an abnormal end; '' for a normal one."""
     sentence = _ending(recording)
     return joined([" ", sentence]) if sentence else NOTHING
 
@@ -39,19 +39,19 @@ def _ending(recording: Recording) -> Message:
 
 
 def _error(recording: Recording) -> Message:
-    """The error with the last line of the submission's own, where it is known."""
+    """Return the error with the last line of the submission's files, where that is known."""
     error, raised = last_error(recording.output), recording.observations.raised
     if raised is None or raised.place is None:
         return error or msg("exit code {code}", code=str(recording.run.exit_code))
     file, line = PurePath(raised.place.file).name, raised.place.line
-    said = _PLACE.sub("", str(error)) or f"{raised.type}: {raised.text}".rstrip(".: ")
-    if said.partition(":")[0].rpartition(".")[2] != raised.type.rpartition(".")[2]:
+    text = _PLACE.sub("", str(error)) or f"{raised.type}: {raised.text}".rstrip(".: ")
+    if text.partition(":")[0].rpartition(".")[2] != raised.type.rpartition(".")[2]:
         return error  # of another thread
-    return _with_place(said, file, str(line))
+    return _with_place(text, file, str(line))
 
 
 def last_error(output: str) -> Message:
-    """The last line of the last traceback with file and line: 'NameError: ... (a.py, line 3)'."""
+    """Return the error of the last traceback with its place: 'NameError: ... (a.py, line 3)'."""
     start = output.rfind("Traceback (most recent call last)")
     if start < 0:
         # A SyntaxError in the file that was started has no traceback of its own.
@@ -72,13 +72,13 @@ def _with_place(error: str, file: str, line: str) -> Message:
 
 
 def error_first(recordings: Recordings, finding: Finding) -> Finding:
-    """A finding of a run that an error ended: its facts, and the error as what to mend first.
+    """Let the help of a finding name the error that ended its run.
 
     That of a varied run counts where the finding's evidence is of that run.
     """
     if finding.share >= 1:
         return finding
-    # a varied run may not be there yet, and is looked at by a finding that is of it only
+    # a varied run may not be there yet, and counts only for a finding that is of it
     run = finding.evidence[0].run if finding.evidence else 0
     crashed = recordings.nominal.run.outcome == "crashed" or (
         run > 0 and recordings.varied[run - 1].run.outcome == "crashed"
@@ -90,7 +90,7 @@ def error_first(recordings: Recordings, finding: Finding) -> Finding:
 
 
 def remarks(recording: Recording, all_passed: bool = False) -> list[Message]:
-    """What a reader of any exercise's result should know about the run.
+    """Return what a reader of any exercise's result should know about the run.
 
     Args:
         all_passed: whether every check of the exercise did.
@@ -114,14 +114,14 @@ def remarks(recording: Recording, all_passed: bool = False) -> list[Message]:
 
 
 def not_followed(origin: Provenance | None, conditions: Mapping[str, float]) -> list[Message]:
-    """What of an exercise's conditions a recording that was made before cannot follow.
+    """Return remarks on conditions of the exercise that an older recording was not made with.
 
     Args:
-        origin: the nominal recording's; None where it does not tell.
+        origin: the nominal recording's; None where it is not known.
         conditions: see `grader.exercise.exercise.Exercise`.
     """
-    told = {} if origin is None else origin.conditions
-    then = {**_OFF, **told} if told else {}
+    recorded = {} if origin is None else origin.conditions
+    then = {**_OFF, **recorded} if recorded else {}
     return [
         msg(
             "The recording was made with {key} {then:g}; the exercise now says {value:g}. "

@@ -1,8 +1,8 @@
-"""The exercise sheet: all that a student needs to know, made from the exercise that will judge.
+"""Makes the exercise sheet: all that a student needs to know, from the exercise that will judge.
 
-It is Markdown, in the language of this process's user. What an author has written of the exercise
-in exercise.yaml (`title`, `task`, the comments beside its tolerances, `languages`)
-and checks.py (the docstrings of the checks) is shown, with the numbers that are in force.
+It is Markdown, in the language of this process's user. What an author has written about the
+exercise in exercise.yaml (`title`, `task`, the comments beside its tolerances, `languages`) and
+checks.py (the docstrings of the checks) is shown, with the numbers that are in force.
 """
 
 from __future__ import annotations
@@ -11,15 +11,14 @@ import re
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from datetime import datetime
 from typing import Any
 
 import yaml
 
 from grader.exercise.check import Check
 from grader.exercise.exercise import Exercise
-from grader.exercise.handing_in import LatePolicy
 from grader.exercise.places import DESCRIPTION
+from grader.exercise.policies import LatePolicy
 from grader.message import chained, joined, msg
 from grader.recording.subject import Subject
 from grader.text import points
@@ -32,7 +31,7 @@ _VALUE = re.compile(r"^(\s+)([\w-]+)(:\s*)([^#\n]*?)(\s+#.*)?$")
 
 @dataclass(frozen=True)
 class Start:
-    """What a student begins with.
+    """The files that a student begins with.
 
     Attributes:
         program: the Python file that is their node, relative to where they begin.
@@ -46,7 +45,7 @@ class Start:
 
 
 def sheet(exercise: Exercise, subject: Subject, start: Start) -> str:
-    """The sheet."""
+    """Return the sheet."""
     parts = (
         [
             f"# {translate(exercise.title)}",
@@ -55,7 +54,7 @@ def sheet(exercise: Exercise, subject: Subject, start: Start) -> str:
         _judged(exercise, subject),
         _tolerances(exercise),
         [_heading(tr("How to try it")), subject.how_to_try(start.program, start.package)],
-        _handed_in(start, exercise),
+        _how_to_submit(start, exercise),
     )
     texts = (text.strip("\n") for part in parts for text in part)
     return "\n\n".join(text for text in texts if text) + "\n"
@@ -82,7 +81,7 @@ def _judged(exercise: Exercise, subject: Subject) -> Iterator[str]:
     yield "\n".join(_seen_of(exercise, [check for check, _ in listed]))
     yield "\n".join(_waits([check for check, _ in listed]))
     for check, worth in listed:
-        if text := told(check, exercise.tolerances):
+        if text := check_rubric(check, exercise.tolerances):
             heading = tr("{title}: {points} points", title=check.title, points=points(worth))
             yield f"### {heading}"
             yield text
@@ -97,7 +96,7 @@ def _not_shown(checks: int) -> str:
 
 
 def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
-    """Which checks a report shows later, or not all of, a line each."""
+    """Yield which checks a report shows later, or not all of, a line each."""
     named: dict[str, list[str]] = {"after_due": [], "points_only": []}
     for check in checks:
         named.get(exercise.visible.get(check.name, ""), []).append(f"`{check.name}`")
@@ -107,7 +106,7 @@ def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
 
 
 def _seen(visible: str, checks: str) -> str:
-    """How checks are told that students do not see at once, or not all of."""
+    """Describe checks that students do not see at once, or not all of."""
     if visible == "after_due":
         return tr(
             "Shown when the exercise is over, and until then in no report and no total: {checks}.",
@@ -120,18 +119,18 @@ def _seen(visible: str, checks: str) -> str:
 
 def _late(policy: LatePolicy) -> Iterator[str]:
     yield _heading(tr("When it is due"))
-    said = [
+    sentences = [
         msg(
             "It is due on {date} at {time} (UTC{zone}).",
             date=f"{policy.due:%Y-%m-%d}",
             time=f"{policy.due:%H:%M:%S}",
-            zone=_zone(policy.due),
+            zone=policy.due.isoformat()[-6:],  # '+01:00'
         )
     ]
     if policy.grace_min:
-        said.append(msg("Another {grace:g} minutes cost nothing.", grace=policy.grace_min))
+        sentences.append(msg("Another {grace:g} minutes cost nothing.", grace=policy.grace_min))
     if policy.per_day and policy.most:
-        said.append(
+        sentences.append(
             msg(
                 "From then on each started day costs {per_day} points, {most} at most; nobody has "
                 "fewer than 0 points.",
@@ -140,17 +139,12 @@ def _late(policy: LatePolicy) -> Iterator[str]:
             )
         )
     else:
-        said.append(msg("To hand it in later costs no points."))
-    yield _wrapped(translate(joined(said, " ")))
-
-
-def _zone(due: datetime) -> str:
-    """'+01:00'."""
-    return due.isoformat()[-6:]
+        sentences.append(msg("To hand it in later costs no points."))
+    yield _wrapped(translate(joined(sentences, " ")))
 
 
 def _waits(checks: Iterable[Check]) -> Iterator[str]:
-    """What has to pass before something else is judged, a line each."""
+    """Yield what has to pass before another check is judged, a line each."""
     waiting: dict[tuple[str, ...], list[str]] = {}
     for check in checks:
         if check.depends_on:
@@ -179,7 +173,7 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
     limits, varied = exercise.limits, exercise.varied
     times = {"total_s": limits.total_s, "first_s": limits.first_motion_s}
     if limits.rest_s:
-        told_of = tr(
+        text = tr(
             "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
             "seconds at most. The run ends before that when the {thing} has moved and then rested "
             "for {rest_s:g} s, when nothing has moved in the first {first_s:g} s, or when your "
@@ -190,7 +184,7 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
             **times,
         )
     else:
-        told_of = tr(
+        text = tr(
             "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
             "seconds at most. The run ends before that when nothing has moved in the first "
             "{first_s:g} s, or when your node ends. Time is simulated: the same program gets the "
@@ -206,7 +200,7 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
         nearest_m=varied.nearest_m,
         farthest_m=varied.farthest_m,
     )
-    return "\n\n".join(map(_wrapped, [told_of, *([elsewhere] if varied.count else [])]))
+    return "\n\n".join(map(_wrapped, [text, *([elsewhere] if varied.count else [])]))
 
 
 def _tolerances(exercise: Exercise) -> Iterator[str]:
@@ -216,7 +210,7 @@ def _tolerances(exercise: Exercise) -> Iterator[str]:
 
 
 def _explained(exercise: Exercise) -> str:
-    """The tolerances with what the exercise says of them in the user's language; '': nothing."""
+    """Return the tolerances with their translated comments; '' where there are none."""
     language = current()
     if not any(language in texts for texts in exercise.explained.values()):
         return ""
@@ -228,7 +222,7 @@ def _explained(exercise: Exercise) -> str:
 
 
 def _in_force(exercise: Exercise) -> str:
-    """The tolerances as the exercise's own file explains them, with the values in force."""
+    """Return the tolerances with the comments of the exercise.yaml and the values in force."""
     text = (exercise.folder / DESCRIPTION).read_text(encoding="utf-8-sig")
     _, found, rest = text.partition("\ntolerances:")
     part = re.split(r"^(?=[^\s#])", rest.partition("\n")[2], maxsplit=1, flags=re.MULTILINE)[0]
@@ -250,7 +244,7 @@ def _in_yaml(value: object) -> str:
     return dumped.removesuffix("...\n").strip()
 
 
-def _handed_in(start: Start, exercise: Exercise) -> Iterator[str]:
+def _how_to_submit(start: Start, exercise: Exercise) -> Iterator[str]:
     yield _heading(tr("How to hand it in"))
     yield tr("Grade it yourself first, as often as you like, from the folder above this one:")
     yield f"    {start.grade}"
@@ -289,18 +283,17 @@ def _wrapped(text: str, indent: str = "") -> str:
     )
 
 
-def told(check: Check, tolerances: Mapping[str, Any]) -> str:
-    """What a check measures and how its points are computed: paragraphs, and lists with '- '.
+def check_rubric(check: Check, tolerances: Mapping[str, Any]) -> str:
+    """Return what a check measures and how its points are computed, as Markdown.
 
-    It is in the language of this process's user, where the exercise has that.
-
-    Empty where the author has written no more than a title.
+    It is in the language of this process's user, where the exercise has that; empty where the
+    author has written no more than a title.
     """
     return in_force(translate(check.rubric), tolerances)
 
 
 def in_force(text: str, tolerances: Mapping[str, Any]) -> str:
-    """A text with the tolerances that it names in braces, as '{edge_m}'; all else is left."""
+    """Fill in the tolerances that a text names in braces, as '{edge_m}'; all else is left."""
 
     def put_in(found: re.Match[str]) -> str:
         value = tolerances.get(found["name"])
@@ -314,10 +307,10 @@ def in_force(text: str, tolerances: Mapping[str, Any]) -> str:
 
 
 def rubric(exercise: Exercise, left_out: Collection[str] = ()) -> str:
-    """The checks of an exercise with their points, as Markdown, without a heading above them.
+    """Return the checks of an exercise with their points, as Markdown, without a heading.
 
     Args:
-        left_out: names of checks that are told elsewhere.
+        left_out: names of checks that are described elsewhere.
     """
     known = {check.name: check for check in exercise.checks}
     parts = []
@@ -330,6 +323,6 @@ def rubric(exercise: Exercise, left_out: Collection[str] = ()) -> str:
         parts.append(f"### {heading}\n\n`{name}`")
         if waits:
             parts[-1] += " · " + tr("judged when passed: {titles}", titles=", ".join(waits))
-        if text := told(check, exercise.tolerances):
+        if text := check_rubric(check, exercise.tolerances):
             parts.append(text)
     return "\n\n".join(parts) + "\n"

@@ -1,4 +1,4 @@
-"""What exercise.yaml says of an exercise in other languages: title, task, checks, tolerances.
+"""The key `languages` of exercise.yaml: title, task, checks and tolerances in other languages.
 
 languages:
 fr:
@@ -21,7 +21,7 @@ from grader.exercise.yaml_file import Mistake, check_known, expect
 from grader.translations import ENGLISH, LANGUAGES
 
 PART = "languages"
-#: Those that are not that of the file itself.
+#: All but the language of the file itself.
 OTHERS = tuple(language for language in LANGUAGES if language != ENGLISH)
 KEYS = ("title", "task", "checks", "tolerances")
 OF_A_CHECK = ("title", "rubric")
@@ -30,7 +30,7 @@ ByLanguage = dict[str, str]
 
 @dataclass(frozen=True)
 class Translated:
-    """Each text by its language; what is left out is told in the language of the file.
+    """Each text by its language; one that is left out is shown in the language of the file.
 
     Attributes:
         title, task: of the exercise.
@@ -46,10 +46,10 @@ class Translated:
 
 
 def translated(given: object, checks: Checks, tolerances: Collection[str]) -> Translated:
-    """Read the part of the file.
+    """Parse the key of the file.
 
     Raises:
-        Mistake: a language, a key, a check or a tolerance that nobody knows, or what is no text.
+        Mistake: a language, a key, a check or a tolerance is unknown, or a value is no text.
     """
     found = Translated()
     names = [check.name for check in checks]
@@ -71,9 +71,9 @@ def translated(given: object, checks: Checks, tolerances: Collection[str]) -> Tr
 
 
 def without(given: object, keys: Collection[str]) -> Any:
-    """The part without what an edited copy says anew, in the language of the file alone."""
+    """Remove the texts that an edited copy replaces, in the language of the file alone."""
     if not isinstance(given, dict) or not all(isinstance(words, dict) for words in given.values()):
-        return given  # somebody else finds out
+        return given  # `translated` refuses it
     return {
         language: {key: text for key, text in words.items() if key not in keys}
         for language, words in given.items()
@@ -93,7 +93,7 @@ def _checks(given: object, at: tuple[str, ...], names: Collection[str], found: T
 
 
 def _named(given: object, at: tuple[str, ...], known: Collection[str]) -> Mapping[str, Any]:
-    """What stands at some keys by names, each of which is known."""
+    """Return the mapping at some keys, each name of which has to be known."""
     if given is None:
         return {}
     if not isinstance(given, dict):

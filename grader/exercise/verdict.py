@@ -1,4 +1,4 @@
-"""What a check says: passed, failed, or not judged, and why."""
+"""The result of a check: passed, failed, or not judged, and why."""
 
 from __future__ import annotations
 
@@ -37,24 +37,24 @@ class Evidence:
     tick: int | None = field(default=None, metadata=SPARSE)
 
     def __post_init__(self) -> None:
-        """Take a plain text as a note."""
-        _take_texts(self, "note")
+        """Convert a plain text to a message."""
+        _convert_texts(self, "note")
 
     @property
     def place(self) -> tuple[float, float] | None:
-        """Where it was [m]; None for nowhere."""
+        """Its place [m]; None for none."""
         return None if self.x is None or self.y is None else (self.x, self.y)
 
 
 @dataclass(frozen=True)
 class Expected:
-    """What a check wants of something over time, for who looks at its plot.
+    """The values that a check expects over time, for their plot.
 
     Attributes:
         curve: the title of the curve in the scene's view.
-        text: what is wanted, in words.
-        within: between which values it has to stay; None where that is not said by values.
-        beyond: a value that it has to fall below, and one that it has to rise above.
+        text: the expectation in words.
+        within: between which values the curve has to stay; None where there are none.
+        beyond: a value that the curve has to fall below, and one that it has to rise above.
     """
 
     curve: Message
@@ -63,22 +63,22 @@ class Expected:
     beyond: tuple[float, float] | None = field(default=None, metadata=SPARSE)
 
     def __post_init__(self) -> None:
-        """Take plain texts as well."""
-        _take_texts(self, "curve", "text")
+        """Convert plain texts to messages."""
+        _convert_texts(self, "curve", "text")
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What a check function returns.
+    """The return value of a check function.
 
     Attributes:
         share: how much of the points is earned, 0 to 1; 1 is a pass.
         rationale: what was seen, with numbers.
-        help: what to look at, without giving the code away; for anything but a pass.
+        help: a hint that does not give the code away; for anything but a pass.
         evidence: where to see it.
-        judged: False where the check cannot tell, for no fault of the submission's: the verdict is
-            then "not judged", and says why by `rationale`.
-        expected: what is wanted of curves, for their plots; it decides nothing.
+        judged: False where the check cannot decide, for no fault of the submission's: the verdict
+            is then "not judged", and `rationale` says why.
+        expected: what curves should be like, for their plots; it decides nothing.
     """
 
     share: float
@@ -89,8 +89,8 @@ class Finding:
     expected: tuple[Expected, ...] = ()
 
     def __post_init__(self) -> None:
-        """Take plain texts as well."""
-        _take_texts(self, "rationale", "help")
+        """Convert plain texts to messages."""
+        _convert_texts(self, "rationale", "help")
 
 
 @dataclass(frozen=True)
@@ -136,15 +136,15 @@ class Verdict:
         return min(self.score / self.max_score, 1.0)
 
 
-def _take_texts(made: object, *names: str) -> None:
-    """Make messages of plain texts, of checks whose authors translate nothing."""
+def _convert_texts(made: object, *names: str) -> None:
+    """Convert plain texts, of checks whose authors translate nothing, to messages."""
     for name in names:
         if isinstance(text := getattr(made, name), str):
             object.__setattr__(made, name, plain_text(text))
 
 
 def wrong_with(finding: object, runs: int) -> str:
-    """Why something that a check returned is no finding about so many runs; '' if it is one."""
+    """Say why what a check returned is no finding about so many runs; '' if it is one."""
     if not isinstance(finding, Finding):
         return f"returns a {type(finding).__name__}; expected a Finding"
     if wrong := _wrong_with_fields(finding):

@@ -1,4 +1,4 @@
-"""A YAML file that an author wrote: strictly read, and every mistake told with file and line."""
+"""Reads a YAML file strictly, and reports every mistake in it with file and line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import yaml
 from grader.errors import ExerciseError
 from grader.message import Message, joined, msg
 
-#: Where a value stands in a file: the keys that lead to it.
+#: The keys that lead to a value in a file.
 Keys = tuple[str, ...]
 
 
@@ -36,10 +36,10 @@ class Mistake(ExerciseError):
 
 @dataclass(frozen=True)
 class YamlFile:
-    """What a file says.
+    """The content of a file.
 
     Attributes:
-        name: the file's, without its folder.
+        name: of the file, without its folder.
         data: its content.
         lines: in which line the keys of the mappings stand, from 1.
     """
@@ -48,8 +48,8 @@ class YamlFile:
     data: Any
     lines: Mapping[Keys, int] = field(default_factory=dict)
 
-    def told(self, mistake: Mistake) -> Message:
-        """A mistake with the file, and the line of the nearest key that stands in it."""
+    def describe(self, mistake: Mistake) -> Message:
+        """Describe a mistake with the file, and the line of the nearest key that stands in it."""
         keys = mistake.keys
         while keys and keys not in self.lines:
             keys = keys[:-1]
@@ -99,9 +99,9 @@ def read_yaml(path: Path) -> YamlFile:
     return YamlFile(path.name, data, lines)
 
 
-@lru_cache(maxsize=16)  # whoever judges a class reads the same rubric for each of them
+@lru_cache(maxsize=16)  # judging a class reads the same rubric for each of its submissions
 def _parsed(text: str) -> tuple[Any, dict[Keys, int]]:
-    """The data, and where its keys stand."""
+    """Parse the data and the lines of its keys."""
     loader = yaml.SafeLoader(text)
     root = loader.get_single_node()
     if root is None:
@@ -111,7 +111,7 @@ def _parsed(text: str) -> tuple[Any, dict[Keys, int]]:
 
 
 def _lines(node: yaml.Node, above: Keys) -> Iterator[tuple[Keys, int]]:
-    """Where the keys of mappings stand; those in lists are not asked for, but looked through."""
+    """Yield the keys of mappings with their lines; those in lists are only checked."""
     todo: list[tuple[yaml.Node, Keys]] = [(node, above)]
     seen: set[int] = set()  # an alias leads to the same node again, or into itself
     while todo:
@@ -152,7 +152,7 @@ def expect(fits: object, keys: Keys, wanted: str, found: object, **values: Any) 
 def check_known(
     given: Iterable[object], known: Collection[str], keys: Keys, *, are_checks: bool = False
 ) -> None:
-    """Refuse a name at some keys that nobody knows.
+    """Refuse an unknown name at some keys.
 
     Raises:
         Mistake: there is one.
@@ -166,7 +166,7 @@ def check_known(
 
 
 def did_you_mean(key: object, known: Iterable[object]) -> Message:
-    """What there is instead of a key that nobody knows."""
+    """Suggest what an unknown key may have meant, and list those that there are."""
     names = [str(name) for name in known]
     near = get_close_matches(str(key), names, n=1)
     listed = ", ".join(names)
@@ -176,6 +176,6 @@ def did_you_mean(key: object, known: Iterable[object]) -> Message:
 
 
 def is_amount(value: object) -> bool:
-    """A number that is finite and not negative."""
+    """Whether a value is a number that is finite and not negative."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return number and math.isfinite(value) and value >= 0  # type: ignore[arg-type, operator]

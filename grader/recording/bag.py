@@ -1,6 +1,6 @@
-"""A recording as a rosbag2: real ROS messages in an MCAP file, and back. No ROS is needed.
+"""Writes a recording as a rosbag2, real ROS messages in an MCAP file, and reads it. Needs no ROS.
 
-Which topics hold what is told by the scene, in its module `messages`.
+The scene defines the topics, in its module `messages`.
 
 A message's time is counted from the start of the run: a date would be the only thing in the bag
 that differs between equal runs. Messages of equal times stand in the file in the order in which
@@ -74,10 +74,10 @@ def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
 
 
 def types_of(definitions: Mapping[str, str]) -> Typestore:
-    """The types that are defined, and those of builtin_interfaces, for rosbags.
+    """Return a typestore of the types that are defined, and of builtin_interfaces.
 
-    It brings the types of ROS 2 Jazzy, but to import them takes longer than a run's verdict: they
-    stand on those of each release before.
+    rosbags has the types of ROS 2 Jazzy, but importing them lasts longer than a run's verdict: they
+    are built on those of each release before.
 
     Args:
         definitions: ROS type -> the text of its .msg; also of the types of its fields.
@@ -85,7 +85,7 @@ def types_of(definitions: Mapping[str, str]) -> Typestore:
     return _store(tuple(definitions.items()))
 
 
-@cache  # what (de)serializes a type is compiled once a store
+@cache  # the code that (de)serializes a type is compiled once a store
 def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
     types = get_typestore(Stores.EMPTY)
     for msgtype, text in definitions:
@@ -94,5 +94,5 @@ def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
 
 
 def _brief(error: Exception) -> str:
-    """Not its repr, which for a decoding error is the whole file."""
+    """Format an exception without its repr, which for a decoding error is the whole file."""
     return f"{type(error).__name__}: {error!s:.200}"

@@ -1,4 +1,4 @@
-"""Messages as plain little-endian CDR, as DDS carries it, and back.
+"""Serialises messages as plain little-endian CDR, as DDS carries it, and parses them.
 
 Each number stands at a multiple of its size, counted from behind the mark (OMG DDSI-RTPS 2.5, 10.2
 and DDS-XTypes 1.3, 7.4.1). rclpy's own bytes have leftovers of memory between fields and behind
@@ -15,50 +15,50 @@ MARK: Final = b"\x00\x01\x00\x00"
 
 
 class CdrWriter:
-    """A message, field by field."""
+    """Writes a message, field by field."""
 
     def __init__(self) -> None:
         self._data = bytearray()
 
     def number(self, form: str, value: float) -> None:
-        """A number, in the form of module struct."""
+        """Write a number, in the format of module struct."""
         size = struct.calcsize(form)
         self._data += b"\x00" * (-len(self._data) % size) + struct.pack(f"<{form}", value)
 
     def text(self, value: str) -> None:
-        """A string; what UTF-8 cannot hold, as half a surrogate pair, becomes '?'."""
+        """Write a string; what UTF-8 cannot hold, as half a surrogate pair, becomes '?'."""
         encoded = value.encode("utf-8", "replace") + b"\x00"
         self.number("I", len(encoded))
         self._data += encoded
 
     def numbers(self, values: Iterable[float]) -> None:
-        """A sequence of float64."""
+        """Write a sequence of float64."""
         listed = list(values)
         self.number("I", len(listed))
         for value in listed:
             self.number("d", value)
 
     def octets(self, value: bytes) -> None:
-        """A sequence of uint8."""
+        """Write a sequence of uint8."""
         self.number("I", len(value))
         self._data += value
 
     def header(self, header: Any) -> None:
-        """A std_msgs/Header."""
+        """Write a std_msgs/Header."""
         self.number("i", header.stamp.sec)
         self.number("I", header.stamp.nanosec)
         self.text(header.frame_id)
 
     def message(self) -> bytes:
-        """All of it, with its mark."""
+        """Return the whole message, with its mark."""
         return MARK + bytes(self._data)
 
 
 class CdrReader:
-    """A message, field by field.
+    """Reads a message, field by field.
 
     Raises:
-        ValueError: it has another mark; so do its methods, where a field is not there or is none.
+        ValueError: it has another mark; its methods raise it where a field is missing or damaged.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -68,45 +68,45 @@ class CdrReader:
         self._at = 0
 
     def number(self, form: str) -> Any:
-        """A number, in the form of module struct."""
+        """Read a number, in the format of module struct."""
         size = struct.calcsize(form)
         self._at += -self._at % size
-        return struct.unpack(f"<{form}", self._take(size))[0]
+        return struct.unpack(f"<{form}", self._read(size))[0]
 
     def text(self) -> str:
-        """A string."""
-        encoded = self._take(self.number("I"))
+        """Read a string."""
+        encoded = self._read(self.number("I"))
         if encoded[-1:] != b"\x00":
             raise ValueError("a string has no end")
         return encoded[:-1].decode("utf-8")
 
     def numbers(self) -> tuple[float, ...]:
-        """A sequence of float64."""
+        """Read a sequence of float64."""
         return self.array(self.number("I"))
 
     def array(self, count: int) -> tuple[float, ...]:
-        """So many float64."""
+        """Read so many float64."""
         self._at += -self._at % 8 if count else 0
-        return struct.unpack(f"<{count}d", self._take(8 * count))
+        return struct.unpack(f"<{count}d", self._read(8 * count))
 
     def texts(self) -> tuple[str, ...]:
-        """A sequence of strings."""
+        """Read a sequence of strings."""
         return tuple(self.text() for _ in range(self.number("I")))
 
     def octets(self) -> bytes:
-        """A sequence of uint8."""
-        return self._take(self.number("I"))
+        """Read a sequence of uint8."""
+        return self._read(self.number("I"))
 
     def stamp_ns(self) -> int:
-        """A builtin_interfaces/Time [ns]."""
+        """Read a builtin_interfaces/Time [ns]."""
         return int(self.number("i")) * 1_000_000_000 + int(self.number("I"))
 
     def end(self) -> None:
-        """There is no more of it; bytes that fill it up to a multiple of four may follow."""
+        """Check that the message ends here, but for padding to a multiple of four bytes."""
         if len(self._data) - self._at > 3:
             raise ValueError(f"{len(self._data) - self._at} bytes follow a message")
 
-    def _take(self, size: int) -> bytes:
+    def _read(self, size: int) -> bytes:
         found = self._data[self._at : self._at + size]
         if len(found) < size:
             raise ValueError(f"a message of {len(self._data)} bytes is cut off")
@@ -115,14 +115,14 @@ class CdrReader:
 
 
 def string(text: str) -> bytes:
-    """A std_msgs/String."""
+    """Serialise a std_msgs/String."""
     made = CdrWriter()
     made.text(text)
     return made.message()
 
 
 def string_of(data: bytes) -> str:
-    """The text of a std_msgs/String.
+    """Parse a std_msgs/String.
 
     Raises:
         ValueError: the bytes are none.

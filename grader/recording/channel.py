@@ -1,4 +1,4 @@
-"""What a bag holds of one topic, as columns: no object for each of thousands of messages."""
+"""The messages of one topic of a bag, as columns: no object for each of thousands of messages."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class Channel:
     ends: Ints
 
     def messages(self) -> Iterator[bytes]:
-        """The CDR of each."""
+        """Yield the CDR of each message."""
         for begin, end in zip(self.begins.tolist(), self.ends.tolist(), strict=True):
             yield self.data[begin:end].tobytes()
 
     def rows(self, layout: np.dtype[np.void]) -> npt.NDArray[Any]:
-        """All messages of a type whose CDR has always the same length, as a structured array (n,).
+        """Return all messages of a type with a CDR of fixed length, as a structured array (n,).
 
         Args:
             layout: of one message, with all of its bytes.
@@ -52,14 +52,16 @@ class Channel:
         if len(other):
             expected = f"a {self.msgtype} has {layout.itemsize} bytes"
             raise ValueError(f"{self.topic}: {expected}, found {other[0]}")
-        return taken(self.data, self.begins, layout)
+        return records_at(self.data, self.begins, layout)
 
     def __len__(self) -> int:
         return len(self.times_ns)
 
 
-def taken(data: npt.NDArray[np.uint8], begins: Ints, layout: np.dtype[np.void]) -> npt.NDArray[Any]:
-    """What lies at n places, (n,); all of it is inside `data`."""
+def records_at(
+    data: npt.NDArray[np.uint8], begins: Ints, layout: np.dtype[np.void]
+) -> npt.NDArray[Any]:
+    """Return the records at n places inside `data`, (n,)."""
     if not len(begins):
         return np.empty(0, layout)
     windows = np.lib.stride_tricks.sliding_window_view(data, layout.itemsize)

@@ -6,7 +6,7 @@
 | run.json | how the run went, where it started, what the submission published on | yes |
 | output.txt | what the submission printed | yes |
 | circumstances.json | what differs between equal runs: duration, provenance | if it is there |
-| observations.json | what the submission's process told of itself, if anything | if it is there |
+| observations.json | what the submission's process reported, if anything | if it is there |
 | path.png, plan.png, window.png | the bag's pictures, for people, as many as its scene makes | no |
 | scenario.json | the inputs, for `python -m turtlesim_py.scenario` | no |
 
@@ -39,21 +39,21 @@ FILES = (
     *PICTURES,
     METADATA,
 )
-#: What of a `Run` is chance: the same run on another day has others.
+#: Fields of a `Run` that are chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
-#: Stands beside them.
+#: The key beside them.
 PROVENANCE = "provenance"
 
 
 def varied_in(folder: Path) -> set[int]:
-    """The numbers of the varied runs whose folders are there."""
+    """Return the numbers of the varied runs whose folders exist."""
     names: Iterable[str] = (path.name for path in folder.glob("varied_*"))
     matches = (re.fullmatch(r"varied_([1-9]\d{0,5})", name) for name in names)
     return {int(match[1]) for match in matches if match}
 
 
 def bag() -> ModuleType:
-    """The module that reads and writes bags; imported late, because rosbags may be missing.
+    """Import the module that reads and writes bags; late, because rosbags may be missing.
 
     Raises:
         GraderFailure: rosbags is missing.

@@ -1,7 +1,7 @@
-"""What a submission's process has told of itself: evidence about the submission, and nothing else.
+"""What a submission's process reports about itself: evidence for a diagnosis, and nothing else.
 
-Who writes such a program may have it tell anything. A diagnosis looks at it; no verdict, no
-outcome and no point ever does.
+The author of a program may have it report anything. A diagnosis uses it; no verdict, no outcome and
+no point ever does.
 
 Times are those of the clock that the run lived by [s], from the start of the submission's process.
 """
@@ -16,23 +16,23 @@ from grader.text import one_line, without_controls
 
 
 def _in_one_line(text: str) -> str:
-    """Without what a terminal, a log or XML would stumble over."""
+    """Remove line breaks and control characters, which break a terminal, a log or XML."""
     return without_controls(one_line(text), "?")
 
 
-#: So many characters of a text and entries of a kind are kept; what comes later is not.
+#: So many characters of a text and entries of a kind are kept; later ones are not.
 STRANGERS = Bounds(300, 100, clean=_in_one_line)
 #: So many times of one end the line changes that it is used at.
 MOST_SENT = 200
 
 
-def _own(file: str) -> str:
+def _inside_submission(file: str) -> str:
     if file.startswith("/") or ".." in file.split("/"):
         raise ValueError(f"expected a file of the submission's own, found {file!r:.80}")
     return file
 
 
-File = Annotated[str, _own]
+File = Annotated[str, _inside_submission]
 Count = Annotated[int, not_negative]
 Seconds = Annotated[float, not_negative]
 
@@ -58,7 +58,7 @@ class SourceLine:
     """A line of the submission's own files.
 
     Attributes:
-        file: relative to what was handed in.
+        file: relative to the submission.
         function: that the line is in; '' for none.
         text: the line as it stands there, without the blanks round it.
     """
@@ -174,7 +174,7 @@ class Caught:
 
 @dataclass(frozen=True)
 class LintFinding:
-    """What a look at the source shows: nothing wrong by itself, and seldom what was meant.
+    """A finding in the source: no error by itself, and seldom what was meant.
 
     Attributes:
         kind: `unread` - self.NAME is set outside of __init__ and never read, NEAR is a little
@@ -182,9 +182,9 @@ class LintFinding:
             (self.NAME, or NAME of the module) is meant; `global` - NAME of the module is set and
             read in a function, without `global`; `uncalled` - the method or function NAME stands
             there without its brackets; `method` - self.NAME is set, and is a method, too;
-            `without_self` - the method NAME has no self; `called` - what was to be handed over to
-            NEAR is called at once; `class` - the class NAME is handed over to NEAR, not what is
-            made of it; `unsent` - a request of NAME is made, and nothing ever calls a service;
+            `without_self` - the method NAME has no self; `called` - the function NAME that was to
+            be passed to NEAR is called at once; `class` - the class NAME is passed to NEAR, not an
+            instance of it; `unsent` - a request of NAME is made, and nothing ever calls a service;
             `beside` - the module NAME that is not found lies beside, and its name is NEAR;
             `swallows` - an `except` in the callback NAME catches every error, and shows none.
     """
@@ -230,10 +230,10 @@ class Raised:
 
 @dataclass(frozen=True)
 class Observations:
-    """All of it.
+    """All observations of one process.
 
     Attributes:
-        is_known: whether anything was told at all; False for controllers in other languages.
+        is_known: whether anything was reported at all; False for controllers in other languages.
         ends: in the order in which they were made.
         spun_s: when an executor was first spun; None for never.
         waits: services and the like that were waited for longer than a second, or in vain.
@@ -259,12 +259,12 @@ class Observations:
     returned_s: Seconds | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """As `from_json` takes it."""
+        """Return the observations as `from_json` reads them."""
         return asdict(self)
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
-        """What somebody has told, whoever that is.
+        """Parse observations, which are not trusted.
 
         Raises:
             ValueError: it has another form, or is longer than it may be.

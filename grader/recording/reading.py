@@ -1,4 +1,4 @@
-"""Reads recordings back: strictly, for a folder may come from anywhere."""
+"""Reads recordings strictly, for a folder may come from anywhere."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ from grader.recording.subject import (
 if TYPE_CHECKING:
     import jsonschema
 
-#: What is read back, and its most bytes. A minute's usual run is 0.2 MB.
+#: The files that are read, and their most bytes. A minute's usual run is 0.2 MB.
 SIZES = {
     BAG: 2**28,
     METADATA: 2**20,
@@ -56,19 +56,19 @@ SIZES = {
 }
 #: An exercise has no more.
 MOST_VARIED_RUNS = 100
-#: Of reading one bag.
+#: Limits of reading one bag.
 READING = WorkLimits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
-#: What begins an answer of the process that reads bags: a trace follows, or why there is none.
+#: Begins an answer of the process that reads bags: a trace follows, or an error.
 _TRACE, _ERROR = b"=", b"!"
 
 
 def load(path: Path) -> Recording:
-    """Read a recording back from its folder, or from that of any of its files.
+    """Read a recording from its folder, or from that of any of its files.
 
     Raises:
         RecordingError: it is missing, damaged, or something else.
     """
-    (recording,) = _loaded([_told(_folder(path))])
+    (recording,) = _loaded([_read_header(_folder(path))])
     return recording
 
 
@@ -79,7 +79,7 @@ def load_all(path: Path) -> Recordings:
         RecordingError: one of them is missing, damaged, or something else.
     """
     folder = _folder(path)
-    first = _told(folder)
+    first = _read_header(folder)
     found = varied_in(folder)
     count = max(first.facts["varied_runs"], len(found))
     lost = next((number for number in range(1, count + 1) if number not in found), None)
@@ -96,13 +96,13 @@ def load_all(path: Path) -> Recordings:
             count=count,
             most=MOST_VARIED_RUNS,
         )
-    varied = (_told(folder / f"varied_{number}") for number in range(1, count + 1))
+    varied = (_read_header(folder / f"varied_{number}") for number in range(1, count + 1))
     nominal, *others = _loaded([first, *varied])
     return Recordings(nominal, tuple(others))
 
 
 def scene_of(folder: Path) -> str:
-    """The name of the scene of a recording, as far as its run.json tells; its bag is not opened."""
+    """Return the scene of a recording by its run.json; its bag is not opened."""
     try:
         return str(_read_json(folder / RUN).get("scene", DEFAULT_SCENE))
     except RecordingError:
@@ -116,7 +116,7 @@ def _folder(path: Path) -> Path:
 
 
 def _facts(folder: Path) -> dict[str, Any]:
-    """The contents of run.json and circumstances.json, valid by the schema."""
+    """Read run.json and circumstances.json, and validate them by the schema."""
     has_bag, has_run = (folder / METADATA).exists(), (folder / RUN).exists()
     if not has_run:
         words = {"folder": str(folder), "run": RUN}
@@ -177,7 +177,7 @@ def _facts(folder: Path) -> dict[str, Any]:
 
 @contextmanager
 def _refusing(path: Path) -> Iterator[None]:
-    """Turn what is wrong with a file or folder into an error that names it.
+    """Turn an error in a file or folder into one that names it.
 
     Raises:
         RecordingError: something is.
@@ -193,8 +193,8 @@ def _refusing(path: Path) -> Iterator[None]:
 
 
 @dataclass(frozen=True)
-class _Told:
-    """What is known of a recording before its bag is read.
+class _Header:
+    """A recording before its bag is read.
 
     Attributes:
         facts: of run.json and circumstances.json.
@@ -207,8 +207,8 @@ class _Told:
     output: str
 
 
-def _told(folder: Path) -> _Told:
-    """What the files beside the bag tell, which has its checksum."""
+def _read_header(folder: Path) -> _Header:
+    """Read the files beside the bag, and compare the bag's checksum."""
     facts = _facts(folder)
     with _refusing(folder):
         digest = content.of_file(folder / BAG)
@@ -220,23 +220,23 @@ def _told(folder: Path) -> _Told:
             bag=str(folder / BAG),
         )
     subject = _subject(folder, facts.get("scene", DEFAULT_SCENE))
-    return _Told(folder, facts, run, subject, output)
+    return _Header(folder, facts, run, subject, output)
 
 
-def _loaded(found: Sequence[_Told]) -> list[Recording]:
-    """Recordings with what is in their bags, of which nobody knows how much they unpack to.
+def _loaded(found: Sequence[_Header]) -> list[Recording]:
+    """Read the bags of recordings, in one copy of this process with limits of time and memory.
 
-    One copy of this process reads them all, within the limits of so many.
+    Nobody knows how much a bag unpacks to.
     """
     bags = bag()
 
     def answers() -> Iterator[bytes]:
-        for told in found:
+        for header in found:
             try:
                 trace = bags.read(
-                    told.folder / BAG, told.subject, round(told.run.simulated_s * 1e9)
+                    header.folder / BAG, header.subject, round(header.run.simulated_s * 1e9)
                 )
-                yield _TRACE + transfer.pack(trace, told.subject)
+                yield _TRACE + transfer.pack(trace, header.subject)
             except RecordingError as error:
                 yield _ERROR + json.dumps(error.message.serialise()).encode()
 
@@ -245,12 +245,12 @@ def _loaded(found: Sequence[_Told]) -> list[Recording]:
     limits = replace(READING, cpu_s=many * READING.cpu_s, wall_s=many * READING.wall_s)
     try:
         with closing(limited.stream(answers, limits)) as read:
-            for told, answer in zip(found, read, strict=False):  # asks for no more than that
+            for header, answer in zip(found, read, strict=False):  # asks for no more than that
                 if answer.startswith(_ERROR):
                     message = json.loads(answer.removeprefix(_ERROR))
                     raise RecordingError(Message.parse(message))
-                trace = transfer.unpack(answer.removeprefix(_TRACE), told.subject)
-                made.append(_recording(told, trace))
+                trace = transfer.unpack(answer.removeprefix(_TRACE), header.subject)
+                made.append(_recording(header, trace))
     except limited.LimitHit as hit:
         folder = str(found[len(made)].folder)
         raise RecordingError(
@@ -259,25 +259,22 @@ def _loaded(found: Sequence[_Told]) -> list[Recording]:
     return made
 
 
-def _recording(told: _Told, trace: Trace) -> Recording:
-    facts = told.facts
-    _must_agree(told.folder, "ticks", told.run.ticks, trace.ticks)
-    _must_agree(told.folder, "trace_sha256", told.run.trace_sha256, trace.sha256())
+def _recording(header: _Header, trace: Trace) -> Recording:
+    facts = header.facts
+    origin = facts[PROVENANCE]
+    _must_agree(header.folder, "ticks", header.run.ticks, trace.ticks)
+    _must_agree(header.folder, "trace_sha256", header.run.trace_sha256, trace.sha256())
     return Recording(
         trace=trace,
-        run=told.run,
+        run=header.run,
         topics=tuple(PublishedTopic(**topic) for topic in facts["topics"]),
-        output=told.output,
+        output=header.output,
         start=Start(**facts["start"]) if facts["start"] else None,
-        scene=told.subject.name,
-        provenance=_provenance(facts[PROVENANCE]),
-        observations=_observations(told.folder / OBSERVATIONS),
-        package=_package(told.folder / PACKAGE),
+        scene=header.subject.name,
+        provenance=strict_json.from_json(Provenance, origin, strict_json.OURS) if origin else None,
+        observations=_observations(header.folder / OBSERVATIONS),
+        package=_package(header.folder / PACKAGE),
     )
-
-
-def _provenance(told: object) -> Provenance | None:
-    return strict_json.from_json(Provenance, told, strict_json.OURS) if told else None
 
 
 def _package(path: Path) -> Trace | None:
@@ -288,20 +285,20 @@ def _package(path: Path) -> Trace | None:
 
 
 def _observations(path: Path) -> Observations:
-    """What the process has told of itself; nothing in a recording that is older than that."""
+    """Read what the process has reported; empty where an older recording has no such file."""
     if not path.exists():
         return Observations()
     with _refusing(path):
         return Observations.from_json(_read_json(path))
 
 
-def _must_agree(folder: Path, key: str, told: object, found: object) -> None:
-    if told != found:
+def _must_agree(folder: Path, key: str, stated: object, found: object) -> None:
+    if stated != found:
         raise RecordingError(
             "{run} is damaged: its {key} is {told}, but the run's is {found}",
             run=str(folder / RUN),
             key=key,
-            told=f"{told!r:.80}",
+            told=f"{stated!r:.80}",
             found=f"{found!r:.80}",
         )
 

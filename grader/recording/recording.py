@@ -1,6 +1,6 @@
-"""What really happened in a run, taken inside the simulator; judged and re-judged from disk.
+"""What really happened in a run, recorded inside the simulator; judged and re-judged from disk.
 
-How a recording lies on disk is told by `grader.recording.folder`.
+`grader.recording.folder` describes a recording on disk.
 """
 
 from __future__ import annotations
@@ -71,12 +71,12 @@ class Provenance:
         date: when they began, as `now` writes it.
         grader, python, rclpy: versions.
         ros_distro: the ROS 2 release that was sourced; '' where none was.
-        submission: what was handed in, by its name.
+        submission: its name.
         submission_sha256: of all its files; see `grader.content`.
         exercise: its name.
         exercise_sha256: of all that it judges by.
         seed: chose where the varied runs start; None where there are none.
-        conditions: what of the exercise only a run can follow: "limits.total_s" -> 180.0.
+        conditions: the exercise's values that decide a run: "limits.total_s" -> 180.0.
     """
 
     date: str
@@ -108,10 +108,10 @@ class Recording:
         output: what the submission printed (start and end of it, if it was much).
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
-        observations: what its process has told of itself; for words, not for points.
-        package: what was found by looking at the submission's package, in the nominal run's: a
-            trace of the scene `package`; None where it is in none, or the exercise does not look.
-        provenance: when and with what it was made; the nominal run's tells it of all.
+        observations: what its process has reported; for words, not for points.
+        package: what an inspection of the submission's package found, in the nominal run's: a trace
+            of the scene `package`; None where it is in none, or the exercise inspects none.
+        provenance: when and with what it was made; only the nominal run has it, for all.
     """
 
     trace: Trace
@@ -149,13 +149,13 @@ class Recording:
 
     @property
     def canvas(self) -> bytes:
-        """The picture that stands beside a result, a PNG; empty where the scene has none."""
+        """The picture beside a result, a PNG; empty where the scene has none."""
         return self.png.get("window", b"")
 
 
 @dataclass(frozen=True)
 class Recordings:
-    """What is judged: the nominal run, and the varied ones, which start elsewhere.
+    """The runs that are judged: the nominal one, and the varied ones, which start elsewhere.
 
     On disk the varied ones lie in folders `varied_1`, `varied_2`, ... inside the nominal one's.
     """
@@ -169,11 +169,11 @@ class Recordings:
 
 
 class NotOver(BaseException):
-    """A varied run is asked for that is not over; no `except Exception` of a check's takes it."""
+    """A check reads a varied run that is not over; no `except Exception` of its catches it."""
 
 
 class NominalAlone(Recordings):
-    """The nominal run, as long as the varied ones still go: asking for these raises `NotOver`."""
+    """The nominal run, while the varied ones still go on: reading these raises `NotOver`."""
 
     def __init__(self, nominal: Recording) -> None:
         object.__setattr__(self, "nominal", nominal)

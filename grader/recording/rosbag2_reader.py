@@ -1,9 +1,9 @@
 """Reads a bag that `grader.recording.rosbag2_writer` has written, by columns, and no other.
 
 rosbags reads any bag, message by message. Ours have thousands of messages of a few types, and are
-indexed: all messages of a channel are found at once where the index says they are. Nothing is taken
-from there unseen: each has to be a message of that channel and time, and between them there is none
-that the index leaves out. So it finds what a reader finds that goes from record to record.
+indexed: all messages of a channel are found at once where the index says they are. The index
+is not trusted: each entry has to be a message of that channel and time, and between them there must
+be none that the index leaves out. So it finds the same as a reader that goes from record to record.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ import numpy.typing as npt
 import yaml
 from rosbags.rosbag2.storage_mcap import ChunkInfo, McapReader, decompress, read_exact
 
-from grader.recording.channel import Channel, Ints, taken
+from grader.recording.channel import Channel, Ints, records_at
 
-#: What stands before a message's data in MCAP.
+#: The head of a message in MCAP.
 _HEAD = np.dtype(
     [
         *(("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4")),
         *(("log_ns", "<u8"), ("publish_ns", "<u8")),
     ]
 )
-#: Of which `length` counts what comes after it.
+#: The part of it that `length` does not count.
 _LENGTH_BYTES = 9
 _MESSAGE, _CHUNK, _INDEX = 0x05, 0x06, 0x07
 #: The C library's, where PyYAML has it: ten times as fast, and as safe.
@@ -46,7 +46,7 @@ class _Messages(NamedTuple):
 
 
 def read(mcap: Path) -> list[Channel]:
-    """The channels of a bag, in their order; beside its .mcap lies its metadata.yaml.
+    """Read the channels of a bag, in their order; beside its .mcap lies its metadata.yaml.
 
     Raises:
         ValueError: it is damaged, or is none of ours.
@@ -68,7 +68,7 @@ def read(mcap: Path) -> list[Channel]:
 
 
 def _all_messages(reader: McapReader, known: set[int]) -> tuple[npt.NDArray[np.uint8], _Messages]:
-    """The unpacked bytes of all chunks, and where in them the messages are."""
+    """Return the unpacked bytes of all chunks, and the messages in them."""
     chunks, parts, begin = [], [], 0
     for info in sorted(reader.chunks, key=lambda chunk: chunk.chunk_start_offset):
         chunk = np.frombuffer(_unpacked(reader, info), np.uint8)
@@ -85,7 +85,7 @@ def _all_messages(reader: McapReader, known: set[int]) -> tuple[npt.NDArray[np.u
 
 
 def _unpacked(reader: McapReader, info: ChunkInfo) -> bytes:
-    """What a chunk holds; rosbags compares its size and its checksum."""
+    """Unpack a chunk; rosbags compares its size and its checksum."""
     head = BytesIO(_record(reader, info.chunk_start_offset, _CHUNK))
     head.seek(24)
     crc = int.from_bytes(read_exact(head, 4), "little")
@@ -97,14 +97,14 @@ def _unpacked(reader: McapReader, info: ChunkInfo) -> bytes:
 def _index(
     reader: McapReader, info: ChunkInfo, known: set[int]
 ) -> dict[int, npt.NDArray[np.uint64]]:
-    """Channel -> times [ns] and places in the unpacked chunk, (n, 2)."""
+    """Read the index of a chunk: channel -> times [ns] and places in the unpacked chunk, (n, 2)."""
     found = {}
     for channel, offset in info.message_index_offsets.items():
         if channel not in known:
             raise ValueError(f"an index is of a channel {channel} that there is not")
         record = _record(reader, offset, _INDEX)
-        told, size = int.from_bytes(record[:2], "little"), int.from_bytes(record[2:6], "little")
-        if told != channel or size != len(record) - 6 or size % 16:
+        number, size = int.from_bytes(record[:2], "little"), int.from_bytes(record[2:6], "little")
+        if number != channel or size != len(record) - 6 or size % 16:
             raise ValueError(f"the index of channel {channel} is damaged")
         found[channel] = np.frombuffer(record, "<u8", offset=6).reshape(-1, 2)
     return found
@@ -122,15 +122,15 @@ def _record(reader: McapReader, offset: int, opcode: int) -> bytes:
 def _messages(
     chunk: npt.NDArray[np.uint8], index: Mapping[int, npt.NDArray[np.uint64]]
 ) -> _Messages:
-    """The messages in a chunk, all of them, where the index has said that they are."""
+    """Find all messages in a chunk by its index, and check that they are there."""
     channels = np.repeat(np.array([*index], np.int64), [len(rows) for rows in index.values()])
-    told = np.concatenate([np.empty((0, 2), np.uint64), *index.values()])
-    is_outside = told[:, 1] > max(len(chunk) - _HEAD.itemsize, 0)
-    if is_outside.any() or (told[:, 0] >= 2**63).any():
+    entries = np.concatenate([np.empty((0, 2), np.uint64), *index.values()])
+    is_outside = entries[:, 1] > max(len(chunk) - _HEAD.itemsize, 0)
+    if is_outside.any() or (entries[:, 0] >= 2**63).any():
         raise ValueError("an index leads out of its chunk")
-    order = np.argsort(told[:, 1], kind="stable")
-    channels, (times, places) = channels[order], told[order].T.astype(np.int64)
-    heads = taken(chunk, places, _HEAD)
+    order = np.argsort(entries[:, 1], kind="stable")
+    channels, (times, places) = channels[order], entries[order].T.astype(np.int64)
+    heads = records_at(chunk, places, _HEAD)
     room = len(chunk) - places - _LENGTH_BYTES
     is_right = (
         (heads["opcode"] == _MESSAGE)
@@ -147,7 +147,7 @@ def _messages(
 
 
 def _check_between(chunk: npt.NDArray[np.uint8], begins: Ints, ends: Ints) -> None:
-    """Between two messages, before the first and after the last there is none: other records."""
+    """Check that there are only other records between, before and after the messages."""
     if (begins > ends).any():
         raise ValueError("messages overlap")
     for n in np.flatnonzero(begins < ends).tolist():
@@ -171,10 +171,10 @@ def _by_channel(
     made = []
     for number, (topic, msgtype) in topics.items():
         begin, end = np.searchsorted(channels, [number, number + 1])
-        own = order[begin:end]
-        place = found.begins[own], found.ends[own]
+        rows = order[begin:end]
+        place = found.begins[rows], found.ends[rows]
         made.append(
-            Channel(topic, msgtype, found.times_ns[own], own.astype(np.int64), data, *place)
+            Channel(topic, msgtype, found.times_ns[rows], rows.astype(np.int64), data, *place)
         )
     return made
 
@@ -183,7 +183,7 @@ def _by_channel(
 
 
 def _check_metadata(mcap: Path, channels: list[Channel]) -> None:
-    """Whether metadata.yaml is that of this bag, for whatever reads the bag by it."""
+    """Check that metadata.yaml describes this bag, for readers that use it."""
     text = mcap.with_name("metadata.yaml").read_text(encoding="utf-8")
     about = yaml.load(text, _Loader)["rosbag2_bagfile_information"]
     right = {
@@ -197,12 +197,13 @@ def _check_metadata(mcap: Path, channels: list[Channel]) -> None:
             raise ValueError(f"metadata.yaml: {key} is {about[key]!r:.80}, not {value!r}")
     if about["version"] not in _VERSIONS:
         raise ValueError(f"metadata.yaml is of the version {about['version']!r:.80}")
-    told = {
+    listed = {
         topic["topic_metadata"]["name"]: (
             *(topic["topic_metadata"][key] for key in ("type", "serialization_format")),
             topic["message_count"],
         )
         for topic in about["topics_with_message_count"]
     }
-    if told != {c.topic: (c.msgtype, "cdr", len(c)) for c in channels} or len(told) < len(channels):
+    right_topics = {c.topic: (c.msgtype, "cdr", len(c)) for c in channels}
+    if listed != right_topics or len(listed) < len(channels):
         raise ValueError("metadata.yaml tells of other topics, or two channels have the same one")

@@ -1,11 +1,11 @@
-"""rosbags' writer of bags in MCAP, with two things as rosbag2 writes them and rosbags does not.
+"""Extends rosbags' writer of bags in MCAP by two things that rosbag2 writes and rosbags does not.
 
 | what | where |
 |---|---|
 | `topic_type_hash`, by which a type is known on the graph | metadata of each channel in the .mcap |
 | `ros_distro`, whose types these are | metadata.yaml, and its copy in the .mcap |
 
-And with one loop over all messages, which takes a third of the time of a call for each.
+It also writes all messages in one loop, in a third of the time of a call for each.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from rosbags.rosbag2.storage_mcap import McapWriter, write_channel, write_string
 
 #: Under whichever ROS a run was made: the bag's definitions are those of Jazzy.
 DISTRO = "jazzy"
-#: A message to be written: of which connection, when [ns], its CDR.
+#: A message to be written: its connection, its time [ns], its CDR.
 Record = tuple[Connection, int, bytes]
-#: What stands before a message's data in MCAP: opcode, length of what follows, channel, sequence
+#: The head of a message in MCAP: opcode, length of what follows, channel, sequence
 #: number, when it was received, when it was sent [ns].
 _MESSAGE = Struct("<BQHIQQ")
 _OPCODE, _FIELDS_BYTES = 0x05, _MESSAGE.size - 9

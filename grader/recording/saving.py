@@ -53,8 +53,8 @@ class Unsaved:
     """Recordings on their way into a folder: written one by one, put there all at once.
 
     Args:
-        place: where they are written before.
-        folder: where they come.
+        place: where they are written first.
+        folder: where they are put.
         varied_runs: how many varied ones there will be.
     """
 
@@ -107,7 +107,7 @@ def into(folder: Path, varied_runs: int) -> Iterator[Unsaved]:
 
 
 def _clear(place: Path) -> None:
-    """Remove what is left of a save that was cut off; of a link, which none of ours is, the link.
+    """Remove the rest of a save that was cut off; of a link, which we never make, only the link.
 
     Raises:
         OSError: it cannot be removed.
@@ -157,8 +157,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     if recording.observations.is_known:
         _write_json(folder / OBSERVATIONS, recording.observations.to_json())
     if recording.package is not None:
-        told = load_subject(PACKAGE_SCENE).encode(recording.package)
-        (folder / PACKAGE).write_bytes(told + b"\n")
+        encoded = load_subject(PACKAGE_SCENE).encode(recording.package)
+        (folder / PACKAGE).write_bytes(encoded + b"\n")
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)
     # a scenario begins in the usual place

@@ -1,7 +1,7 @@
-"""What a recording is of: a scene that ran beside a submission, or a package that was examined.
+"""The subject of a recording: a scene that ran beside a submission, or an inspected package.
 
 A `Subject` knows how its traces are kept in a bag and read back, and how they are shown. Nothing
-here needs ROS, and whoever reads a recording knows it by this alone.
+here needs ROS, and readers of recordings know no more of a scene.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from grader.recording.playback import Playback
 
 
-#: What runs beside a submission where nothing else is said.
+#: The scene of an exercise that names none.
 DEFAULT_SCENE: Final = "turtlesim"
-#: The subject of what is found by looking at a package; a run's recording may hold such a trace.
+#: The subject of a package inspection; a run's recording may hold such a trace.
 PACKAGE_SCENE: Final = "package"
 
 
 @dataclass(frozen=True)
 class Start:
-    """Where what is driven stands when a run begins: x, y [m], theta [rad]."""
+    """The pose of the turtle or robot when a run begins: x, y [m], theta [rad]."""
 
     x: float
     y: float
@@ -38,18 +38,18 @@ class Start:
 
 
 class Trace(Protocol):
-    """What was recorded of a run; each subject has a type of its own for it."""
+    """The recorded data of a run; each subject has a type of its own for it."""
 
     @property
     def duration_ns(self) -> int:
-        """How long was recorded [simulated ns]."""
+        """The length of the recording [simulated ns]."""
 
     @property
     def ticks(self) -> int:
-        """How many of its own steps that was; 0 for what counts none."""
+        """The number of ticks; 0 for a subject without ticks."""
 
     def sha256(self) -> str:
-        """A hash of all that moved and all that came in; equal hashes mean equal runs."""
+        """A hash of all motion and all inputs; equal hashes mean equal runs."""
 
 
 class BagMessage(NamedTuple):
@@ -65,7 +65,7 @@ EndpointKind = Literal["publisher", "subscription", "service", "action"]
 
 
 class Endpoint(NamedTuple):
-    """What a scene's node has: an end of a topic, or the server of a service or action.
+    """An endpoint of a scene's node: of a topic, or the server of a service or action.
 
     Attributes:
         name: with its namespace.
@@ -78,12 +78,12 @@ class Endpoint(NamedTuple):
 
 
 class Command(NamedTuple):
-    """Something that a submission asked for.
+    """A command or request of a submission.
 
     Attributes:
         time_ns: when, from the start of the run [ns].
-        name: what; of one that asks the same of something else it is another.
-        values: how, in the subject's own order and units; may be not a number.
+        name: of the command and of what it is for.
+        values: its arguments, in the subject's own order and units; may be not a number.
     """
 
     time_ns: int
@@ -93,11 +93,11 @@ class Command(NamedTuple):
 
 @dataclass(frozen=True)
 class Behaviour:
-    """What a submission did, as far as another could do just the same.
+    """What a submission did, to be compared with another.
 
     Attributes:
-        commands: what it asked for, in order; of each what has an effect, and no names of its own.
-        path: where what the exercise is about went, float64 (n, 2) [m]; all of it finite.
+        commands: in order; of each what has an effect, and no names of its own.
+        path: of what the exercise is about, float64 (n, 2) [m]; all of it finite.
     """
 
     commands: tuple[Command, ...] = ()
@@ -105,17 +105,17 @@ class Behaviour:
 
 
 def until_lost(points: Floats) -> Floats:
-    """Of places, float64 (n, 2), those before the first that is not a number."""
+    """Return the points, float64 (n, 2), before the first that is not a number."""
     lost = np.flatnonzero(~np.isfinite(points).all(axis=1))
     return points[: int(lost[0])] if len(lost) else points
 
 
 class Subject(ABC):
-    """What recordings are of. The abstract members are obligatory, the others have defaults."""
+    """The subject of recordings. The abstract members are obligatory, the others have defaults."""
 
-    #: As an exercise names it, and under which it is registered (`grader.scenes`).
+    #: In an exercise, and of its entry point (`grader.scenes`).
     name: ClassVar[str]
-    #: What a submission drives, or what is examined, as in a sentence: 'the turtle'.
+    #: What a submission drives, or what is inspected, with its article: 'the turtle'.
     the_thing: ClassVar[Message]
     #: The same without an article.
     thing: ClassVar[Message]
@@ -144,7 +144,7 @@ class Subject(ABC):
 
     @abstractmethod
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
-        """The trace of a bag's channels, each with a topic of its own, in the bag's order.
+        """Read a trace from a bag's channels, each with a topic of its own, in the bag's order.
 
         Args:
             duration_ns: how long was recorded.
@@ -154,14 +154,14 @@ class Subject(ABC):
         """
 
     def encode(self, trace: Trace) -> bytes:
-        """A trace as JSON, for a file beside the bag of another; the subject `package` alone can.
+        """Serialise a trace as JSON, for a file beside a bag; only the subject `package` can.
 
         The same trace gives the same bytes.
         """
         raise NotImplementedError
 
     def decode(self, data: bytes) -> Trace:
-        """The trace that `encode` made bytes of.
+        """Parse a trace that `encode` has serialised.
 
         Raises:
             ValueError: they mean none.
@@ -169,29 +169,29 @@ class Subject(ABC):
         raise NotImplementedError
 
     def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
-        """Topics with their types that a bag has even where it holds no message of them."""
+        """Return the topics, with types, that a bag has even without a message of them."""
         return ()
 
     def scenario(self, trace: Trace) -> dict[str, Any]:
-        """The inputs, to be replayed without ROS; empty where they cannot be."""
+        """Return the inputs, to be replayed without ROS; empty where they cannot be."""
         return {}
 
     def behaviour(self, trace: Trace) -> Behaviour:
-        """What the submission did, for whoever compares submissions."""
+        """Return what the submission did, for a comparison of submissions."""
         return Behaviour()
 
     # How it is shown ------------------------------------------------------------------------------
 
     def view(self, trace: Trace) -> View:
-        """The trace for a page."""
+        """Return the trace as a page shows it."""
         return View()
 
     def pictures(self, trace: Trace) -> Pictures:
-        """What it looked like at the end."""
+        """Draw the scene at the end."""
         return Pictures()
 
     def remarks(self, trace: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
-        """What a reader of any exercise's result should know about the run.
+        """Return what a reader of any exercise's result should know about the run.
 
         Args:
             published: the topics that the submission published on.
@@ -200,7 +200,7 @@ class Subject(ABC):
         return []
 
     def endpoints(self, trace: Trace, interfaces: str) -> Sequence[Endpoint]:
-        """What a submission could have met in a run; the usual ones first.
+        """Return the endpoints that a submission could have met in a run; the usual ones first.
 
         Args:
             interfaces: with which the scene was run.
@@ -209,16 +209,16 @@ class Subject(ABC):
 
     @property
     def player(self) -> Callable[[Playback], str] | None:
-        """What makes a page that plays runs, HTML that needs nothing beside it; None: nothing.
+        """Renders a page that plays runs, HTML that needs no other file; None: there is none.
 
         It raises RecordingError where a run cannot be played.
         """
         return None
 
-    # What an exercise says about it ---------------------------------------------------------------
+    # What an exercise sets about it ---------------------------------------------------------------
 
     def wrong_setting(self, setting: str) -> Message:
-        """Why it cannot be set up with what an exercise gives; NOTHING where it can.
+        """Say why a scene cannot be set up with an exercise's setting; NOTHING where it can.
 
         Args:
             setting: the text of a file of the exercise's, as a robot's description; '' for none.
@@ -226,11 +226,11 @@ class Subject(ABC):
         return msg("{scene} takes none", scene=self.name) if setting else NOTHING
 
     def adapted(self, text: str, ros_distro: str) -> str:
-        """A Python file or a package.xml as a ROS 2 release needs it; named as in ROS_DISTRO."""
+        """Adapt a Python file or a package.xml to a ROS 2 release, named as in ROS_DISTRO."""
         return text
 
     def how_to_try(self, program: str, package: str) -> str:
-        """How a student tries a solution by hand, in Markdown; '' where nothing is to be said.
+        """Describe how a student tries a solution by hand, in Markdown; '' for nothing.
 
         Args:
             program: the node's Python file.
@@ -239,7 +239,7 @@ class Subject(ABC):
         return ""
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        """Traces that checks have to survive, by what the submission did: 'a node that jumps'.
+        """Return traces that checks have to survive, by their descriptions: 'a node that jumps'.
 
         Args:
             setting: of the exercise whose checks are tried.
@@ -249,7 +249,7 @@ class Subject(ABC):
 
 
 def load_subject(name: str) -> Subject:
-    """What an exercise names as its `scene:`.
+    """Load the subject that an exercise names as its `scene:`.
 
     Raises:
         KeyError: nothing of this name is installed.

@@ -1,4 +1,4 @@
-"""A trace on its way from one of our processes to another: the messages that a bag would hold.
+"""Serialises a trace to send it to another of our processes: the messages that a bag would hold.
 
 The topics as JSON, behind its length in eight bytes; then of each message its time, the number of
 its topic and its length; then the CDR of all, one behind the other. Nothing is unpickled.
@@ -19,7 +19,7 @@ _COLUMNS = np.dtype([("time_ns", "<i8"), ("topic", "<i8"), ("size", "<i8")])
 
 
 def pack(trace: Trace, subject: Subject) -> bytes:
-    """The bytes of a trace."""
+    """Serialise a trace."""
     messages = subject.to_messages(trace)
     topics = [*subject.bag_topics(trace), *((each.topic, each.msgtype) for each in messages)]
     numbers = {each: number for number, each in enumerate(dict.fromkeys(topics))}
@@ -34,10 +34,10 @@ def pack(trace: Trace, subject: Subject) -> bytes:
 
 
 def unpack(packed: bytes, subject: Subject) -> Trace:
-    """The trace that bytes mean.
+    """Parse a trace.
 
     Raises:
-        ValueError: they mean none.
+        ValueError: the bytes are none.
     """
     try:
         (length,) = _LENGTH.unpack_from(packed)
@@ -50,10 +50,10 @@ def unpack(packed: bytes, subject: Subject) -> Trace:
         ends = np.cumsum(columns["size"])
         channels = []
         for number, (topic, msgtype) in enumerate(head["topics"]):
-            own = np.flatnonzero(columns["topic"] == number)
-            begins = ends[own] - columns["size"][own]
+            rows = np.flatnonzero(columns["topic"] == number)
+            begins = ends[rows] - columns["size"][rows]
             channels.append(
-                Channel(topic, msgtype, columns["time_ns"][own], own, data, begins, ends[own])
+                Channel(topic, msgtype, columns["time_ns"][rows], rows, data, begins, ends[rows])
             )
         if sum(map(len, channels)) != len(columns):
             raise ValueError("a message is of no topic")

@@ -1,4 +1,4 @@
-"""A trace as people look at it: pictures, tracks in a plane, curves over time, calls, and parts.
+"""A trace as people see it: pictures, tracks in a plane, curves over time, calls, and parts.
 
 A scene makes these; a page draws them and knows nothing else of a scene. A scene that has nothing
 of a kind leaves it empty, and the page has no place for it. Every text in them may come from a
@@ -43,14 +43,14 @@ class Curve:
 
 @dataclass(frozen=True)
 class Call:
-    """Something that the submission asked for.
+    """A call of the submission.
 
     Attributes:
         name: its kind.
         time_ns: when.
         color: "#rrggbb", where it names one.
-        text: what exactly, colours in words too; '' where the name says all.
-        where: the part of the picture in which it happened, in words; '' where it has no place.
+        text: its arguments, colours in words too; '' where the name is enough.
+        where: the part of the picture in which it happened, in words; '' for none.
     """
 
     name: str
@@ -72,10 +72,10 @@ class PenChange:
 
 @dataclass(frozen=True)
 class Track:
-    """Where something was, in pixels of the scene's picture.
+    """The track of something, in pixels of the scene's picture.
 
     Attributes:
-        name: its own.
+        name: of what it is the track.
         times_ns: when, int64 (n,).
         x, y: where [px, y down], float64 (n,); not a number where it was nowhere.
         theta: its heading [rad], float64 (n,).
@@ -92,7 +92,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Rest:
-    """What is driven stands still at (x, y) [m] from `time_s` [simulated s] on."""
+    """The turtle or robot stands still at (x, y) [m] from `time_s` [simulated s] on."""
 
     x: float
     y: float
@@ -100,7 +100,7 @@ class Rest:
 
 
 class Placing(NamedTuple):
-    """Where a frame of a solid is in its parent: x, y, z [m] and a quaternion x, y, z, w."""
+    """The pose of a solid's frame in its parent: x, y, z [m] and a quaternion x, y, z, w."""
 
     at: tuple[float, float, float] = (0.0, 0.0, 0.0)
     turned: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
@@ -115,7 +115,7 @@ class SolidFrame:
         parent: the number of the frame in which this one is; -1 for the ground's. It is smaller
             than this one's own.
         placings: where in it, at each of the solid's times, or once where that never changes;
-            None where nobody has said it.
+            None where it is not known.
     """
 
     name: str
@@ -146,9 +146,9 @@ class Shape:
 
 @dataclass(frozen=True)
 class Solid:
-    """A thing in space that can be looked at from all sides.
+    """A thing in space that can be seen from all sides.
 
-    A frame that nobody has placed is drawn at the origin of the ground's, white.
+    A frame without a placing is drawn at the origin of the ground's, white.
 
     Attributes:
         title: what it is.
@@ -157,7 +157,7 @@ class Solid:
         times_ns: when the frames are placed; () where no time passes.
         ground_m: the height of the ground.
         way: where it went on the ground, float64 (n, 2) [m].
-        lost: the names of those frames that nobody has placed at the end.
+        lost: the names of the frames that have no placing at the end.
         left_out: what belongs to it and is not drawn, in words.
     """
 
@@ -174,12 +174,12 @@ class Solid:
 
 @dataclass(frozen=True)
 class TreeNode:
-    """Something in a tree.
+    """A node of a tree.
 
     Attributes:
-        depth: 0 for what hangs on nothing.
-        name, text: what it is, and what there is to say of it, in a line each.
-        mark: `lost` - it should hang on something and does not; `wrong` - something is at odds.
+        depth: 0 for a root.
+        name, text: what it is, and more about it, in a line each.
+        mark: `lost` - it should have a parent and has none; `wrong` - something is at odds.
     """
 
     depth: int
@@ -190,7 +190,7 @@ class TreeNode:
 
 @dataclass(frozen=True)
 class Tree:
-    """What hangs on what: each node after the one that it hangs on, and all of that's below it."""
+    """A tree, as a list: each node comes after its parent, with all of its own below it."""
 
     title: Message
     nodes: tuple[TreeNode, ...]
@@ -210,7 +210,7 @@ class Table:
 
     Attributes:
         title: what it shows.
-        note: what there is to say before it; '' for nothing.
+        note: a text before it; '' for none.
     """
 
     title: Message
@@ -264,7 +264,7 @@ class Plane(NamedTuple):
 
     @property
     def end_m(self) -> float:
-        """Where its upper right corner is, x and y."""
+        """The x and y of its upper right corner [m]."""
         return self.origin_m + self.size_m
 
     def to_px(self, x: float, y: float) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from grader import text
 from grader.exercise.verdict import Verdict
 from grader.recording.observations import SourceLine
-from grader.recording.playback import JudgedCheck, Line, Moment, Playback, Sent, Take
+from grader.recording.playback import JudgedCheck, Line, Moment, Playback, PlayedRun, Sent
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
 from grader.reports.report import Report
@@ -22,15 +22,15 @@ def of(
         report: what was judged, for who may see it; None where nobody has judged.
         other: what it is to be compared with.
     """
-    takes = tuple(_take(number, each) for number, each in enumerate(recordings))
+    runs = tuple(_take(number, each) for number, each in enumerate(recordings))
     if report is None:
-        return Playback(text.one_line(text.plain(name)), "", takes, (), other)
+        return Playback(text.one_line(text.plain(name)), "", runs, (), other)
     where = tr("Where: {where}", where=report.where_first) if report.where_first else ""
     return Playback(
         title=tr("{title}: {score}", title=report.submission, score=report.score_text),
         summary=f"{report.first_line} {where}".strip(),
-        takes=takes,
-        judged=judged(report, len(takes)),
+        runs=runs,
+        judged=judged(report, len(runs)),
         other=other,
     )
 
@@ -40,13 +40,13 @@ def judged(report: Report, runs: int) -> tuple[JudgedCheck, ...]:
     return tuple(_judged(report, verdict, runs) for verdict in report.verdicts)
 
 
-def _take(number: int, recording: Recording) -> Take:
+def _take(number: int, recording: Recording) -> PlayedRun:
     outcome = wording.outcome(recording.run.outcome.replace("_", " "))
     start = recording.start
     if start is not None:
         outcome = tr("{outcome}; from {place}", outcome=outcome, place=text.place(start.x, start.y))
     after = recording.run.simulated_s
-    return Take(
+    return PlayedRun(
         number,
         tr("Varied run {number}", number=number) if number else tr("Nominal run"),
         tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),

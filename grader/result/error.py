@@ -1,4 +1,4 @@
-"""The error file `turtlesim-grader/error/v1`: what stands in place of a result where there is none.
+"""The error file `turtlesim-grader/error/v1`, instead of a result where there is none.
 
 Its JSON Schema is `error.schema.json` beside this module.
 """
@@ -37,23 +37,23 @@ class ErrorResult:
 
     @classmethod
     def of(cls, error: GraderError, max_score: float | None) -> Self:
-        """What an exception says."""
+        """Make the error of an exception."""
         return cls(error.whose, error.message.map_texts(plain), max_score)
 
     def to_json(self) -> dict[str, Any]:
-        """The error as its file holds it."""
+        """Return the error as its file has it."""
         return {"schema": SCHEMA, **json_file.with_phrases(self)}
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
-        """The error that a file holds.
+        """Parse the error of a file.
 
         Raises:
             ValueError: it does not follow the schema.
         """
         json_file.validate(data, "error", SCHEMA)
-        told = {name: data[name] for name in ("whose", "message", "max_score")}
-        return json_file.typed(cls, told, data.get("phrases"))
+        values = {name: data[name] for name in ("whose", "message", "max_score")}
+        return json_file.typed(cls, values, data.get("phrases"))
 
     def write(self, path: Path) -> None:
         """Write the error file.

@@ -1,4 +1,4 @@
-"""What the files of this package have in common: JSON that follows a schema beside the module."""
+"""Reads and writes the files of this package: JSON that follows a schema beside the module."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ MOST_BYTES = 2**26
 
 
 def schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of `result` or `error`."""
+    """Return the JSON Schema of `result` or `error`."""
     text = (files("grader.result") / f"{name}.schema.json").read_text(encoding="utf-8")
     loaded: dict[str, Any] = json.loads(text)
     return loaded
 
 
 def validate(data: object, name: str, version: str) -> None:
-    """Hold data against a schema.
+    """Validate data by a schema.
 
     Raises:
         ValueError: it does not follow it.
@@ -47,7 +47,7 @@ def validate(data: object, name: str, version: str) -> None:
 
 
 def text(data: dict[str, Any]) -> str:
-    """The text of a file."""
+    """Return the text of a file."""
     return json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
@@ -55,7 +55,7 @@ def read(path: Path, *, is_ours: bool = False) -> Any:
     """Read JSON.
 
     Args:
-        is_ours: whether the file has a name of ours in a folder for results: see `read_ours`.
+        is_ours: whether the file has a name of the grader in a folder for results: see `read_ours`.
 
     Raises:
         UsageError: it cannot be read or is none.
@@ -73,9 +73,9 @@ def read(path: Path, *, is_ours: bool = False) -> Any:
 
 
 def with_phrases(value: Any) -> dict[str, Any]:
-    """A dataclass as a file has it: its messages in English.
+    """Return a dataclass as a file has it: its messages in English.
 
-    Beside them, by these texts, is what they are made of, for other languages.
+    Beside them, by these texts, are the serialised messages, for other languages.
     """
     phrases: dict[str, Any] = {}
 
@@ -90,10 +90,10 @@ def with_phrases(value: Any) -> dict[str, Any]:
 
 
 def typed(kind: type[Made], data: Any, phrases: Any = None) -> Made:
-    """A dataclass filled with a file's data.
+    """Return a dataclass filled with a file's data.
 
     Args:
-        phrases: what messages are made of, by their English texts.
+        phrases: serialised messages, by their English texts.
 
     Raises:
         ValueError: something in it is not of its field's type.
@@ -116,7 +116,7 @@ def typed(kind: type[Made], data: Any, phrases: Any = None) -> Made:
 def kept(
     kind: type[Made], path: Path, most_bytes: int, bounds: Bounds = strict_json.OURS
 ) -> Made | None:
-    """A dataclass from a small file of ours; None where nothing is there that can be used."""
+    """Read a dataclass from a small file of ours; None where there is no valid one."""
     try:
         return strict_json.of_line(kind, read_ours(path, most_bytes), bounds)
     except (OSError, ValueError):
@@ -124,7 +124,7 @@ def kept(
 
 
 def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
-    """What a `from_json` makes of a file's data.
+    """Apply a `from_json` to a file's data.
 
     Raises:
         UsageError: the data does not follow the schema; the text names the file.

@@ -15,7 +15,7 @@ from typing import Any, Self
 from grader import files, versions
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.exercise import Exercise
-from grader.exercise.handing_in import Late, LatePolicy
+from grader.exercise.policies import Late, LatePolicy
 from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Provenance, Recording, Recordings, Run, now
@@ -23,14 +23,14 @@ from grader.recording.subject import Start
 from grader.result import json_file
 from grader.strict_json import SPARSE
 
-#: What the schemas of all versions begin with.
+#: The beginning of the schemas of all versions.
 FAMILY = "turtlesim-grader/result/"
 SCHEMA = f"{FAMILY}v1"
-#: What `grader run` puts beside a result file: name -> path relative to it.
+#: Files that `grader run` writes beside a result file: name -> path relative to it.
 ARTIFACTS = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
-#: Our names of the result file, and of the page beside it.
+#: The names of the result file, and of the page beside it.
 RESULT, PAGE = "result.json", "report.html"
-#: Its parts as a reader wants them: what was found before how.
+#: Its parts in the order for a reader: the result before how it was made.
 IN_ORDER = (
     *("exercise", "submission", "score", "max_score", "handed_in", "not_shown", "diagnosis"),
     *("verdicts", "run", "varied_runs", "artifacts", "provenance"),
@@ -40,12 +40,12 @@ ROUNDING = 0.01 + 1e-9
 
 
 def artifacts(nominal: Recording) -> dict[str, str]:
-    """What lies beside a result; a canvas only where the scene draws one."""
+    """Return the files beside a result; a canvas only where the scene draws one."""
     return {name: at for name, at in ARTIFACTS.items() if name != "canvas" or nominal.canvas}
 
 
 def put_artifacts(nominal: Recording, folder: Path) -> None:
-    """Write canvas and output beside a result; the recording comes there by itself.
+    """Write canvas and output beside a result; the recording is written elsewhere.
 
     Raises:
         UsageError: it cannot be written.
@@ -56,14 +56,14 @@ def put_artifacts(nominal: Recording, folder: Path) -> None:
 
 
 @dataclass(frozen=True)
-class HandedIn:
-    """A hand-in, and what its time costs.
+class SubmissionInfo:
+    """Whose submission it is, and what being late costs.
 
     Attributes:
         id, name: of the student, or the group.
         attempt: counts from 1.
-        at: when, with its zone; None where nobody knows.
-        late_s, days, deducted: see `grader.exercise.handing_in.Late`; `deducted` are its points.
+        at: when, with its zone; None where it is not known.
+        late_s, days, deducted: see `grader.exercise.policies.Late`; `deducted` are its points.
     """
 
     id: str
@@ -78,7 +78,7 @@ class HandedIn:
     def of(
         cls, id: str, name: str, attempt: int, at: datetime | None, policy: LatePolicy | None
     ) -> Self:
-        """Of a hand-in, by what an exercise says of late ones.
+        """Make it by an exercise's policy for late submissions.
 
         Raises:
             ValueError: the time has no zone.
@@ -87,7 +87,7 @@ class HandedIn:
         return cls(id, name, attempt, at, late.late_s, late.days, late.points)
 
     def by(self, policy: LatePolicy | None) -> Self:
-        """The same hand-in by what another exercise, or another state of it, says."""
+        """Return the same submission by the policy of another exercise, or of a changed one."""
         return type(self).of(self.id, self.name, self.attempt, self.at, policy)
 
 
@@ -108,10 +108,10 @@ class Judging:
 
 @dataclass(frozen=True)
 class ResultProvenance:
-    """Both of it.
+    """When and by what a result was recorded and judged.
 
     Attributes:
-        recorded: None where the recordings do not tell.
+        recorded: None where the recordings have no provenance.
     """
 
     judged: Judging
@@ -119,14 +119,14 @@ class ResultProvenance:
 
     @classmethod
     def of(cls, recordings: Recordings, exercise: Exercise) -> Self:
-        """Of recordings that are being judged."""
+        """Make the provenance of recordings that are being judged."""
         judged = Judging(now(), versions.grader(), exercise.sha256)
         return cls(judged, recordings.nominal.provenance)
 
 
 @dataclass(frozen=True)
 class RunSummary(Run):
-    """A run as the result tells of it: with remarks on it among the flags.
+    """A run in the result, with remarks on it among the flags.
 
     Attributes:
         start: where it started; None for the usual place.
@@ -136,7 +136,7 @@ class RunSummary(Run):
 
     @classmethod
     def of(cls, recording: Recording, all_passed: bool = False) -> Self:
-        """What the result tells of a recording, and whether it cost any points."""
+        """Summarise a recording; `all_passed`: whether it cost no points."""
         run = {field.name: getattr(recording.run, field.name) for field in fields(Run)}
         flags = (*recording.run.flags, *remarks(recording, all_passed))
         return cls(**{**run, "flags": flags}, start=recording.start)
@@ -144,12 +144,12 @@ class RunSummary(Run):
 
 @dataclass(frozen=True)
 class NotShown:
-    """What a result for students leaves out.
+    """The checks that a result for students leaves out.
 
     Attributes:
-        checks: so many.
-        max_score: what they are worth together [points].
-        until_due: so many of them are shown when the exercise is over.
+        checks: how many.
+        max_score: of all of them [points].
+        until_due: how many of them are shown when the exercise is over.
     """
 
     checks: int
@@ -168,11 +168,10 @@ class Result:
         run: the nominal run.
         varied_runs: those that start elsewhere.
         artifacts: what lies beside the result file: name -> relative path.
-        provenance: where it comes from; equal results need not come from the same.
-        diagnosis: the earliest cause of lost points; None where none is lost or, in older files,
-            where nobody has looked.
-        handed_in: whose it is, and what its time costs; None where nobody has said it.
-        not_shown: what it lacks, being for students; None where it is whole.
+        provenance: how it was made; not compared.
+        diagnosis: the earliest cause of lost points; None where none is lost, and in older files.
+        handed_in: whose it is, and what being late costs; None where it is not known.
+        not_shown: what it leaves out for students; None where it is whole.
     """
 
     exercise: str
@@ -185,35 +184,35 @@ class Result:
     artifacts: Mapping[str, str] = field(default_factory=dict)
     provenance: ResultProvenance | None = field(default=None, compare=False, metadata=SPARSE)
     diagnosis: Diagnosis | None = field(default=None, metadata=SPARSE)
-    handed_in: HandedIn | None = field(default=None, metadata=SPARSE)
+    handed_in: SubmissionInfo | None = field(default=None, metadata=SPARSE)
     not_shown: NotShown | None = field(default=None, metadata=SPARSE)
 
     @property
     def final(self) -> float:
-        """The score after what handing in late costs [points]; never below 0."""
+        """The score less what being late costs [points]; never below 0."""
         deducted = 0.0 if self.handed_in is None else self.handed_in.deducted
         return max(round(self.score - deducted, 2), 0.0) if deducted else self.score
 
     def to_json(self) -> dict[str, Any]:
-        """The result as its file holds it."""
-        told = json_file.with_phrases(self)
+        """Return the result as its file has it."""
+        data = json_file.with_phrases(self)
         names = (*IN_ORDER, "phrases")
-        return {"schema": SCHEMA, **{name: told[name] for name in names if name in told}}
+        return {"schema": SCHEMA, **{name: data[name] for name in names if name in data}}
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
-        """The result that a file holds.
+        """Parse the result of a file.
 
         Raises:
             ValueError: it does not follow the schema.
         """
         json_file.validate(data, "result", SCHEMA)
-        told = {name: data[name] for name in IN_ORDER if name in data}
-        return json_file.typed(cls, told, data.get("phrases"))
+        values = {name: data[name] for name in IN_ORDER if name in data}
+        return json_file.typed(cls, values, data.get("phrases"))
 
     @classmethod
     def from_file(cls, data: Any) -> Self:
-        """The same, where somebody else may have changed it.
+        """Parse the result of a file that others may have changed.
 
         Raises:
             ValueError: it does not follow the schema, or does not add up.
@@ -256,7 +255,7 @@ class Result:
         files.write(Path(path), json_file.text(self.to_json()))
 
     def put(self, path: Path) -> None:
-        """Write it in the place of whatever has this name; see `files.put`.
+        """Replace whatever has this name by the result file; see `files.put`.
 
         Raises:
             UsageError: it cannot be written.
@@ -275,7 +274,7 @@ def build(
     """Put a result together; `artifacts` are paths relative to the result file."""
     seen = exercise.visible
     verdicts = [replace(each, visible=seen.get(each.check, "now")) for each in verdicts]
-    # where students do not see all, no remark that they read may tell that all passed
+    # where students do not see all, no remark that they read may reveal that all passed
     all_passed = all(v.passed and v.visible in ("now", "points_only") for v in verdicts)
     return Result(
         exercise.name,
@@ -292,7 +291,7 @@ def build(
 
 
 def _nominal(recording: Recording, exercise: Exercise, all_passed: bool) -> RunSummary:
-    """The nominal run, with what of the exercise came too late for it."""
+    """Summarise the nominal run, with remarks on conditions that it was not made with."""
     run = RunSummary.of(recording, all_passed)
     late = not_followed(recording.provenance, exercise.conditions)
     return replace(run, flags=(*run.flags, *late))

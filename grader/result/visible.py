@@ -14,12 +14,12 @@ from grader.exercise.verdict import Verdict, Visible
 from grader.message import NOTHING, Message, msg, plain_text
 from grader.result.result import NotShown, Result
 
-#: Who looks: a student, a student when the exercise is over, a teacher.
+#: The reader: a student, a student when the exercise is over, a teacher.
 View = Literal["student", "after_due", "whole"]
 
 
 def as_seen(result: Result, view: View) -> Result:
-    """A result as somebody sees it."""
+    """Return a result as one of these sees it."""
     return result if view == "whole" else student_view(result, view == "after_due")
 
 
@@ -29,9 +29,9 @@ def is_hidden(visible: Visible, after_due: bool = False) -> bool:
 
 
 def student_view(result: Result, after_due: bool = False) -> Result:
-    """A result without what its student is not to see; the result itself where that is nothing.
+    """Return a result without what is hidden from its student; the result itself if nothing is.
 
-    Its scores are those of the verdicts that are left, so that nothing can be told from a
+    Its scores are those of the verdicts that are left, so that nothing can be concluded from a
     difference; `not_shown` counts the others.
 
     Args:
@@ -53,7 +53,7 @@ def student_view(result: Result, after_due: bool = False) -> Result:
 
 
 def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
-    """A verdict without what may not be told of it, or of others."""
+    """Return a verdict without what is hidden of it, or of others."""
     if verdict.visible == "points_only":
         verdict = replace(
             verdict, rationale=_no_finding(verdict), help=NOTHING, evidence=(), expected=()
@@ -64,7 +64,7 @@ def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
     verdict = replace(verdict, depends_on=left)
     if verdict.status != "not_judged":
         return verdict
-    # No exercise of ours is loaded that comes to this, but a result file may have been changed.
+    # No exercise that can be loaded leads here, but a result file may have been changed.
     return replace(verdict, rationale=msg("Not judged: it waits for others."), help=NOTHING)
 
 
@@ -85,10 +85,10 @@ def _no_finding(verdict: Verdict) -> Message:
 
 
 def _diagnosis(found: Diagnosis | None, shown: Sequence[Verdict]) -> Diagnosis | None:
-    """The cause of the points that are lost in what is shown.
+    """Return the cause of the points that are lost in the checks that are shown.
 
-    What a run shows by itself is known to whoever has run it; the finding of a check is chosen
-    anew, for what it costs may lie in hidden ones.
+    What a run shows by itself the student has seen; the finding of a check is chosen anew, for the
+    points that it costs may be hidden ones.
     """
     if found is None or all(verdict.passed for verdict in shown):
         return None
@@ -99,7 +99,7 @@ def _diagnosis(found: Diagnosis | None, shown: Sequence[Verdict]) -> Diagnosis |
 
 
 def _counted(before: NotShown | None, hidden: Sequence[Verdict]) -> NotShown | None:
-    """How much is left out, with what was left out before."""
+    """Count what is left out, with what was left out before."""
     if not hidden:
         return before
     until_due = sum(verdict.visible == "after_due" for verdict in hidden)

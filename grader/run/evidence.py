@@ -160,7 +160,7 @@ def _as_handed_in(value: Any, submission: Submission) -> Any:
         folder = submission.root.relative_to(top).as_posix()
         parts["file"] = value.file if folder == "." else f"{folder}/{value.file}"
     if isinstance(value, Raised | Caught):
-        parts["text"] = submission.as_handed_in(value.text)[: int(STRANGERS.characters)]
+        parts["text"] = submission.with_original_paths(value.text)[: int(STRANGERS.characters)]
     return replace(value, **parts)
 
 

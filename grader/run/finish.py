@@ -94,9 +94,9 @@ def ended(
         process: the submission's.
         since_s: when it began, on the machine's monotonic clock [s].
     """
-    output = submission.as_handed_in(process.output())
+    output = submission.with_original_paths(process.output())
     struck = limits_struck(exit_code, output, process.excess)
-    flags = (*(flag.map_texts(submission.as_handed_in) for flag in flags), *struck)
+    flags = (*(flag.map_texts(submission.with_original_paths) for flag in flags), *struck)
     wall_s = time.monotonic() - since_s
     run = Run(clock, how, exit_code, wall_s=wall_s, isolation=isolation, flags=flags)
     return Ending(run, output)

@@ -140,7 +140,7 @@ def _try(
                 )
             if message["say"] == "refused":
                 reason = Message.parse(message["reason"])
-                return None, reason.map_texts(submission.as_handed_in)
+                return None, reason.map_texts(submission.with_original_paths)
             marks.update(message["marks"])
             trace, topics = handover.fetch(context.recording, scene)
         except GraderFailure as failure:

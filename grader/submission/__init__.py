@@ -1,1 +1,1 @@
-"""What was handed in, and what of it to start; nothing of it is run to find out."""
+"""Reads a submission and finds what of it to start; nothing of it is run for that."""

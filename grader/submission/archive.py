@@ -1,4 +1,4 @@
-"""Unpacks a handed-in archive without trusting it: nothing outside its folder, no links, no bomb.
+"""Unpacks a submitted archive without trusting it: nothing outside its folder, no links, no bomb.
 
 A zip in a zip is unpacked as well (`finding.py`); all levels share one `Budget`.
 """

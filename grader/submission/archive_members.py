@@ -1,4 +1,4 @@
-"""What lies in an archive, of whatever kind, and which of it may be written: nothing is trusted."""
+"""Checks the members of an archive of any kind, and writes those that may be: none is trusted."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Member:
         name: as it stands there.
         is_folder: it holds nothing itself.
         refusal: what is wrong with it, if anything, as what follows the archive's name.
-        open: gives what is in it.
+        open: opens its content.
     """
 
     name: str
@@ -51,7 +51,7 @@ class ListTooLong(Exception):
 
 
 class Bounded(io.BufferedReader):
-    """A file of which not much can be read at once: that is what lists of members ask for.
+    """A file of which not much can be read at once, for parsers of member lists.
 
     Args:
         most: so many bytes can be read at once.
@@ -77,13 +77,13 @@ class Bounded(io.BufferedReader):
 
 
 class Budget:
-    """What may still come out of a submission's archives, of all of them together."""
+    """How much may still come out of all archives of a submission together."""
 
     def __init__(self, bytes_left: int = MAX_BYTES, files_left: int = MAX_MEMBERS) -> None:
         self._all_bytes, self._all_files = bytes_left, files_left
         self._bytes_left, self._files_left = bytes_left, files_left
 
-    def take_bytes(self, name: str, count: int) -> None:
+    def count_bytes(self, name: str, count: int) -> None:
         """Count bytes that came out of the archive of this name.
 
         Raises:
@@ -99,7 +99,7 @@ class Budget:
                 all_bytes=self._all_bytes / 1e6,
             )
 
-    def take_files(self, name: str, count: int) -> None:
+    def count_files(self, name: str, count: int) -> None:
         """Count files that an archive holds.
 
         Raises:
@@ -129,7 +129,7 @@ def write(name: str, members: Sequence[Member], into: Path, budget: Budget) -> N
         target.parent.mkdir(parents=True, exist_ok=True)
         with member.open() as source, target.open("wb") as file:
             while chunk := source.read(_CHUNK_BYTES):
-                budget.take_bytes(name, len(chunk))
+                budget.count_bytes(name, len(chunk))
                 file.write(chunk)
 
 
@@ -138,7 +138,7 @@ def _chosen(
 ) -> list[tuple[PurePosixPath, Member]]:
     """Check the members and keep the files to write; directories are made on the way."""
     everything = [(_inside(name, member.name), member) for member in members]
-    # .parent.name is "" at the top: what was handed in is never left out as a whole
+    # .parent.name is "" at the top: a submission is never left out as a whole
     marks = [path for path, _ in everything if marks_generated(path) and path.parent.name]
     results = {path.parent for path, member in everything if _is_result(path, member)}
     sources = {path.parent for path, _ in everything if is_source(path.name)}
@@ -156,7 +156,7 @@ def _chosen(
             name=name,
             pack_again=PACK_AGAIN,
         )
-    budget.take_files(name, len(chosen))
+    budget.count_files(name, len(chosen))
     for _, member in chosen:
         if member.refusal:
             raise SubmissionError(joined([name, member.refusal], " "))

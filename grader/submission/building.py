@@ -1,9 +1,9 @@
-"""What of a package would keep `colcon build` or `ros2 run` from starting it, though it runs here.
+"""Finds what would keep `colcon build` or `ros2 run` from starting a package, though it runs here.
 
-For students who hand in what works in their editor alone. It costs no points. The rules are those
+For students whose submission works in their editor alone. It costs no points. The rules are those
 of colcon-ros' ament_python (package.xml makes a ROS package; `setup.py install`, then a marker if
 none was installed), of setuptools (what is listed has to be there) and of ros2run (programs are
-looked for in lib/PACKAGE).
+searched in lib/PACKAGE).
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 from grader.message import Message, msg
-from grader.submission.folder import HandedInFolder, listed, shown
+from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 
 
 def shortcomings(
-    handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript | None
+    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript | None
 ) -> Iterator[Message]:
-    """A sentence on each, without a point at its end.
+    """Yield a sentence on each shortcoming, without a point at its end.
 
     Args:
         package: of which something is started.
-        script: what of it; None if its set-up files name nothing.
+        script: the one that is started; None if its set-up files name none.
     """
     folder = package.folder
     if problem := package.problem:
@@ -33,17 +33,17 @@ def shortcomings(
         return  # ament_cmake_python, by other rules
     setup_py = folder / "setup.py"
     if not setup_py.is_file():
-        yield _not_built(_no("setup.py", handed_in, folder))
+        yield _not_built(_no("setup.py", submitted, folder))
         return
     manifest = None
     if not (folder / FILE).is_file():
-        why = msg("no {file} beside {other}", file=FILE, other=handed_in.called(setup_py))
+        why = msg("no {file} beside {other}", file=FILE, other=submitted.called(setup_py))
         yield _not_built(why) if FILE in _installed(package) else _not_found(why)
     elif (manifest := read_manifest(folder / FILE)) is not None:
-        yield from _of_manifest(manifest, handed_in.called(folder / FILE))
-    yield from _of_setup(handed_in, package, script)
+        yield from _of_manifest(manifest, submitted.called(folder / FILE))
+    yield from _of_setup(submitted, package, script)
     if script is not None and manifest is not None and manifest.name:
-        yield from _of_place(handed_in, package, manifest.name)
+        yield from _of_place(submitted, package, manifest.name)
 
 
 def _of_manifest(manifest: Manifest, called: str) -> Iterator[Message]:
@@ -69,10 +69,10 @@ def _of_manifest(manifest: Manifest, called: str) -> Iterator[Message]:
 
 
 def _of_setup(
-    handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript | None
+    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript | None
 ) -> Iterator[Message]:
-    """What setup.py installs, and what it does not."""
-    called = handed_in.called(package.folder / "setup.py")
+    """Compare what setup.py installs with the files and the script."""
+    called = submitted.called(package.folder / "setup.py")
     named = (name for name in _installed(package) if name != FILE)
     if missing := [name for name in named if not _may_be_there(package.folder, name)]:
         yield _not_built(
@@ -82,9 +82,9 @@ def _of_setup(
                 names=listed(missing),
             )
         )
-    if package.told is None or package.told.package_folders:
+    if package.declared is None or package.declared.package_folders:
         return  # not where their names say
-    packages = package.told.packages
+    packages = package.declared.packages
     absent = [name for name in packages or () if not (package.folder / _path(name)).is_dir()]
     if absent:
         yield _not_built(
@@ -110,30 +110,30 @@ def _of_setup(
         )
 
 
-def _of_place(handed_in: HandedInFolder, package: PackageFolder, name: str) -> Iterator[Message]:
-    """Where the programs are installed, and where they are looked for."""
-    told = package.told
-    if told is None or told.has_commands:
+def _of_place(submitted: SubmissionFolder, package: PackageFolder, name: str) -> Iterator[Message]:
+    """Compare where the programs are installed with where ros2 run searches."""
+    declared = package.declared
+    if declared is None or declared.has_commands:
         return
-    if any(each.folder.startswith("lib") for each in told.data_files):
+    if any(each.folder.startswith("lib") for each in declared.data_files):
         return  # in a place of its own choice
     expected = f"$base/lib/{name}"
     setup_cfg = package.folder / "setup.cfg"
-    if not told.scripts_folder:
+    if not declared.scripts_folder:
         lacking = msg("install_scripts={expected} below [install]", expected=expected)
         if setup_cfg.is_file():
-            file = handed_in.called(setup_cfg)
+            file = submitted.called(setup_cfg)
             yield _not_found(msg("{file} has no {lacking}", file=file, lacking=lacking))
         else:
-            why = _no("setup.cfg", handed_in, package.folder)
+            why = _no("setup.cfg", submitted, package.folder)
             yield _not_found(msg("{none} with {lacking}", none=why, lacking=lacking))
-    elif told.scripts_folder.rstrip("/") != f"lib/{name}":
+    elif declared.scripts_folder.rstrip("/") != f"lib/{name}":
         yield msg(
             "ros2 run {name} would find nothing: {setup} installs programs in {place}, and "
             "{manifest} calls the package {name}: expected install_scripts={expected}",
             name=name,
-            setup=handed_in.called(setup_cfg),
-            place=shown(f"$base/{told.scripts_folder}"),
+            setup=submitted.called(setup_cfg),
+            place=shown(f"$base/{declared.scripts_folder}"),
             manifest=FILE,
             expected=expected,
         )
@@ -153,12 +153,16 @@ def _not_started(why: Message) -> Message:
 
 def _installed(package: PackageFolder) -> list[str]:
     """The files that setup.py installs by `data_files`."""
-    told = package.told
-    return list(dict.fromkeys(f for each in told.data_files for f in each.files)) if told else []
+    declared = package.declared
+    return (
+        list(dict.fromkeys(f for each in declared.data_files for f in each.files))
+        if declared
+        else []
+    )
 
 
 def _may_be_there(folder: Path, name: str) -> bool:
-    """Whether a file is there; what lies outside of the submission is nobody's matter."""
+    """Whether a file exists; one outside of the submission is not checked."""
     if name.startswith("/") or ".." in PurePosixPath(name).parts:
         return True
     try:
@@ -171,7 +175,7 @@ def _path(package: str) -> str:
     return package.replace(".", "/")
 
 
-def _no(file: str, handed_in: HandedInFolder, folder: Path) -> Message:
-    if folder == handed_in.base:
+def _no(file: str, submitted: SubmissionFolder, folder: Path) -> Message:
+    if folder == submitted.base:
         return msg("no {file}", file=file)
-    return msg("no {file} in {folder}", file=file, folder=handed_in.called(folder))
+    return msg("no {file} in {folder}", file=file, folder=submitted.called(folder))

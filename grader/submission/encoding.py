@@ -1,4 +1,4 @@
-"""Whether Python can read a file as a program, and in words what is wrong with its bytes if not.
+"""Checks whether Python can read the bytes of a file as a program, and says why if not.
 
 `python3 FILE` refuses what is not in the encoding that the file declares, UTF-8 where it declares
 none. An import of the same file is laxer in older Pythons: it passes over such bytes in comments.

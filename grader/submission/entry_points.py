@@ -1,4 +1,4 @@
-"""Which console script of a folder is the node, and where its module lies."""
+"""Chooses the console script of a folder that is the node, and finds its module."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg
-from grader.submission.folder import USUAL_NAME, HandedInFolder, files_below, listed, near, shown
+from grader.submission.folder import USUAL_NAME, SubmissionFolder, files_below, listed, near, shown
 from grader.submission.python_source import read_source
 from grader.submission.set_ups import ConsoleScript, PackageFolder, read_package
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.scenes.package.inspection import SetUp
 
 Choice = tuple[PackageFolder, ConsoleScript]
-#: Of what there may be several that could be started.
+#: What a submission may have several of that could be started.
 Kind = Literal["console script", "Python file", "program"]
 
 
@@ -33,7 +33,7 @@ class Module:
 class Packages:
     """The folders of a submission that have set-up files, from the top down."""
 
-    handed_in: HandedInFolder
+    submitted: SubmissionFolder
     readable: tuple[PackageFolder, ...]
     faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
 
@@ -44,7 +44,7 @@ class Packages:
             SubmissionError: several or none fit, or set-up files cannot be read and might.
         """
         every = [(package, script) for package in self.readable for script in package.scripts]
-        wanted = executable or self.handed_in.usual
+        wanted = executable or self.submitted.usual
         matching = [choice for choice in every if choice[1].name == wanted]
         if len(matching) == 1:
             return matching[0]
@@ -54,7 +54,7 @@ class Packages:
             raise self.faults[0]
         names = [script.name for _, script in every]
         if executable and every:
-            raise no_such_executable(self.handed_in, "console script", executable, names)
+            raise no_such_executable(self.submitted, "console script", executable, names)
         if len(every) > 1:
             raise self._several(names) if len(set(names)) > 1 else self._twice(every)
         return every[0] if every else None
@@ -71,11 +71,11 @@ class Packages:
         return next((each for each in with_setup if file.is_relative_to(each.folder)), None)
 
     def _twice(self, matching: list[Choice]) -> SubmissionError:
-        where = listed(self.handed_in.called(script.file) for _, script in matching)
+        where = listed(self.submitted.called(script.file) for _, script in matching)
         return SubmissionError(
             "{name} has the console script {script} more than once: {where}. Hand in"
             " only one of these packages.",
-            name=self.handed_in.name,
+            name=self.submitted.name,
             script=shown(matching[0][1].name),
             where=where,
         )
@@ -84,32 +84,34 @@ class Packages:
         return SubmissionError(
             "{name} has several console scripts: {names}. Expected one called "
             "{usual}; choose another with --executable NAME.",
-            name=self.handed_in.name,
+            name=self.submitted.name,
             names=listed(names),
-            usual=self.handed_in.usual,
+            usual=self.submitted.usual,
         )
 
 
-def find_packages(handed_in: HandedInFolder, said: Sequence[SetUp]) -> Packages:
-    """The folders with set-up files; not those below a folder that has a console script."""
+def find_packages(submitted: SubmissionFolder, set_ups: Sequence[SetUp]) -> Packages:
+    """Read the folders with set-up files; not those below a folder that has a console script."""
     readable: list[PackageFolder] = []
     faults: list[SubmissionError] = []
     have_script: set[Path] = set()
-    for each in said:
-        folder = handed_in.base / each.folder
+    for each in set_ups:
+        folder = submitted.base / each.folder
         if not have_script.isdisjoint((folder, *folder.parents)):
             continue
         try:
-            package = read_package(each, handed_in)
+            package = read_package(each, submitted)
         except SubmissionError as fault:
             faults.append(fault)
         else:
             readable.append(package)
             have_script |= {folder} if package.scripts else set()
-    return Packages(handed_in, tuple(readable), tuple(faults))
+    return Packages(submitted, tuple(readable), tuple(faults))
 
 
-def find_module(handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript) -> Module:
+def find_module(
+    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript
+) -> Module:
     """Find the script's module in its package, and nowhere else.
 
     Raises:
@@ -120,19 +122,19 @@ def find_module(handed_in: HandedInFolder, package: PackageFolder, script: Conso
     for root in roots:
         for file in (root / inside / "__init__.py", root / f"{inside}.py"):
             if file.is_file():
-                handed_in.must_hold(file)
-                _must_define(handed_in, script, file)
+                submitted.must_hold(file)
+                _must_define(submitted, script, file)
                 folders = list(inside.parents)[:-1]  # the last is root itself
                 bare = [f for f in folders if not (root / f / "__init__.py").exists()]
                 return Module(root, tuple(bare))
-    raise _no_module(handed_in, package, script, roots[0] / f"{inside}.py")
+    raise _no_module(submitted, package, script, roots[0] / f"{inside}.py")
 
 
 def no_such_executable(
-    handed_in: HandedInFolder, kind: Kind, executable: str, names: list[str]
+    submitted: SubmissionFolder, kind: Kind, executable: str, names: list[str]
 ) -> SubmissionError:
-    """Say that nothing has the name that was asked for."""
-    words = {"name": handed_in.name, "executable": shown(executable), "names": listed(names)}
+    """The error that nothing has the name that was asked for."""
+    words = {"name": submitted.name, "executable": shown(executable), "names": listed(names)}
     if kind == "console script":
         return SubmissionError(
             msg(
@@ -151,7 +153,7 @@ def no_such_executable(
 
 
 def not_started(kind: Kind, names: list[str]) -> list[Message]:
-    """A note on what of a submission nobody has started; none where there is nothing."""
+    """Return a note on the programs of a submission that were not started; empty without any."""
     if not names:
         return []
     words = {"names": listed(names)}
@@ -165,11 +167,11 @@ def not_started(kind: Kind, names: list[str]) -> list[Message]:
 
 
 def example(module: str, name: str = USUAL_NAME) -> str:
-    """Show the line that a set-up file should have."""
+    """Return the line that a set-up file should have."""
     return f"'console_scripts': ['{name} = {module}:main']"
 
 
-def _must_define(handed_in: HandedInFolder, script: ConsoleScript, file: Path) -> None:
+def _must_define(submitted: SubmissionFolder, script: ConsoleScript, file: Path) -> None:
     source = read_source(file)
     wanted = script.function.split(".")[0]
     if not source.surely_lacks(wanted):
@@ -178,21 +180,21 @@ def _must_define(handed_in: HandedInFolder, script: ConsoleScript, file: Path) -
     raise SubmissionError(
         "{file} defines no function {wanted} (it defines: {names}). {starts}: "
         "give the function that name, or correct the entry point.",
-        file=handed_in.called(file),
+        file=submitted.called(file),
         wanted=shown(wanted),
         names=listed(names) or msg("nothing"),
-        starts=_starts(handed_in, script),
+        starts=_starts(submitted, script),
     )
 
 
 def _no_module(
-    handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript, expected: Path
+    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript, expected: Path
 ) -> SubmissionError:
     found = [file for file in files_below(package.folder) if file.suffix == ".py"]
-    wanted = handed_in.called(expected)
-    same_name = [handed_in.called(file) for file in found if file.name == expected.name]
+    wanted = submitted.called(expected)
+    same_name = [submitted.called(file) for file in found if file.name == expected.name]
     nodes = (file for file in found if file.name not in ("setup.py", "__init__.py"))
-    others = [handed_in.called(file) for file in nodes]
+    others = [submitted.called(file) for file in nodes]
     meant = list(dict.fromkeys(near(wanted, others) + same_name))
     there = (
         msg("Near: {names}.", names=listed(meant))
@@ -202,17 +204,17 @@ def _no_module(
     return SubmissionError(
         "{starts}, but there is no file {wanted}. {there} Correct the entry "
         "point, or the name or place of the file.",
-        starts=_starts(handed_in, script),
+        starts=_starts(submitted, script),
         wanted=wanted,
         there=there,
     )
 
 
-def _starts(handed_in: HandedInFolder, script: ConsoleScript) -> Message:
+def _starts(submitted: SubmissionFolder, script: ConsoleScript) -> Message:
     target = shown(f"{script.module}:{script.function}")
     return msg(
         "{file} starts {script} by {target}",
-        file=handed_in.called(script.file),
+        file=submitted.called(script.file),
         script=shown(script.name),
         target=target,
     )

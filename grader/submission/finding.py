@@ -1,13 +1,13 @@
-"""What of a file, a folder, a package or an archive to start.
+"""Finds what to start of a file, a folder, a package or an archive.
 
-Nothing of it is run here; what set-up and launch files say is told by an inspection.
+Nothing of it is run here; set-up and launch files are evaluated by an inspection.
 
 The rules, in order:
 
 0. An archive is unpacked first; so is the only one in a folder that holds no source beside it.
 1. A `.py` file is itself what to start.
-2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml, by what an
-   inspection says of them): the one that is asked for; else those that a launch file of the package
+2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml, by
+   their inspection): the one that is asked for; else those that a launch file of the package
    starts, if it plainly starts several of its programs; else the usual one (`turtle_controller`),
    else the only one.
 3. Else a Python file that starts itself or has a function `main`: the one that is asked for, else
@@ -38,9 +38,8 @@ from grader.submission.entry_points import (
 )
 from grader.submission.folder import (
     HAND_IN,
-    MAX_ENTRIES,
     USUAL_NAME,
-    HandedInFolder,
+    SubmissionFolder,
     entries_of,
     files_below,
     is_junk,
@@ -93,12 +92,12 @@ def find_inspected(
     scratch: Path,
     usual: str,
 ) -> Submission:
-    """The same of a package, by what an inspection says of it; see `find`."""
+    """Find what to start of a package that was inspected; see `find`."""
     with readable(asked.base):
-        handed_in = HandedInFolder(shown(name), asked.base, usual)
-        found = _in_folder(handed_in, executable, Unpacking(scratch), inspection)
+        submitted = SubmissionFolder(shown(name), asked.base, usual)
+        found = _in_folder(submitted, executable, Unpacking(scratch), inspection)
     for archive in asked.inside:
-        found = _told_of_archive(found, archive)
+        found = _with_archive(found, archive)
     return found
 
 
@@ -107,8 +106,8 @@ def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Subm
     if not path.exists():
         raise missing(path)
     if path.is_dir():
-        handed_in = HandedInFolder(name, path.resolve(), usual)
-        return _in_folder(handed_in, executable, Unpacking(scratch))
+        submitted = SubmissionFolder(name, path.resolve(), usual)
+        return _in_folder(submitted, executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
@@ -129,162 +128,162 @@ def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Subm
                 name=name,
             )
         folder = path.parent.resolve()
-        return _from_file(HandedInFolder(name, folder, usual), folder / path.name)
+        return _from_file(SubmissionFolder(name, folder, usual), folder / path.name)
     unpacking = Unpacking(scratch)
-    handed_in = HandedInFolder(name, unpacking.unpack(path), usual)
-    return _in_folder(handed_in, executable, unpacking)
+    submitted = SubmissionFolder(name, unpacking.unpack(path), usual)
+    return _in_folder(submitted, executable, unpacking)
 
 
 def _in_folder(
-    handed_in: HandedInFolder,
+    submitted: SubmissionFolder,
     executable: str | None,
     unpacking: Unpacking,
     inspection: Inspection | None = None,
 ) -> Submission:
-    top = top_of(handed_in.base)
-    if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
+    top = top_of(submitted.base)
+    if all(is_junk(entry.name) for entry in entries_of(top)):
         raise SubmissionError(
-            "{name} is an empty folder. {hand_in}", name=handed_in.name, hand_in=HAND_IN
+            "{name} is an empty folder. {hand_in}", name=submitted.name, hand_in=HAND_IN
         )
     files = files_below(top)
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
-        return _in_archive(handed_in, archives, executable, unpacking)
-    if inspection is None and (folders := _set_ups(handed_in, files)):
-        raise NotInspected(handed_in.base, tuple(folders))
-    packages = find_packages(handed_in, inspection.set_ups if inspection else ())
+        return _in_archive(submitted, archives, executable, unpacking)
+    if inspection is None and (folders := _set_ups(submitted, files)):
+        raise NotInspected(submitted.base, tuple(folders))
+    packages = find_packages(submitted, inspection.set_ups if inspection else ())
     if inspection and executable is None:
-        launched = find_launched(handed_in, packages, inspection)
+        launched = find_launched(submitted, packages, inspection)
         if launched is not None:
-            found = _from_script(handed_in, packages, launched.first, unpacking.scratch)
-            return launched.start(handed_in, found)
+            found = _from_script(submitted, packages, launched.first, unpacking.scratch)
+            return launched.start(submitted, found)
     if choice := packages.choose(executable):
-        return _from_script(handed_in, packages, choice, unpacking.scratch)
+        return _from_script(submitted, packages, choice, unpacking.scratch)
     candidates = [file for file in files if _may_be_node(file)]
     if not candidates:
-        raise no_python(handed_in, files)
+        raise no_python(submitted, files)
     starting = [file for file in candidates if _starts(read_source(file))] or candidates
-    several = executable is None and len(_usual(handed_in, starting)) > 1
+    several = executable is None and len(_usual(submitted, starting)) > 1
     if several and (package := packages.holding(starting[0])):
-        told = package.problem or _no_script(handed_in, package, starting)
-        raise SubmissionError(joined([told, "."]))
-    chosen = _only(handed_in, starting, executable)
-    handed_in.must_hold(chosen)
+        problem = package.problem or _no_script(submitted, package, starting)
+        raise SubmissionError(joined([problem, "."]))
+    chosen = _only(submitted, starting, executable)
+    submitted.must_hold(chosen)
     if package := packages.holding(chosen):
-        return _without_script(handed_in, package, chosen)
-    others = [handed_in.called(file) for file in starting if file != chosen]
-    found = _from_file(handed_in, chosen)
-    notes = [*_unbuilt(handed_in, chosen), *not_started("program", others)]
+        return _without_script(submitted, package, chosen)
+    others = [submitted.called(file) for file in starting if file != chosen]
+    found = _from_file(submitted, chosen)
+    notes = [*_unbuilt(submitted, chosen), *not_started("program", others)]
     return replace(found, notes=tuple(notes))
 
 
 def _in_archive(
-    handed_in: HandedInFolder, archives: list[Path], executable: str | None, unpacking: Unpacking
+    submitted: SubmissionFolder, archives: list[Path], executable: str | None, unpacking: Unpacking
 ) -> Submission:
-    """Look into the one archive that a folder holds, as those are that a course's server makes."""
+    """Unpack the one archive that a folder holds, as folders from a course's server do."""
     if len(archives) > 1:
         raise SubmissionError(
             "{name} holds several archives, and no Python file beside them: "
             "{names}. Hand in only one of them.",
-            name=handed_in.name,
-            names=listed(map(handed_in.called, archives)),
+            name=submitted.name,
+            names=listed(map(submitted.called, archives)),
         )
     (archive,) = archives
-    handed_in.must_hold(archive)
-    inside = replace(handed_in, base=unpacking.unpack(archive))
+    submitted.must_hold(archive)
+    inside = replace(submitted, base=unpacking.unpack(archive))
     try:
         found = _in_folder(inside, executable, unpacking)
     except NotInspected as asks:
-        asks.inside = (*asks.inside, handed_in.called(archive))
+        asks.inside = (*asks.inside, submitted.called(archive))
         raise
-    return _told_of_archive(found, handed_in.called(archive))
+    return _with_archive(found, submitted.called(archive))
 
 
-def _told_of_archive(found: Submission, archive: str) -> Submission:
-    """The same, told as what it is: found in an archive within what was handed in."""
+def _with_archive(found: Submission, archive: str) -> Submission:
+    """Add to a submission's description that it was found in an archive inside."""
     return replace(found, found=msg("{found}, in {file}", found=found.found, file=archive))
 
 
-def _set_ups(handed_in: HandedInFolder, files: list[Path]) -> list[str]:
-    """The folders with set-up files, which an inspection is to evaluate."""
+def _set_ups(submitted: SubmissionFolder, files: list[Path]) -> list[str]:
+    """Return the folders with set-up files, which an inspection is to evaluate."""
     found = dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES)
     for file in files:
         is_one = file.name in SETUP_FILES or is_launch_file(file)
         if is_one and not found.keys().isdisjoint(file.parents):
-            handed_in.must_hold(file)
-    return [str(folder.relative_to(handed_in.base)) for folder in found][:MOST]
+            submitted.must_hold(file)
+    return [str(folder.relative_to(submitted.base)) for folder in found][:MOST]
 
 
 def _from_script(
-    handed_in: HandedInFolder, packages: Packages, choice: Choice, scratch: Path
+    submitted: SubmissionFolder, packages: Packages, choice: Choice, scratch: Path
 ) -> Submission:
     package, script = choice
-    module = find_module(handed_in, package, script)
+    module = find_module(submitted, package, script)
     start = EntryPoint(script.module, script.function)
     found = msg(
         "console script {script} in {file}",
         script=shown(script.name),
-        file=handed_in.called(script.file),
+        file=submitted.called(script.file),
     )
     others = not_started("console script", packages.others(script))
-    notes = (*shortcomings(handed_in, package, script), *others)
+    notes = (*shortcomings(submitted, package, script), *others)
     folder = package.folder
     if not module.bare:
-        return Submission(handed_in.name, module.root, start, found, notes=notes, package=folder)
+        return Submission(submitted.name, module.root, start, found, notes=notes, package=folder)
     # without its __init__.py, Python prefers any installed package of the same name
     mended = scratch / "with_init"
-    left_out = copy_folder(handed_in.base, mended)  # all of it: there may be packages beside
-    root = mended / module.root.relative_to(handed_in.base)
+    left_out = copy_folder(submitted.base, mended)  # all of it: there may be packages beside
+    root = mended / module.root.relative_to(submitted.base)
     added = tuple(each / "__init__.py" for each in module.bare)
     for each in added:
         (root / each).touch()
     found = msg(
         "{found}, with the missing {missing} added", found=found, missing=listed(map(str, added))
     )
-    folder = mended / folder.relative_to(handed_in.base)
+    folder = mended / folder.relative_to(submitted.base)
     notes = (*notes, *left_out)
-    return Submission(handed_in.name, root, start, found, notes=notes, added=added, package=folder)
+    return Submission(submitted.name, root, start, found, notes=notes, added=added, package=folder)
 
 
-def _without_script(handed_in: HandedInFolder, package: PackageFolder, file: Path) -> Submission:
+def _without_script(submitted: SubmissionFolder, package: PackageFolder, file: Path) -> Submission:
     """Start a file of a package that names no console script, as one would that named it."""
     source = read_source(file)
-    short = tuple(shortcomings(handed_in, package, None))
+    short = tuple(shortcomings(submitted, package, None))
     if not package.problem:
-        short = (*short, _no_script(handed_in, package, [file]))
+        short = (*short, _no_script(submitted, package, [file]))
     inside = file.relative_to(package.folder).with_suffix("").parts
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
-        return replace(_from_file(handed_in, file), notes=short, package=package.folder)
+        return replace(_from_file(submitted, file), notes=short, package=package.folder)
     start = EntryPoint(".".join(inside), "main")
-    found = msg("function main of {file}", file=handed_in.called(file))
+    found = msg("function main of {file}", file=submitted.called(file))
     folder = package.folder
-    return Submission(handed_in.name, folder, start, found, notes=short, package=folder)
+    return Submission(submitted.name, folder, start, found, notes=short, package=folder)
 
 
-def _unbuilt(handed_in: HandedInFolder, file: Path) -> list[Message]:
-    """What a file's package lacks that has a package.xml alone."""
+def _unbuilt(submitted: SubmissionFolder, file: Path) -> list[Message]:
+    """Return the shortcomings of the package around a file that has a package.xml alone."""
     for folder in file.parents:
-        if not folder.is_relative_to(handed_in.base):
+        if not folder.is_relative_to(submitted.base):
             break
         if (folder / MANIFEST).is_file():
-            return list(shortcomings(handed_in, PackageFolder(folder), None))
+            return list(shortcomings(submitted, PackageFolder(folder), None))
     return []
 
 
-def _from_file(handed_in: HandedInFolder, file: Path) -> Submission:
+def _from_file(submitted: SubmissionFolder, file: Path) -> Submission:
     """Start a file that no package describes."""
     source = read_source(file)
-    called = handed_in.called(file)
+    called = submitted.called(file)
     is_imported = source.parses and not source.is_refused and source.has_main
     if not is_imported or source.has_guard or source.calls_main:
         return Submission(
-            handed_in.name, file.parent, Script(file), msg("file {file}", file=called)
+            submitted.name, file.parent, Script(file), msg("file {file}", file=called)
         )
     # one called like a module of Python may find that loaded already, instead of itself
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
     start = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
     return Submission(
-        handed_in.name, file.parent, start, msg("function main of {file}", file=called)
+        submitted.name, file.parent, start, msg("function main of {file}", file=called)
     )
 
 
@@ -298,30 +297,30 @@ def _may_be_node(file: Path) -> bool:
     return file.suffix == ".py" and not is_other
 
 
-def _only(handed_in: HandedInFolder, candidates: list[Path], executable: str | None) -> Path:
+def _only(submitted: SubmissionFolder, candidates: list[Path], executable: str | None) -> Path:
     """Choose the Python file to start."""
     if executable:
         chosen = [file for file in candidates if executable in (file.stem, file.name)]
         if not chosen:
-            names = [handed_in.called(file) for file in candidates]
-            raise no_such_executable(handed_in, "Python file", executable, names)
+            names = [submitted.called(file) for file in candidates]
+            raise no_such_executable(submitted, "Python file", executable, names)
     else:
-        chosen = _usual(handed_in, candidates)
+        chosen = _usual(submitted, candidates)
     if len(chosen) > 1:
         raise SubmissionError(
             "{name} has several Python files to start: {names}. Expected one, "
             "called {usual}.py; choose another with --executable NAME, or hand in "
             "only that file.",
-            name=handed_in.name,
-            names=listed(map(handed_in.called, chosen)),
-            usual=handed_in.usual,
+            name=submitted.name,
+            names=listed(map(submitted.called, chosen)),
+            usual=submitted.usual,
         )
     return chosen[0]
 
 
-def _usual(handed_in: HandedInFolder, candidates: list[Path]) -> list[Path]:
-    """Those of the first usual name that any has; all of them if none has one."""
-    usual = [[file for file in candidates if file.stem == s] for s in (handed_in.usual, "main")]
+def _usual(submitted: SubmissionFolder, candidates: list[Path]) -> list[Path]:
+    """Return the files with the usual name, else those called main, else all of them."""
+    usual = [[file for file in candidates if file.stem == s] for s in (submitted.usual, "main")]
     return usual[0] or usual[1] or candidates
 
 
@@ -329,13 +328,15 @@ def _starts(source: PythonSource) -> bool:
     return source.has_guard or source.has_main
 
 
-def _no_script(handed_in: HandedInFolder, package: PackageFolder, starting: list[Path]) -> Message:
-    """Say that a setup.py names no console script, with the line that it lacks."""
-    likely = [file for file in starting if file.stem == handed_in.usual] or starting
+def _no_script(
+    submitted: SubmissionFolder, package: PackageFolder, starting: list[Path]
+) -> Message:
+    """Say that a setup.py names no console script, and which line it lacks."""
+    likely = [file for file in starting if file.stem == submitted.usual] or starting
     module = "my_package.turtle_controller"
     if len(likely) == 1:
         module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)
-    called = handed_in.called(package.folder / "setup.py")
+    called = submitted.called(package.folder / "setup.py")
     return msg(
         "{file} names no console script, so that `ros2 run` finds nothing to "
         "start. Expected in its entry_points: {example}",

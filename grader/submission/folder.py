@@ -1,4 +1,4 @@
-"""What lies in a handed-in folder: which files count, and how messages name them."""
+"""The files of a submitted folder: which of them count, and how messages name them."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from grader.message import Message, Text, joined, msg
 from grader.text import clip_inside, without_controls
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
-#: What is wrong with one file, and not with the machine.
+#: Errors of one file, and not of the machine.
 UNREADABLE: Final = (
     *(errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENXIO),
     *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
 )
-MAX_ENTRIES: Final = 10_000  # files and folders that are looked at
+MAX_ENTRIES: Final = 10_000  # files and folders that are searched
 MAX_SOURCE_BYTES: Final = 1_000_000  # a Python or set-up file larger than this is not read here
 MAX_BYTES: Final = 200_000_000  # of all files together, where they are unpacked or copied
 MAX_SHOWN: Final = 300  # characters of a name in a message
 
 RESULT: Final = "result.json"
-BEGINNING_BYTES: Final = 200  # of a file tell whose it is
+BEGINNING_BYTES: Final = 200  # of a file are read to recognise a result
 _OUR_RESULT: Final = re.compile(rb'\s*\{\s*"schema"\s*:\s*"turtlesim-grader/result/')
 
-_NEAR_NAMES: Final = 200  # that a name is compared with: the time goes with the cube of their
+_NEAR_NAMES: Final = 200  # that a name is compared with: the time grows with the cube of their
 _NEAR_LENGTH: Final = 100  # length
 
 HAND_IN: Final = msg("Hand in a .py file, the folder of your package, or a .zip of it.")
@@ -45,8 +45,8 @@ USUAL_NAME: Final = "turtle_controller"
 
 
 @dataclass(frozen=True)
-class HandedInFolder:
-    """A folder, handed in as such or unpacked, and its words in messages."""
+class SubmissionFolder:
+    """A submission as a folder, submitted as such or unpacked, and its names in messages."""
 
     name: str  # "alice.zip"
     base: Path  # absolute; messages name paths relative to it
@@ -72,19 +72,19 @@ class HandedInFolder:
 
 
 def is_junk(name: str) -> bool:
-    """Tell whether no entry of this name belongs to a submission: hidden, or left by a system."""
+    """Whether no entry of this name belongs to a submission: hidden, or left by a system."""
     return name.startswith(".") or name in _JUNK
 
 
 def marks_generated(path: PurePath) -> bool:
-    """Tell whether a file says that a program filled its folder: a venv, or colcon's output."""
+    """Whether a file marks its folder as filled by a program: a venv, or colcon's output."""
     return path.name == "pyvenv.cfg" or (
         path.name == "COLCON_IGNORE" and path.parent.name in _COLCON
     )
 
 
 def is_generated(folder: Path) -> bool:
-    """Tell whether a folder holds such a mark, or what an earlier grading has left."""
+    """Whether a folder holds such a mark, or the result of an earlier grading."""
     marks = (folder / "pyvenv.cfg", folder / "COLCON_IGNORE")
     # of os: what has too long a path for the system is not there
     if any(marks_generated(mark) and os.path.exists(mark) for mark in marks):  # noqa: PTH110
@@ -99,7 +99,7 @@ def is_generated(folder: Path) -> bool:
 
 
 def is_result(begin: bytes) -> bool:
-    """Tell by its beginning whether a file called RESULT is this grader's own.
+    """Whether a file called RESULT is one of this grader, by its beginning.
 
     Where no source lies beside it, its folder is what `grader run .` has left in a package.
     """
@@ -107,7 +107,7 @@ def is_result(begin: bytes) -> bool:
 
 
 def is_source(name: str) -> bool:
-    """Tell whether a file of this name is part of a program or a package."""
+    """Whether a file of this name is part of a program or a package."""
     return name.endswith(".py") or name in ("package.xml", "setup.cfg", "pyproject.toml")
 
 
@@ -122,9 +122,9 @@ def top_of(folder: Path) -> Path:
     return folder
 
 
-def entries_of(folder: Path, limit: int) -> list[Path]:
-    """List a folder, sorted; not more than one entry above the limit."""
-    return sorted(islice(folder.iterdir(), limit + 1))
+def entries_of(folder: Path) -> list[Path]:
+    """List a folder, sorted; not more than one entry above MAX_ENTRIES."""
+    return sorted(islice(folder.iterdir(), MAX_ENTRIES + 1))
 
 
 def files_below(top: Path) -> list[Path]:
@@ -143,7 +143,7 @@ def files_below(top: Path) -> list[Path]:
     for _ in range(MAX_DEPTH):
         below: list[Path] = []
         for folder in level:
-            everything = entries_of(folder, MAX_ENTRIES)
+            everything = entries_of(folder)
             seen += len(everything)
             if seen > MAX_ENTRIES:
                 raise too_many(top)
@@ -181,7 +181,7 @@ def read_bounded(path: Path) -> bytes | None:
 
 
 def shown(name: str | PurePath) -> str:
-    """A name of a student's in a message: in one line, and not longer than anybody reads."""
+    """Return a student's name for something as a message shows it: one line, not too long."""
     return clip_inside(without_controls(str(name), "?"), MAX_SHOWN)
 
 

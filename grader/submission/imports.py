@@ -1,4 +1,4 @@
-"""What a submission imports, read from the files that its start loads; nothing of it is run."""
+"""Reads what a submission imports from the files that its start loads; nothing of it is run."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def read_imports(
 ) -> Imports:
     """Read what is started, and what of the submission that imports in turn.
 
-    A file that cannot be read or parsed tells nothing: the run shows what is wrong with it. Nor
-    does a name in a string that is given to importlib.
+    A file that cannot be read or parsed is skipped: the run shows what is wrong with it. So is a
+    name in a string that is given to importlib.
 
     Args:
-        only: the one file that was handed in, if it is one: what lies beside it is none of it.
+        only: the one file that is the submission, if it is one: its neighbours are no part of it.
     """
 
     def files(module: str) -> list[tuple[Path, str]]:
@@ -61,7 +61,7 @@ def read_imports(
 
 
 def _statements(file: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:
-    """The imports in a file, in order, and whether each is run whenever the file is."""
+    """Yield the imports in a file, in order, and whether each is run whenever the file is."""
     try:
         data = read_bounded(file)
         tree = parse(data or b"", file.name)
@@ -78,7 +78,7 @@ def _statements(file: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]
 
 
 def _modules(node: ast.Import | ast.ImportFrom, package: str) -> list[str]:
-    """The full names of all that a statement may load."""
+    """Return the full names of all that an import statement may load."""
     if isinstance(node, ast.Import):
         return [alias.name for alias in node.names]
     origin = node.module or ""
@@ -92,14 +92,14 @@ def _modules(node: ast.Import | ast.ImportFrom, package: str) -> list[str]:
 
 
 def _files(root: Path, module: str) -> list[tuple[Path, str]]:
-    """The files of the submission that an import of a module loads, each with its package."""
+    """Return the submission's files that an import of a module loads, each with its package."""
     files = []
     folder, package = root, ""
     for part in module.split("."):
-        own = f"{package}.{part}" if package else part
-        candidates = ((folder / part / "__init__.py", own), (folder / f"{part}.py", package))
+        inner = f"{package}.{part}" if package else part
+        candidates = ((folder / part / "__init__.py", inner), (folder / f"{part}.py", package))
         files += [candidate for candidate in candidates if _is(candidate[0], Path.is_file)][:1]
-        folder, package = folder / part, own
+        folder, package = folder / part, inner
         if not _is(folder, Path.is_dir):
             break
     return files

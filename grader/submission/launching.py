@@ -1,4 +1,4 @@
-"""Whether a launch file says what to start of a package: several nodes, each in a process."""
+"""Finds a launch file that starts several nodes of a package, each in a process."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from grader.errors import SubmissionError
 from grader.message import msg
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import Packages, find_module, not_started
-from grader.submission.folder import HandedInFolder, listed
+from grader.submission.folder import SubmissionFolder, listed
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 
@@ -39,19 +39,19 @@ class Launched:
 
     @property
     def first(self) -> tuple[PackageFolder, ConsoleScript]:
-        """The program that it names first."""
+        """The program that it starts first."""
         return self.package, self.programs[0][0]
 
-    def start(self, handed_in: HandedInFolder, found: Submission) -> Submission:
-        """A submission that would start the first program, with all of them."""
-        called = handed_in.called(self.package.folder / self.launch.file)
+    def start(self, submitted: SubmissionFolder, found: Submission) -> Submission:
+        """Make of a submission that starts the first program one that starts all of them."""
+        called = submitted.called(self.package.folder / self.launch.file)
         programs = tuple(
             Program(script.name, EntryPoint(script.module, script.function), arguments)
             for script, arguments in self.programs
         )
         started = {program.name for program in programs}
         left = [script.name for script in self.package.scripts if script.name not in started]
-        notes = [*shortcomings(handed_in, *self.first), *not_started("console script", left)]
+        notes = [*shortcomings(submitted, *self.first), *not_started("console script", left)]
         if self.others:
             names = listed(f"{node.package} {node.executable}" for node in self.others)
             notes.append(
@@ -71,15 +71,15 @@ class Launched:
 
 
 def is_launch_file(file: Path) -> bool:
-    """Tell by its name whether `ros2 launch` would take a file: spiral_launch.py, a.launch.xml."""
+    """Whether `ros2 launch` would accept a file of this name: spiral_launch.py, a.launch.xml."""
     return file.name.endswith(_ENDINGS)
 
 
 def find_launched(
-    handed_in: HandedInFolder, packages: Packages, inspection: Inspection
+    submitted: SubmissionFolder, packages: Packages, inspection: Inspection
 ) -> Launched | None:
-    """The launch file by which several programs are started; None if there is none, or many."""
-    folder = handed_in.base / inspection.package
+    """Find the launch file that starts several programs; None if there is none, or many."""
+    folder = submitted.base / inspection.package
     package = next((each for each in packages.readable if each.folder == folder), None)
     setup = inspection.trace.setup
     if package is None or not package.scripts or setup is None:
@@ -91,7 +91,7 @@ def find_launched(
         return None
     scripts = (script for script, _ in found[0].programs)
     try:
-        modules = {find_module(handed_in, package, script) for script in scripts}
+        modules = {find_module(submitted, package, script) for script in scripts}
     except SubmissionError:  # the one to start alone may be there
         return None
     return found[0] if len(modules) == 1 else None  # else they lie in several places
@@ -99,11 +99,11 @@ def find_launched(
 
 def _launched(launch: trace.LaunchFile, package: PackageFolder, names: set[str]) -> Launched | None:
     scripts = {script.name: script for script in package.scripts}
-    own = [node for node in launch.nodes if node.package in names]
-    if len(own) < 2 or launch.problem or launch.skipped:
+    nodes = [node for node in launch.nodes if node.package in names]
+    if len(nodes) < 2 or launch.problem or launch.skipped:
         return None
     programs = []
-    for node in own:
+    for node in nodes:
         arguments = None if node.condition else _arguments(node)
         if node.executable not in scripts or arguments is None:
             return None
@@ -118,15 +118,17 @@ def _launched(launch: trace.LaunchFile, package: PackageFolder, names: set[str])
 
 
 def _arguments(node: LaunchedNode) -> tuple[str, ...] | None:
-    """What `ros2 launch` gives a program; None where what was taken down does not tell."""
+    """The arguments that `ros2 launch` gives a program; None where they are not all known."""
     space = node.namespace
     space = space if space.startswith("/") or not space else f"/{space}"
     rules = [f"{old}:={new}" for old, new in (("__node", node.name), ("__ns", space)) if new]
     rules += node.remappings
     names = [part for rule in rules for part in rule.split(":=")]
     names += [each.name for each in node.parameters]
-    is_told = all(map(_NAME.fullmatch, names)) and all(each.text < 0 for each in node.parameters)
-    if not is_told or any("\0" in word for word in node.arguments):
+    is_complete = all(map(_NAME.fullmatch, names)) and all(
+        each.text < 0 for each in node.parameters
+    )
+    if not is_complete or any("\0" in word for word in node.arguments):
         return None
     words = [word for rule in rules for word in ("-r", rule)]
     for each in node.parameters:
@@ -135,7 +137,7 @@ def _arguments(node: LaunchedNode) -> tuple[str, ...] | None:
 
 
 def _yaml(value: str) -> str:
-    """A value as it was written in JSON, or else a text."""
+    """Return a value as YAML: JSON as it is, everything else as a text."""
     try:
         json.loads(value)
     except ValueError:

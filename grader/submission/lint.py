@@ -1,8 +1,8 @@
-"""What the source of a submission shows that is seldom meant: lint findings, for a diagnosis.
+"""Lints the source of a submission for what is seldom meant; the findings are for a diagnosis.
 
-Made once, where a submission is read. What each kind says, `LintFinding` of
-`grader.recording.observations` tells. Nothing of it is wrong by itself; a rule speaks of it where
-something has gone wrong that it explains.
+Runs once, where a submission is read. `LintFinding` of `grader.recording.observations` describes
+each kind. No finding is an error by itself; a rule of the diagnosis reports it where it explains
+one.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
 from grader.submission.scopes import Function
 
-#: So many slips are told of, and so much of a name or a line [characters].
+#: So many findings are kept, and so much of a name or a line [characters].
 MOST, LONGEST = 20, 300
-#: Sources that are longer are not looked at [characters].
+#: Longer sources are not linted [characters].
 MOST_SOURCE = 200_000
 #: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
 ALIKE = 0.85
@@ -29,23 +29,23 @@ ALIKE = 0.85
 SHORT = 3
 SPINS = ("spin", "spin_once", "spin_until_future_complete", "add_node")
 THREADS = ("Thread", "Process", "Timer")
-#: What catches every error, and what shows the one that is being handled without naming it.
+#: Exceptions that catch every error, and functions that show the one that is being handled.
 CATCH_ALL = ("Exception", "BaseException")
 SHOWS = ("print_exc", "format_exc", "print_exception", "exc_info", "exception")
-#: What reads or sets attributes by names that nobody sees.
+#: Functions that read or set attributes by names which the syntax tree does not show.
 BY_NAME = ("getattr", "setattr", "hasattr", "vars", "locals", "globals", "eval", "exec", "__dict__")
 
 
 @dataclass
 class Names:
-    """What all files together have.
+    """The names in all files together.
 
     Attributes:
         read: names of attributes that are read anywhere.
         functions: those that are defined anywhere, by name.
         bound: names that anything is assigned to, or that are arguments.
         kept: names of attributes that anything is assigned to.
-        handed_over: names that any call is given, and functions that a lambda calls.
+        passed: names that any call is given, and functions that a lambda calls.
     """
 
     read: set[str] = field(default_factory=set)
@@ -53,10 +53,10 @@ class Names:
     bound: set[str] = field(default_factory=set)
     kept: set[str] = field(default_factory=set)
     classes: set[str] = field(default_factory=set)
-    handed_over: set[str] = field(default_factory=set)
+    passed: set[str] = field(default_factory=set)
 
     def add(self, tree: ast.AST) -> None:
-        """What one file has."""
+        """Add the names in one file."""
         for node in ast.walk(tree):
             match node:
                 case ast.Attribute(attr=name, ctx=ast.Load()):
@@ -70,17 +70,17 @@ class Names:
                 case ast.ClassDef(name=name):
                     self.classes.add(name)
                 case ast.Call(args=args, keywords=words):
-                    self.handed_over |= {_last(each) for each in (*args, *(w.value for w in words))}
+                    self.passed |= {_last(each) for each in (*args, *(w.value for w in words))}
                 case ast.Lambda(body=body):
-                    self.handed_over |= _called_in(body)
+                    self.passed |= _called_in(body)
         for node in ast.walk(tree):  # self.x += 1 reads it as well
             if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Attribute):
                 self.read.add(node.target.attr)
 
     def callbacks(self) -> set[str]:
-        """Return the functions that are handed over to be called, and all that these call."""
+        """Return the functions that are passed as callbacks, and all that these call."""
         found: set[str] = set()
-        waiting = list(self.handed_over)
+        waiting = list(self.passed)
         while waiting:
             name = waiting.pop()
             if name in self.functions and name not in found:
@@ -90,7 +90,7 @@ class Names:
 
 
 def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
-    """The slips in files of a submission, by their paths below its root; none if it cannot look."""
+    """Lint files of a submission, by their paths below its root; () if they cannot be read."""
 
     def lies(name: str) -> bool:
         return (root / name).is_dir() or (root / f"{name}.py").is_file()
@@ -121,11 +121,11 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
 def find(
     sources: Mapping[str, str], lies: Callable[[str], bool] = lambda _: False
 ) -> list[LintFinding]:
-    """The findings in some files.
+    """Return the findings in some files.
 
     Args:
         sources: file -> its text; what cannot be parsed is left out.
-        lies: whether there is a module of this name, as 'folder/name', in what was handed in.
+        lies: whether there is a module of this name, as 'folder/name', in the submission.
 
     Raises:
         RecursionError, MemoryError: too deep for Python.
@@ -152,12 +152,14 @@ def find(
             for kind, name, near, line in scopes.not_declared(tree)
         ]
         found += _without_brackets(tree, names, file)
-        found += _handed_over(tree, names, file)
+        found += _passed(tree, names, file)
     if not names.read & {"call_async", "call"} and not words:
-        found += [slip for file, tree in trees.items() for slip in _unsent(tree, file)]
-    found += [slip for file, tree in trees.items() for slip in _beside(tree, file, lies)]
+        found += [finding for file, tree in trees.items() for finding in _unsent(tree, file)]
+    found += [finding for file, tree in trees.items() for finding in _beside(tree, file, lies)]
     callbacks = names.callbacks()
-    found += [slip for file, tree in trees.items() for slip in _swallows(tree, callbacks, file)]
+    found += [
+        finding for file, tree in trees.items() for finding in _swallows(tree, callbacks, file)
+    ]
     return list(dict.fromkeys(found))
 
 
@@ -166,7 +168,7 @@ def _finding(kind: LintKind, name: str, near: str, file: str, line: int) -> Lint
 
 
 def _beside(tree: ast.AST, file: str, lies: Callable[[str], bool]) -> Iterator[LintFinding]:
-    """Modules that lie in the package that asks for them as if they lay beside it."""
+    """Yield modules of the importing package that are imported as if they lay beside it."""
     folder = file.rpartition("/")[0]
     for node in ast.walk(tree):
         match node:
@@ -190,7 +192,7 @@ def _methods(of: ast.ClassDef) -> list[Function]:
 
 
 def _set_in(node: ast.AST) -> dict[str, int]:
-    """The attributes of self that are set in there -> where first."""
+    """Map the attributes of self that are set below a node to the line where first."""
     lines: dict[str, int] = {}
     for each in ast.walk(node):
         match each:
@@ -200,7 +202,7 @@ def _set_in(node: ast.AST) -> dict[str, int]:
 
 
 def _of_the_start(of: ast.ClassDef) -> set[str]:
-    """The attributes that are there when the first callback is called."""
+    """Return the attributes that are set when the first callback is called."""
     inits = (method for method in _methods(of) if method.name == "__init__")
     found = {name for init in inits for name in _set_in(init)}
     for node in of.body:
@@ -220,7 +222,7 @@ def _unread(of: ast.ClassDef, names: Names, file: str) -> Iterator[LintFinding]:
 
 
 def misspelt(name: str, other: str) -> bool:
-    """Whether one name is the other, in other words a little wrong."""
+    """Whether one name is a misspelling of the other."""
     one, two = name.lower().split("_"), other.lower().split("_")
     if "".join(one) == "".join(two):
         return True
@@ -230,7 +232,7 @@ def misspelt(name: str, other: str) -> bool:
         others = [pair for pair in zip(one, two, strict=True) if pair[0] != pair[1]]
         if any(min(map(len, pair)) < SHORT for pair in others):
             return False
-    alike = SequenceMatcher(None, name, other)  # the first two take little time, and say no less
+    alike = SequenceMatcher(None, name, other)  # the first two take little time, and are as sure
     return min(alike.real_quick_ratio(), alike.quick_ratio()) >= ALIKE and alike.ratio() >= ALIKE
 
 
@@ -249,13 +251,13 @@ def _of_methods(of: ast.ClassDef, file: str) -> Iterator[LintFinding]:
             yield _finding("without_self", method.name, "", file, method.lineno)
 
 
-# Names that were to be somebody else's ------------------------------------------------------------
+# Variables that were meant as attributes ---------------------------------------------------------
 
 
 def _meant_for_self(
     of: ast.ClassDef, method: Function, names: Names, file: str
 ) -> Iterator[LintFinding]:
-    """A variable that nobody reads, where an attribute has its name."""
+    """Yield variables that are never read, where an attribute has the same name."""
     start = _of_the_start(of)
     for name, line in scopes.unread(method).items():
         if name in start and name in names.read:
@@ -266,7 +268,7 @@ def _meant_for_self(
 
 
 def _without_brackets(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
-    """Functions that stand there where only what they return tells anything."""
+    """Yield functions that are not called where only their result makes sense."""
     for node in ast.walk(tree):
         asked: Sequence[ast.expr] = ()
         match node:
@@ -291,7 +293,7 @@ def _without_brackets(tree: ast.AST, names: Names, file: str) -> Iterator[LintFi
 
 
 def _leaves(test: ast.expr) -> Iterator[ast.expr]:
-    """What a condition is made of."""
+    """Yield the operands of a condition."""
     match test:
         case ast.BoolOp(values=values):
             for value in values:
@@ -304,8 +306,8 @@ def _leaves(test: ast.expr) -> Iterator[ast.expr]:
             yield test
 
 
-def _handed_over(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
-    """What a thread or an executor is given."""
+def _passed(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
+    """Yield what a thread or an executor is wrongly given: a call's result, or a class."""
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call):
             continue
@@ -327,7 +329,7 @@ def _handed_over(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding
 def _returns_nothing(function: Function | None) -> bool:
     return function is not None and not any(
         isinstance(node, ast.Return) and node.value is not None
-        for node in scopes.own_nodes(function)
+        for node in scopes.scope_nodes(function)
     )
 
 
@@ -344,21 +346,21 @@ def _last(called: ast.expr) -> str:
 
 
 def _unsent(tree: ast.AST, file: str) -> Iterator[LintFinding]:
-    """Requests that are made, where nothing ever calls a service."""
+    """Yield requests that are made, where nothing ever calls a service."""
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(value=made, attr="Request")):
                 yield _finding("unsent", ast.unparse(made), "", file, node.lineno)
 
 
-# Errors that nobody hears of ----------------------------------------------------------------------
+# Errors that are never shown ----------------------------------------------------------------------
 
 
 def _swallows(tree: ast.AST, callbacks: set[str], file: str) -> Iterator[LintFinding]:
-    """Each `except` in a callback that catches every error, and neither raises nor shows it."""
+    """Yield each `except` in a callback that catches all errors, and neither raises nor shows."""
     for function in ast.walk(tree):
         if isinstance(function, Function) and function.name in callbacks:
-            for node in scopes.own_nodes(function):
+            for node in scopes.scope_nodes(function):
                 if isinstance(node, ast.ExceptHandler) and _catches_all(node) and _is_silent(node):
                     yield _finding("swallows", function.name, "", file, node.lineno)
 

@@ -1,7 +1,7 @@
-"""package.xml, as far as colcon goes by it: a ROS package or none, its name, its build type.
+"""Reads a package.xml as far as colcon does: whether it is a ROS package, its name, its build type.
 
-What has to stand in it is by catkin_pkg, which colcon reads it with (`package.py`: `parse_package`,
-`PackageFolder.validate`).
+The required elements are those of catkin_pkg, which colcon parses it with (`package.py`:
+`parse_package`, `PackageFolder.validate`).
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ class _HasDoctype(Exception):
 
 @dataclass(frozen=True)
 class Manifest:
-    """What a package.xml says.
+    """The content of a package.xml.
 
     Attributes:
         name: of the package; '' where it has none that can be used.
-        build_type: "ament_python"; '' where it says none, None where it depends on a condition.
-        fault: why colcon does not take it for a ROS package, as what follows the file's name; ''
-            where it does.
+        build_type: "ament_python"; '' where it has none, None where it depends on a condition.
+        fault: why it is no ROS package for colcon, as what follows the file's name; '' where it
+            is one.
     """
 
     name: str

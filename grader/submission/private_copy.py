@@ -1,14 +1,13 @@
-"""A copy of what was handed in, for its runs alone: they see nothing that lies beside it.
+"""Copies a submission for its runs alone: they see nothing that lies beside it.
 
-A submission's process that ran in the place where it was handed in could read its neighbours, and
-write into them and into its own source. So there is one copy for a grading, which nobody may write
-into: its runs are of the same files, whatever becomes of those that were handed in. Each run gets
-what is in it once more, to do as it likes (`grader.run.processes.levels.prepare`): in the memory of
-its process where that has a file system of its own, else in the run's folder. People are shown
-paths as they were handed in.
+A submission's process that ran in the original place could read its neighbours, and write into them
+and into its own source. So there is one read-only copy for a grading: all of its runs are of the
+same files, whatever becomes of the original. Each run gets a writable copy of that
+(`grader.run.processes.levels.prepare`): in the memory of its process where that has a file system
+of its own, else in the run's folder. People are shown the original paths.
 
-Of a folder come all files but what a system or a program has left there, as out of a zip. Links
-that stay inside remain links; what is no file, no folder and no such link is left out.
+All files of a folder are copied but what a system or a program has left there, as out of a zip.
+Links that stay inside remain links; what is no file, no folder and no such link is left out.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ from grader.submission.folder import (
 MAX_LEVELS: Final = 32  # of folders; what lies deeper is left out
 _CHUNK_BYTES: Final = 1 << 20
 
-#: Folders in which nothing to start is looked for: they come last, if there is room for them.
+#: Folders that are not searched for what to start: they are copied last, if there is room.
 _LAST: Final = {"venv", "env", "test", "tests", "build", "install", "log"}
 _BINARY: Final = getattr(os, "O_BINARY", 0)
 _READ: Final = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | _BINARY
@@ -54,14 +53,14 @@ _LEAST: Final = 8
 
 @dataclass(frozen=True)
 class PrivateCopy:
-    """Where a submission's runs find it.
+    """The copy of a submission for its runs.
 
     Attributes:
         folder: all of it, absolute, without links in its own path.
-        origin: what was handed in: the folder that it is of, or the zip.
-        prefix: how paths into it begin, the part of them that is another each time.
+        origin: the original: the folder that was copied, or the zip.
+        prefix: how paths into the copy begin, the part of them that is another each time.
         shown: what people are shown instead of that.
-        beside: where a single file was handed in; None for all else.
+        beside: the folder of a single file that was submitted; None for all else.
         remarks: for the result: what was left out.
     """
 
@@ -73,18 +72,18 @@ class PrivateCopy:
     remarks: tuple[Message, ...] = ()
 
     def of(self, path: Path) -> Path:
-        """Where in the copy a path is that was found; what is in it stays."""
+        """Map a path of the original into the copy; one that is in the copy stays."""
         if path.is_relative_to(self.folder):
             return path
         return self.folder / path.relative_to(self.origin)
 
     def moved(self, folder: Path) -> PrivateCopy:
-        """The same in another folder of this name."""
+        """Return the same copy, moved to another folder of this name."""
         is_all = self.prefix == str(self.folder)
         return replace(self, folder=folder, prefix=str(folder if is_all else folder.parent))
 
-    def as_handed_in(self, text: str) -> str:
-        """What a run has printed, with the paths that it would have printed in the first place."""
+    def with_original_paths(self, text: str) -> str:
+        """Replace the copy's paths in a run's output by the original ones."""
         text = text.replace(self.prefix, self.shown)
         first, *parts = _LEFT_OUT.split(text)
         made = [self._with_whole_end(first)]
@@ -93,7 +92,7 @@ class PrivateCopy:
         return "".join(made)
 
     def _with_whole_end(self, text: str) -> str:
-        """A text that may have been cut within a path."""
+        """Replace the start of the copy's path at the end of a text that was cut within it."""
         for size in range(len(self.prefix) - 1, _LEAST - 1, -1):
             if text.endswith(self.prefix[:size]):
                 return text[:-size] + self.shown[:size]
@@ -107,11 +106,11 @@ class PrivateCopy:
 
 
 def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
-    """Copy what was handed in, unless it was unpacked or mended into a place of our own.
+    """Copy a submission, unless it was unpacked or completed in the scratch folder already.
 
     Args:
-        path: what was handed in.
-        root: where it was found to start; below `scratch` if that is our own already.
+        path: the submission.
+        root: the folder to start it from; below `scratch` if it is a copy already.
         scratch: a folder for the copy, without links in its path.
 
     Raises:
@@ -121,9 +120,9 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
     """
     origin = path.resolve() if path.is_dir() else path.parent.resolve() / path.name
     if root.is_relative_to(scratch):
-        own = scratch / root.relative_to(scratch).parts[0]
-        _close(own)
-        return PrivateCopy(own, origin, str(own), str(origin))
+        unpacked = scratch / root.relative_to(scratch).parts[0]
+        _close(unpacked)
+        return PrivateCopy(unpacked, origin, str(unpacked), str(origin))
     base = origin if path.is_dir() else origin.parent
     copies = scratch / "copy"
     folder = copies / (base.name or "submission")
@@ -145,7 +144,7 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
 
 
 def copy_folder(top: Path, into: Path) -> tuple[Message, ...]:
-    """Copy a folder into a new one; what was left out, for the result.
+    """Copy a folder into a new one; return remarks on what was left out.
 
     Raises:
         SubmissionError: it has too many files, or too large ones.
@@ -157,10 +156,10 @@ def copy_folder(top: Path, into: Path) -> tuple[Message, ...]:
     return copying.remarks()
 
 
-def not_handed_in(
+def missing_neighbours(
     name: str, copy: PrivateCopy | None, modules: Iterable[str]
 ) -> tuple[Message, ...]:
-    """Say which modules lie beside a single file that imports them, and so are missing.
+    """Return notes on modules that lie beside a single file that imports them, and are missing.
 
     Args:
         name: what the file is called.
@@ -181,7 +180,7 @@ def not_handed_in(
 
 
 def _lying(folder: Path, module: str) -> str:
-    """What of a folder an import would have found, if it finds nothing now; else ''."""
+    """Name the file of a folder that an import would have found, if it finds none now; else ''."""
     with suppress(ImportError, ValueError, OSError):  # no such name can be imported at all
         for file, called in ((f"{module}.py", f"{module}.py"), (f"{module}/__init__.py", module)):
             if (folder / file).is_file() and module not in stdlib_module_names:
@@ -192,7 +191,7 @@ def _lying(folder: Path, module: str) -> str:
 
 
 def _close(folder: Path) -> None:
-    """Let all in a folder be read and nothing written; links that lead out of it go."""
+    """Make all of a folder read-only, and remove links that lead out of it."""
     base = os.path.realpath(folder)
     for at, folders, files in os.walk(folder, topdown=False):
         for name in (*folders, *files):
@@ -212,8 +211,8 @@ class _Copying:
 
     Attributes:
         top: the folder that is copied, without links in its path.
-        entries: so many files, folders and links have been looked at.
-        size: so many bytes have been copied.
+        entries: how many files, folders and links have been seen.
+        size: how many bytes have been copied.
         outside, failed: what was left out, and why.
         pending, last: folders to be copied, into which, and how many levels down.
     """
@@ -227,7 +226,7 @@ class _Copying:
     last: list[tuple[Path, Path, int]] = field(default_factory=list)
 
     def remarks(self) -> tuple[Message, ...]:
-        """What to say about the copy."""
+        """Return the remarks on what was left out."""
         found = []
         if self.outside:
             found.append(
@@ -314,7 +313,7 @@ class _Copying:
 
     @contextmanager
     def _reading(self, source: Path) -> Iterator[None]:
-        """What is wrong with one file is its own matter."""
+        """Note the file of an OSError as left out, unless the machine is at fault."""
         try:
             yield
         except OSError as error:

@@ -1,4 +1,4 @@
-"""What a Python file says of itself, read from its syntax tree; nothing is imported or run."""
+"""Reads from the syntax tree of a Python file what it defines; nothing is imported or run."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PythonSource:
     is_refused: bool = False  # by `python3 FILE`, for its bytes; an import may pass over them
 
     def surely_lacks(self, name: str) -> bool:
-        """Tell whether an import of the file could not give it this name."""
+        """Whether an import of the file could not define this name."""
         return self.parses and not self.open_ended and name not in self.names
 
 
@@ -52,7 +52,7 @@ def parse(data: bytes, file_name: str) -> ast.Module:
 
 
 def read_source(path: Path) -> PythonSource:
-    """Look at a student's file.
+    """Read a student's file.
 
     One that does not parse is no error here: the run shows the interpreter's own message.
     """
@@ -64,14 +64,14 @@ def read_source(path: Path) -> PythonSource:
     except SyntaxError:
         return PythonSource(
             parses=False,
-            has_guard=any(map(_looks_like_guard, data.splitlines())),
+            has_guard=any(map(_begins_guard, data.splitlines())),
             has_main=bool(_UNPARSED_MAIN.search(data)),
         )
     return replace(_seen(tree), is_refused=bool(encoding.fault(data)))
 
 
-def _looks_like_guard(line: bytes) -> bool:
-    """Tell whether a line begins as `if __name__ == "__main__"` does, without a look at the rest.
+def _begins_guard(line: bytes) -> bool:
+    """Whether a line begins as `if __name__ == "__main__"` does, whatever its rest is.
 
     In steps, since an expression for all of it would try each `__name__` with each `__main__`.
     """

@@ -1,8 +1,8 @@
-"""Reads what was handed in, in a copy of this process with limits of time and memory.
+"""Reads a submission in a copy of this process with limits of time and memory.
 
-A file can be made so that its parser takes all memory, or falls over. So nothing that was handed in
-is read in this process: each submission is read by a copy (`grader.limited`), which gives one
-answer (`answer.py`) and reaches nothing else.
+A file can be made so that its parser uses all memory, or crashes. So no submission is read in this
+process: each is read by a copy (`grader.limited`), which gives one answer, a line of strict JSON,
+and reaches nothing else.
 """
 
 from __future__ import annotations
@@ -12,32 +12,112 @@ import os
 import signal
 import sys
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from grader import limited, strict_json
-from grader.errors import SubmissionError, UsageError
+from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
 from grader.submission import encoding, folder, unpacking, whole
-from grader.submission.answer import MAX_BYTES, Answer, decoded
 from grader.submission.finding import find, find_inspected
 from grader.submission.folder import USUAL_NAME, shown
 from grader.submission.imports import read_imports
 from grader.submission.lint import lint
 from grader.submission.set_ups import NotInspected
-from grader.submission.start import Submission, Whole
+from grader.submission.start import Imports, Submission, Whole
+from grader.text import clip
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.scenes.package.inspection import Inspection
 
-#: What the reading of one submission may take. A file of MAX_SOURCE_BYTES of ordinary Python takes
+#: No answer is longer.
+_MAX_ANSWER: Final = 1_000_000
+#: So many modules are in an answer, of those that are imported surely and of the others.
+_MAX_MODULES: Final = 500
+_MAX_NAME: Final = 200
+#: So many notes are in an answer, and so much of each [characters].
+_MAX_NOTES: Final = 20
+_MAX_NOTE: Final = 1000
+
+_REFUSALS: Final = {each.whose: each for each in (SubmissionError, UsageError)}
+
+#: The limits of reading one submission. A file of MAX_SOURCE_BYTES of ordinary Python takes
 #: some 150 MB; an ordinary submission takes 0.1 s of a processor, a zip of MAX_BYTES two.
 LIMITS: Final = limited.WorkLimits(
-    cpu_s=10.0, wall_s=120.0, memory_bytes=512_000_000, answer_bytes=MAX_BYTES
+    cpu_s=10.0, wall_s=120.0, memory_bytes=512_000_000, answer_bytes=_MAX_ANSWER
 )
 _PLAIN: Final = msg("Hand in nothing but the files of your package, written plainly.")
 _PARSER_BREAKS: Final = (signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT)
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """The outcome of reading a submission; one of these.
+
+    Attributes:
+        found: what to start.
+        asks: for an inspection.
+        refused: why the submission cannot be used, and `whose` turn it is.
+        unable: why the machine cannot read it, and the system's `errno` of that.
+        failed: the grader's own mistake, in words.
+    """
+
+    found: Submission | None = None
+    asks: NotInspected | None = None
+    refused: Message = NOTHING
+    whose: str = ""
+    unable: str = ""
+    errno: int | None = None
+    failed: str = ""
+
+    @classmethod
+    def of_found(cls, submission: Submission) -> Self:
+        """Answer with a submission, its lists and texts cut to their limits."""
+        imports = Imports(_some(submission.imports.surely), _some(submission.imports.perhaps))
+        notes = submission.notes[:_MAX_NOTES]
+        short = tuple(note.map_texts(partial(clip, limit=_MAX_NOTE)) for note in notes)
+        return cls(replace(submission, notes=short, imports=imports))
+
+    @classmethod
+    def of_refusal(cls, error: GraderError) -> Self:
+        """Answer with the error that refuses a submission."""
+        return cls(refused=error.message, whose=error.whose)
+
+    def submission(self) -> Submission:
+        """Return the submission that was found.
+
+        Raises:
+            SubmissionError, UsageError, OSError, NotInspected: that was the answer.
+            GraderFailure: the copy has made a mistake.
+        """
+        if self.whose in _REFUSALS:
+            raise _REFUSALS[self.whose](self.refused)
+        if self.unable:
+            raise OSError(self.errno, self.unable)
+        if self.asks is not None:
+            raise self.asks
+        if self.found is None:
+            failed = self.failed or "the answer makes no sense"
+            raise GraderFailure(f"the submission could not be read: {failed[-4000:]}")
+        return self.found
+
+
+def decoded(line: bytes) -> _Answer:
+    """Decode an answer; one that makes no sense becomes that of a failure."""
+    try:
+        if len(line) > _MAX_ANSWER:
+            raise ValueError(f"an answer of {len(line)} bytes")
+        return strict_json.of_line(_Answer, line)
+    except (ValueError, RecursionError):
+        return _Answer()
+
+
+def _some(modules: dict[str, str]) -> dict[str, str]:
+    named = ((name, where) for name, where in modules.items() if len(name) <= _MAX_NAME)
+    return dict(islice(named, _MAX_MODULES))
 
 
 def read(
@@ -52,10 +132,10 @@ def read(
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
     Args:
-        again: what the first reading asked for, and what the inspection has answered.
+        again: the first reading's request for an inspection, and that inspection.
 
     Raises:
-        NotInspected: it is a package; read it again, with what an inspection says.
+        NotInspected: it is a package; read it again, with its inspection.
         SubmissionError: as there, or it takes more than the limits.
         UsageError, OSError: as there.
         GraderFailure: the copy has failed.
@@ -77,13 +157,13 @@ def read(
     return answer.submission()
 
 
-def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> Answer:
-    """The answer for a copy that has given none."""
+def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> _Answer:
+    """Make the answer for a copy that reached a limit and gave none."""
     too_much = _too_much(hit)
     if not too_much:
-        return Answer(failed=f"the process for it {hit.why!s}")
+        return _Answer(failed=f"the process for it {hit.why!s}")
     at = bytes(place).rstrip(b"\0").decode("utf-8", "replace")
-    return Answer.of_refusal(
+    return _Answer.of_refusal(
         SubmissionError(
             "{name} cannot be read: {too_much}{place}. {plain}",
             name=shown(name),
@@ -95,7 +175,7 @@ def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> Answer:
 
 
 def _too_much(hit: limited.LimitHit) -> Message:
-    """What was too much; nothing where the reading ended for a reason of ours."""
+    """Say which limit was exceeded; NOTHING where the reading failed by our own fault."""
     if isinstance(hit, limited.Slow):
         return msg("that takes more than {wall_s} s", wall_s=int(LIMITS.wall_s))
     if isinstance(hit, limited.NoEnd):
@@ -130,30 +210,30 @@ def _answered(
     return strict_json.line(_answer(found, path))
 
 
-def _answer(found: Callable[[], Submission], path: Path) -> Answer:
-    """What there is to start, or why there is nothing."""
+def _answer(found: Callable[[], Submission], path: Path) -> _Answer:
+    """Find what to start, and answer with it or with the error."""
     try:
-        return Answer.of_found(found())
+        return _Answer.of_found(found())
     except NotInspected as asks:
-        return Answer(asks=asks)
+        return _Answer(asks=asks)
     except (SubmissionError, UsageError) as error:
-        return Answer.of_refusal(error)
+        return _Answer.of_refusal(error)
     except OSError as error:
-        return Answer(unable=error.strerror or str(error), errno=error.errno)
+        return _Answer(unable=error.strerror or str(error), errno=error.errno)
     except RecursionError:
         name = shown(path.name or path.resolve().name)
         deep = SubmissionError("{name} is nested too deeply to be read.", name=name)
-        return Answer.of_refusal(deep)
+        return _Answer.of_refusal(deep)
     except MemoryError:
         raise
     except Exception:
         import traceback  # here: most submissions are read without
 
-        return Answer(failed=traceback.format_exc())
+        return _Answer(failed=traceback.format_exc())
 
 
 def _with_its_source(found: Submission, path: Path) -> Submission:
-    """The same with what its source shows: imports, faults and lint findings."""
+    """Add to a submission what its source shows: imports, faults and lint findings."""
     only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
     assert not isinstance(found.start, Whole)
     imports = read_imports(found.root, found.start, only)
@@ -163,7 +243,7 @@ def _with_its_source(found: Submission, path: Path) -> Submission:
 
 
 def _note_what_is_read(place: mmap.mmap, *folders: Path) -> None:
-    """Write down which file of these folders is opened, before it is: it may be the last."""
+    """Record which file of these folders is opened, before it is: it may be the last."""
     bases = [str(folder.resolve()) + os.sep for folder in folders]
 
     def note(event: str, arguments: tuple[Any, ...]) -> None:

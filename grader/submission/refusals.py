@@ -1,4 +1,4 @@
-"""Why there is nothing to start, in words that a student can act on."""
+"""Errors where there is nothing to start, in words that a student can act on."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from grader.submission.folder import (
     HAND_IN,
     MAX_ENTRIES,
     UNREADABLE,
-    HandedInFolder,
+    SubmissionFolder,
     listed,
     near,
     shown,
@@ -26,7 +26,7 @@ _OTHER_ARCHIVES: Final = {".gz", ".bz2", ".tbz2", ".xz", ".txz", ".zst", ".rar",
 
 
 def advice(path: Path) -> Message:
-    """What to hand in instead of a file of this kind."""
+    """Say what to hand in instead of a file of this kind."""
     kind = path.suffix.lower()
     if kind == ".py":
         return msg(
@@ -42,7 +42,7 @@ def advice(path: Path) -> Message:
 
 
 def missing(path: Path) -> UsageError:
-    """Say that there is no such path."""
+    """The error that there is no such path."""
     folder = path.parent
     if not folder.is_dir():
         return UsageError(
@@ -62,7 +62,7 @@ def missing(path: Path) -> UsageError:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """What is wrong with one file is the submission's matter, and not the machine's.
+    """Turn an OSError of one file of the submission into a SubmissionError.
 
     Raises:
         SubmissionError: such an error; it says which file cannot be read.
@@ -84,22 +84,22 @@ def readable(path: Path) -> Iterator[None]:
         ) from error
 
 
-def no_python(handed_in: HandedInFolder, files: list[Path]) -> SubmissionError:
-    """Say that there is nothing in Python, and what there is."""
-    names = [handed_in.called(file) for file in files]
+def no_python(submitted: SubmissionFolder, files: list[Path]) -> SubmissionError:
+    """The error that there is nothing in Python, with what there is."""
+    names = [submitted.called(file) for file in files]
     holds = msg(
         "it holds: {names}", names=listed(names) or msg("only folders that are not searched")
     )
     if any(file.suffix.lower() in CPP or file.name == "CMakeLists.txt" for file in files):
         return SubmissionError(
             "{name} has no Python node, but C++ ({holds}). Only Python can be graded. {hand_in}",
-            name=handed_in.name,
+            name=submitted.name,
             holds=holds,
             hand_in=HAND_IN,
         )
     return SubmissionError(
         "{name} has no Python file that could be the node ({holds}). {hand_in}",
-        name=handed_in.name,
+        name=submitted.name,
         holds=holds,
         hand_in=HAND_IN,
     )

@@ -1,4 +1,4 @@
-"""Names that a function sets for itself, where those round it were to be set."""
+"""Finds variables that a function sets as its own, where an outer one was meant."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 def not_declared(
     node: ast.AST, outer: tuple[ast.AST, ...] = ()
 ) -> Iterator[tuple[LintKind, str, str, int]]:
-    """Functions that set a name which what is round them has set, too.
+    """Yield names that a function sets, and a scope around it sets, too.
 
     Yields: the kind of `LintFinding`, the name, the declaration that lacks, and a line.
     """
@@ -38,12 +38,12 @@ def not_declared(
 
 
 def _functions_in(node: ast.AST) -> list[Function]:
-    """The functions that are defined there, but not in one of them or in a class."""
-    return [each for each in own_nodes(node) if isinstance(each, Function)]
+    """Return the functions that a scope defines, without those in its functions and classes."""
+    return [each for each in scope_nodes(node) if isinstance(each, Function)]
 
 
-def own_nodes(node: ast.AST) -> Iterator[ast.AST]:
-    """What belongs to a scope itself: not what is in functions and classes in it."""
+def scope_nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a scope itself, without those in its functions and classes."""
     waiting = list(ast.iter_child_nodes(node))
     while waiting:
         each = waiting.pop()
@@ -54,13 +54,13 @@ def own_nodes(node: ast.AST) -> Iterator[ast.AST]:
 
 @lru_cache  # of a module it is asked for each name in each of its functions
 def _assigned(scope: ast.AST) -> dict[str, int]:
-    """The names that a scope has for itself, by plain assignments -> where first."""
+    """Map the local names of a scope, by plain assignments, to the line where first."""
     lines: dict[str, int] = {}
     others: set[str] = set()
     arguments = scope.args if isinstance(scope, Function) else None
     if arguments is not None:
         others |= {each.arg for each in ast.walk(arguments) if isinstance(each, ast.arg)}
-    for node in own_nodes(scope):
+    for node in scope_nodes(scope):
         match node:
             case ast.Global(names=names) | ast.Nonlocal(names=names):
                 others |= set(names)
@@ -78,7 +78,7 @@ def _plain(target: ast.expr) -> list[ast.Name]:
 
 
 def unread(function: Function) -> dict[str, int]:
-    """The names that a function sets for itself and never reads -> where first."""
+    """Map the local names that a function never reads to the line where first."""
     loads = {
         node.id
         for node in ast.walk(function)
@@ -106,11 +106,11 @@ def _is_read_beside(home: ast.AST, function: Function, name: str) -> bool:
 
 def _is_read_first(function: Function, name: str) -> bool:
     """Whether a function reads a name no later than it sets it."""
-    uses = [n for n in own_nodes(function) if isinstance(n, ast.Name) and n.id == name]
+    uses = [n for n in scope_nodes(function) if isinstance(n, ast.Name) and n.id == name]
     reads = [node.lineno for node in uses if isinstance(node.ctx, ast.Load)]
     sets = [node.lineno for node in uses if isinstance(node.ctx, ast.Store)]
     adds = any(
         isinstance(n, ast.AugAssign) and isinstance(n.target, ast.Name) and n.target.id == name
-        for n in own_nodes(function)
+        for n in scope_nodes(function)
     )
     return adds or bool(reads and sets and min(reads) <= min(sets))

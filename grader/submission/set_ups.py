@@ -1,7 +1,7 @@
-"""What the set-up files of a submission name to be started: what an inspection says of them.
+"""What the set-up files of a submission declare, by the inspection that has evaluated them.
 
-A setup.py is run to learn that, elsewhere and confined; what comes of it is a claim of the
-submission's, which is held against its files here.
+A setup.py is run for that, elsewhere and confined; the result is a claim of the submission's, which
+is compared with its files here.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
 from grader.message import NOTHING, Message, msg
-from grader.submission.folder import HandedInFolder, read_bounded, shown
+from grader.submission.folder import SubmissionFolder, read_bounded, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.scenes.package.inspection import SetUp, Told
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
-#: So many folders with set-up files are asked about.
+#: So many folders with set-up files are inspected.
 MOST: Final = 50
 
 _TARGET: Final = re.compile(r"(\w+(?:\.\w+)*)\s*:\s*(\w+(?:\.\w+)*)\s*(?:\[.*\])?")
@@ -28,12 +28,12 @@ _TARGET: Final = re.compile(r"(\w+(?:\.\w+)*)\s*:\s*(\w+(?:\.\w+)*)\s*(?:\[.*\])
 
 @dataclass(eq=False)
 class NotInspected(Exception):
-    """What there is to start only an inspection can tell.
+    """The submission is a package: only an inspection can find out what there is to start.
 
     Attributes:
-        base: all of what was handed in, where it lies unpacked.
+        base: the whole submission, where it lies unpacked.
         folders: those with set-up files, below it.
-        inside: the archives in what was handed in that are looked into, the innermost first.
+        inside: the archives in the submission that were unpacked, the innermost first.
     """
 
     base: Path
@@ -43,7 +43,7 @@ class NotInspected(Exception):
 
 @dataclass(frozen=True)
 class ConsoleScript:
-    """`name = module:function`, as `file` says."""
+    """An entry point `name = module:function`, as `file` declares it."""
 
     name: str
     module: str
@@ -53,30 +53,30 @@ class ConsoleScript:
 
 @dataclass(frozen=True)
 class PackageFolder:
-    """A folder with set-up files, and what they say.
+    """A folder with set-up files, and what they declare.
 
     Attributes:
-        said: None of a folder without them.
+        set_up: None for a folder without them.
     """
 
     folder: Path
     scripts: tuple[ConsoleScript, ...] = ()
-    said: SetUp | None = None
+    set_up: SetUp | None = None
 
     @property
-    def told(self) -> Told | None:
-        """What its set-up says."""
-        return self.said.told if self.said else None
+    def declared(self) -> Told | None:
+        """What its set-up files declare."""
+        return self.set_up.told if self.set_up else None
 
     @property
     def problem(self) -> Message:
-        """A sentence on what ended its set-up; '' where that came to its end."""
+        """A sentence on the error that ended its set-up; '' where there was none."""
         from grader.scenes.package.said import how_it_ends
 
-        if self.said is None or self.said.problem is None:
+        if self.set_up is None or self.set_up.problem is None:
             return NOTHING
-        file = self.said.problem.file
-        return how_it_ends(file if file in SETUP_FILES else "setup.py", self.said.problem)
+        file = self.set_up.problem.file
+        return how_it_ends(file if file in SETUP_FILES else "setup.py", self.set_up.problem)
 
     @property
     def has_setup_py(self) -> bool:
@@ -87,7 +87,8 @@ class PackageFolder:
         """List the folders to import `module` from, best first; none lies outside the package."""
         package = module.split(".")[0]
         lie_in = dict(
-            each.partition("=")[::2] for each in (self.told.package_folders if self.told else ())
+            each.partition("=")[::2]
+            for each in (self.declared.package_folders if self.declared else ())
         )
         lies_in = Path(lie_in.get(package, ""))
         single = [str(lies_in.parent)] if lies_in.name == package else []
@@ -98,24 +99,24 @@ class PackageFolder:
         return [root for root in dict.fromkeys(roots) if root.is_relative_to(folder)] or [folder]
 
 
-def read_package(said: SetUp, handed_in: HandedInFolder) -> PackageFolder:
-    """A folder by what its set-up files say.
+def read_package(set_up: SetUp, submitted: SubmissionFolder) -> PackageFolder:
+    """Read the console scripts that the set-up files of a folder declare.
 
     Raises:
         SubmissionError: they have an entry that is no `name = module:function`, so that no tool
             could install the package.
     """
-    folder = handed_in.base / said.folder
+    folder = submitted.base / set_up.folder
     scripts: dict[str, ConsoleScript] = {}
-    for line in said.told.scripts:
+    for line in set_up.told.scripts:
         name, _, target = line.partition("=") if "=" in line else ("", "", line)
-        script = _console_script(name.strip(), target.strip(), folder, handed_in)
+        script = _console_script(name.strip(), target.strip(), folder, submitted)
         scripts.setdefault(script.name, script)
-    return PackageFolder(folder, tuple(scripts.values()), said)
+    return PackageFolder(folder, tuple(scripts.values()), set_up)
 
 
 def _console_script(
-    name: str, target: str, folder: Path, handed_in: HandedInFolder
+    name: str, target: str, folder: Path, submitted: SubmissionFolder
 ) -> ConsoleScript:
     file = _file_of(folder, name or target)
     match = _TARGET.fullmatch(target)
@@ -126,7 +127,7 @@ def _console_script(
             "{file} has the console script '{found}'.{hint} Expected 'name = "
             "package.module:function', for example 'turtle_controller = "
             "my_package.turtle_controller:main'.",
-            file=handed_in.called(file),
+            file=submitted.called(file),
             found=found,
             hint=hint,
         )
@@ -134,7 +135,7 @@ def _console_script(
 
 
 def _file_of(folder: Path, name: str) -> Path:
-    """The set-up file that names a script, as far as one has its name as it stands."""
+    """Return the set-up file that has the name of a script in it, or else setup.py."""
     files = [folder / each for each in SETUP_FILES if (folder / each).is_file()]
     named = (each for each in files if name.encode() in (read_bounded(each) or b""))
     return next(named, folder / "setup.py" if folder / "setup.py" in files else files[0])

@@ -1,4 +1,4 @@
-"""What a submission is once it has been read: what to start, from where, and what it imports."""
+"""A submission once it has been read: what to start, from where, and what it imports."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Launch:
 
 @dataclass(frozen=True)
 class Whole:
-    """Start nothing: all of it is looked at.
+    """Start nothing: all of it is inspected.
 
     Attributes:
         package: the one that is asked for, where there may be several; '' for none in particular.
@@ -78,40 +78,40 @@ class Imports:
 
 @dataclass(frozen=True)
 class Submission:
-    """What was handed in, and how it starts."""
+    """A submission, and how it starts."""
 
-    name: str  # as handed in: "alice.zip", "turtle_controller.py"
+    name: str  # of the original: "alice.zip", "turtle_controller.py"
     root: Path  # in its copy, absolute; comes first on sys.path and is the working directory
     start: EntryPoint | Script | Launch | Whole
     found: Message  # a sentence for the user: "console script turtle_controller in setup.py"
     imports: Imports = field(default_factory=Imports, compare=False)
-    #: for the result: what is wrong with it that a run does not show, and what was not started
+    #: for the result: faults that a run does not show, and what was not started
     notes: tuple[Message, ...] = field(default=(), compare=False)
-    #: what its source shows that is seldom meant
+    #: of its source
     lint_findings: tuple[LintFinding, ...] = field(default=(), compare=False)
-    #: files that it lacked, and has been given, below `root`
+    #: files that it lacked and that were added, below `root`
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none
     package: Path | None = field(default=None, compare=False)
-    #: a trace of the scene package, where an inspection has seen its package as a whole
+    #: a trace of the scene package, where its whole package was inspected
     seen: object = field(default=None, compare=False, metadata=UNSTORED)
     #: the processor time that the inspection took [s]
     spent_s: float = field(default=0.0, compare=False, metadata=UNSTORED)
-    #: where its runs find it; None where it lies in place
+    #: the copy for its runs; None where they use the original
     copy: PrivateCopy | None = field(default=None, compare=False, metadata=UNSTORED)
 
     @property
     def remarks(self) -> tuple[Message, ...]:
-        """For the result: its notes, and what of it was left out."""
+        """The remarks for the result: its notes, and what was left out of its copy."""
         return (*self.notes, *(self.copy.remarks if self.copy else ()))
 
     @property
     def folder(self) -> Path:
-        """All of it, as its runs find it; nobody may write into it."""
+        """The read-only folder of its files, as its runs find it."""
         return self.copy.folder if self.copy else self.root
 
     def moved(self, folder: Path) -> Submission:
-        """The same for one run, which has a copy of its own in another folder."""
+        """Return the submission as one run finds it, copied to another folder."""
         before = self.folder
         if folder == before:
             return self
@@ -125,6 +125,6 @@ class Submission:
         package, copy = self.package and there(self.package), self.copy and self.copy.moved(folder)
         return replace(self, root=there(self.root), start=start, package=package, copy=copy)
 
-    def as_handed_in(self, text: str) -> str:
-        """What a run of it has printed, with paths as if it had run where it was handed in."""
-        return self.copy.as_handed_in(text) if self.copy else text
+    def with_original_paths(self, text: str) -> str:
+        """Replace the copy's paths in a run's output by the original ones."""
+        return self.copy.with_original_paths(text) if self.copy else text

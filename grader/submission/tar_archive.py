@@ -35,7 +35,7 @@ _CHUNK_BYTES: Final = 1 << 16
 def opened(
     archive: Path, plain: Path, headers: int | None = None, budget: Budget | None = None
 ) -> Iterator[list[Member]]:
-    """What is in it.
+    """Open a tar: its members.
 
     Args:
         plain: where the tar may lie without its compression; gone afterwards.
@@ -65,7 +65,7 @@ def _decompress(archive: Path, plain: Path, budget: Budget) -> None:
     name = shown(archive.name)
     with gzip.open(archive) as source, plain.open("xb") as target:
         while chunk := source.read(_CHUNK_BYTES):
-            budget.take_bytes(name, len(chunk))
+            budget.count_bytes(name, len(chunk))
             target.write(chunk)
 
 

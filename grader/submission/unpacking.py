@@ -1,4 +1,4 @@
-"""Where the archives of one submission are unpacked: one in another, and not many."""
+"""Unpacks the archives of one submission, one inside another, up to MAX_LEVELS."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
 
 
 def is_archive(path: Path) -> bool:
-    """Tell by its name whether a file is one that can be unpacked."""
+    """Whether a file can be unpacked, by its name."""
     return path.name.lower().endswith(_ENDINGS)
 
 
 def places(scratch: Path) -> list[Path]:
-    """Where archives may be unpacked, the outermost first."""
+    """Return the folders to unpack archives into, the outermost first."""
     return [scratch / f"unpacked{level or ''}" for level in range(MAX_LEVELS)]
 
 
@@ -36,7 +36,7 @@ class Unpacking:
         self._budget: Budget | None = None
 
     def unpack(self, archive: Path) -> Path:
-        """Unpack one; the folder with what was in it.
+        """Unpack an archive; return the folder of its content.
 
         Raises:
             SubmissionError: it cannot be, or lies in too many others.

@@ -1,4 +1,4 @@
-"""What of a submission is looked at where nothing is started: all of a folder or an archive."""
+"""Finds the packages of a submission that is not started: all of a folder or an archive."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Final
 
 from grader.errors import SubmissionError
 from grader.message import msg, msg_many
-from grader.submission.folder import HandedInFolder, files_below, listed, near, shown, top_of
+from grader.submission.folder import SubmissionFolder, files_below, listed, near, shown, top_of
 from grader.submission.manifest import FILE, read_manifest
 from grader.submission.refusals import missing, readable
 from grader.submission.set_ups import SETUP_FILES
@@ -19,7 +19,7 @@ _MARKS: Final = (FILE, "CMakeLists.txt", *SETUP_FILES)
 
 
 def find(path: Path, package: str | None, scratch: Path) -> Submission:
-    """Find the packages in what was handed in.
+    """Find the packages in a submission.
 
     Args:
         package: chooses among them, by name.
@@ -39,24 +39,24 @@ def _find(path: Path, package: str | None, scratch: Path) -> Submission:
         raise missing(path)
     unpacking = Unpacking(scratch)
     if path.is_dir():
-        handed_in = HandedInFolder(name, path.resolve())
+        submitted = SubmissionFolder(name, path.resolve())
     elif is_archive(path):
-        handed_in = HandedInFolder(name, unpacking.unpack(path))
+        submitted = SubmissionFolder(name, unpacking.unpack(path))
     else:
         raise SubmissionError(
             "{name} is neither a folder nor a .zip or .tar.gz. {hand_in}",
             name=name,
             hand_in=_HAND_IN,
         )
-    files = files_below(top_of(handed_in.base))
+    files = files_below(top_of(submitted.base))
     archives = [file for file in files if is_archive(file)]
     if len(archives) == 1 and not any(file.name in _MARKS for file in files):
-        handed_in.must_hold(archives[0])
-        handed_in = HandedInFolder(name, unpacking.unpack(archives[0]))
-        files = files_below(top_of(handed_in.base))
+        submitted.must_hold(archives[0])
+        submitted = SubmissionFolder(name, unpacking.unpack(archives[0]))
+        files = files_below(top_of(submitted.base))
     folders = sorted({file.parent for file in files if file.name in _MARKS})
     if not folders:
-        names = [handed_in.called(file) for file in files]
+        names = [submitted.called(file) for file in files]
         raise SubmissionError(
             "{name} holds no ROS 2 package: no package.xml, setup.py or "
             "CMakeLists.txt (it holds: {names}). {hand_in}",
@@ -77,4 +77,4 @@ def _find(path: Path, package: str | None, scratch: Path) -> Submission:
     found = msg("a package without {file}", file=FILE)
     if names:
         found = msg_many("the package {names}", "packages {names}", len(names), names=listed(names))
-    return Submission(name, handed_in.base, Whole(package or ""), found)
+    return Submission(name, submitted.base, Whole(package or ""), found)

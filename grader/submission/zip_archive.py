@@ -24,7 +24,7 @@ _UTF_8: Final = 0x800
 
 @contextmanager
 def opened(archive: Path, most: int | None = None) -> Iterator[list[Member]]:
-    """What is in it.
+    """Open a zip: its members.
 
     Args:
         most: so large the list of members may be [bytes]; else as large as a submission's.
@@ -49,7 +49,7 @@ def opened(archive: Path, most: int | None = None) -> Iterator[list[Member]]:
 
 
 def _name(info: zipfile.ZipInfo) -> str:
-    """A member's name, also where a program writes UTF-8 and does not say so, as that of macOS."""
+    """A member's name, also where a program writes UTF-8 without its flag, as that of macOS."""
     if info.flag_bits & _UTF_8 or info.filename.isascii():
         return info.filename
     try:

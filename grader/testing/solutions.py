@@ -194,7 +194,7 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
         try:
             found = _solutions(file.data, path.parent, exercise)
         except Mistake as mistake:
-            raise ExerciseError(file.told(mistake)) from None
+            raise ExerciseError(file.describe(mistake)) from None
         for solution in found:
             changed(solution.name, solution.path, solution.changes)
     except OSError as error:

@@ -120,7 +120,7 @@ class _Room(Budget):
     def __init__(self) -> None:
         super().__init__(MAX_ALL_BYTES, MAX_FILES)
 
-    def take_bytes(self, name: str, count: int) -> None:
+    def count_bytes(self, name: str, count: int) -> None:
         self._bytes_left -= count
         if self._bytes_left < 0:
             raise UsageError(
@@ -130,7 +130,7 @@ class _Room(Budget):
                 instead=_INSTEAD,
             )
 
-    def take_files(self, name: str, count: int) -> None:
+    def count_files(self, name: str, count: int) -> None:
         self._files_left -= count
         if self._files_left < 0:
             raise UsageError(
@@ -157,7 +157,7 @@ class _Unpacking:
     def unpack(self, archive: Path) -> list[Message]:
         with _members(archive, self.into.with_suffix(".tar")) as members:
             for path, member in self._chosen(members):
-                self._room.take_files(self.name, 1)
+                self._room.count_files(self.name, 1)
                 try:
                     self._write(path, member)
                 except OSError as error:
@@ -213,7 +213,7 @@ class _Unpacking:
     def _copy(self, member: Member, source: IO[bytes], file: IO[bytes]) -> None:
         left = MAX_FILE_BYTES
         while left and (chunk := source.read(min(_CHUNK_BYTES, left))):
-            self._room.take_bytes(self.name, len(chunk))
+            self._room.count_bytes(self.name, len(chunk))
             file.write(chunk)
             left -= len(chunk)
         if not left:

@@ -14,7 +14,7 @@ from grader.batch.entry import SUBMISSIONS, Entry, State
 from grader.batch.page.thumb import Thumb
 from grader.message import NOTHING, Message, msg
 from grader.reports import wording
-from grader.result.result import PAGE, HandedIn
+from grader.result.result import PAGE, SubmissionInfo
 from grader.translations import tr, translate
 
 _NAME_LIMIT, _WORD_LIMIT = 80, 40
@@ -86,7 +86,7 @@ class Student:
         return f"{length}, −{wording.points(found.deducted)}" if found.deducted else length
 
     @property
-    def _handed_in(self) -> HandedIn | None:
+    def _handed_in(self) -> SubmissionInfo | None:
         return None if self.entry.result is None else self.entry.result.handed_in
 
     def without_names(self, sentence: str) -> str:

@@ -1,4 +1,4 @@
-"""What is looked at: sides, corners, the return, and the end."""
+"""The checks of the square: sides, corners, the return, and the end."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from turtlesim_py.world.turtle import TICK_S
 
 checks = Checks()
 Judge = Callable[[Way], Finding]
-#: What judges one way, by the check's name.
+#: Functions that judge one way, by the check's name.
 JUDGES: dict[str, Judge] = {}
 SIDES = 4
 
 
 def of_one_way(judge: Judge) -> CheckFunction:
-    """Make a check of the nominal run of what judges one way.
+    """Make a check of the nominal run from a function that judges one way.
 
-    What that says is a clause, without its full stop: several may stand in one sentence.
+    That one's rationale is a clause, without a full stop: several may be in one sentence.
     """
 
     def check(recordings: Recordings, tolerances: Tolerances) -> Finding:
@@ -321,7 +321,7 @@ def stops(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 
 def _unrested(way: Way) -> Finding:
-    """It moves at the end."""
+    """Judge a run that is moving at its end."""
     drove_on = way.stopped_and_drove_on()
     if drove_on is not None:
         stop, further = (command.tick for command in drove_on)
@@ -386,7 +386,7 @@ def anywhere(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 
 def _square(way: Way) -> tuple[float, Message, list[Evidence]]:
-    """All parts of a run from elsewhere: the share that is right, what is wrong, and where."""
+    """Judge a run from elsewhere: the share that is right, what is wrong, and where."""
     if way.moved_away:
         why = msg("it does not count, because your node moved the turtle elsewhere before it drove")
         return 0.0, why, [way.evidence(0, msg("here it drove off"))]
@@ -405,7 +405,7 @@ def _square(way: Way) -> tuple[float, Message, list[Evidence]]:
 
 
 def start_of(recording: Recording) -> Message:
-    """Where a varied run started."""
+    """Say where a varied run started."""
     start = recording.start
     if start is None:
         return msg("from the usual start")
@@ -417,10 +417,10 @@ def start_of(recording: Recording) -> Message:
 
 
 def part(good: int, found: int) -> float:
-    """The share for so many good ones out of so many, where four are wanted."""
+    """Return the share for so many right ones out of so many, where four are wanted."""
     return min(good, SIDES) / max(found, SIDES)
 
 
 def some(texts: list[str]) -> Message:
-    """The first of many texts."""
+    """Join the first of many texts."""
     return joined([*texts[:8], *(["..."] if len(texts) > 8 else [])], ", ")

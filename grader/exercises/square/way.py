@@ -23,9 +23,9 @@ from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import SIZE_M
 
-#: Where a run starts unless it is said otherwise: the middle of the window, heading right.
+#: Where a run starts by default: the middle of the window, heading right.
 USUAL_START = Start(SIZE_M / 2, SIZE_M / 2, 0.0)
-#: A shorter step is no motion: where it was put and what it publishes differ by rounding [m].
+#: A shorter step is no motion: the pose that was set and the published one differ by rounding [m].
 STILL_M = 1e-5
 #: Two sides that meet at the start with less of a turn are one side, begun in its middle [deg].
 SAME_SIDE_DEG = 30.0
@@ -36,14 +36,14 @@ STOP_SHOWS = 1
 
 @dataclass(frozen=True)
 class Corner:
-    """Where a side ends and another begins."""
+    """A corner between two sides."""
 
     index: int
     turn_deg: float
 
 
 class Way(DrivenPath):
-    """Where turtle1 drove, from where it drove off until the end of the recording.
+    """The path of turtle1, from where it drove off until the end of the recording.
 
     Attributes:
         tolerances: of the exercise.
@@ -78,12 +78,12 @@ class Way(DrivenPath):
 
     @cached_property
     def gap_m(self) -> Floats:
-        """How far it is from the start [m], float64 (n,)."""
+        """The distance from the start [m], float64 (n,)."""
         return self.distance_from(self.x[0], self.y[0])
 
     @cached_property
     def lap_end(self) -> int | None:
-        """Where it first was back, after it had been half a side away; None if it never was."""
+        """The row of its first return, after it had been half a side away; None for none."""
         gaps = self.gap_m
         away = np.flatnonzero(gaps > self.tolerances["side_m"] / 2)
         if not away.size:
@@ -110,7 +110,7 @@ class Way(DrivenPath):
 
     @property
     def corners(self) -> list[Corner]:
-        """Where its sides meet; the start is one of them if the way leads back to it."""
+        """The corners of its sides; the start is one of them if the way leads back to it."""
         pairs = list(pairwise(self.sides))
         if self._leads_back(self.sides):
             pairs.append((self.sides[-1], self.sides[0]))
@@ -121,7 +121,7 @@ class Way(DrivenPath):
         return len(found) > 2 and bool(gap < self.tolerances["side_m"] / 2)
 
     def stop_command(self) -> int | None:
-        """The tick of the command that stopped turtle1, if one did."""
+        """Return the tick of the command that stopped turtle1, if one did."""
         found = None
         for command in reversed(self.commands):
             if not stands_still(command):
@@ -131,7 +131,7 @@ class Way(DrivenPath):
         return found if found is not None and found <= last_motion + STOP_SHOWS else None
 
     def stopped_and_drove_on(self) -> tuple[CmdVel, CmdVel] | None:
-        """The first command to stand after the return, near the start, and which one ended it."""
+        """Find the first command to stop after the return, near the start, and the one after it."""
         if self.lap_end is None:
             return None
         since = int(self.ticks[self.lap_end])

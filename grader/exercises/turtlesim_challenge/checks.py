@@ -1,4 +1,4 @@
-"""The checks of the challenge. Each looks at one thing that the exercise asks for."""
+"""The checks of the challenge, one for each requirement of the exercise."""
 
 from __future__ import annotations
 
@@ -43,18 +43,18 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
     commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
     if not commands:
         return _silent(recording)
-    foreign = _foreign(path)
+    relocated = _relocated(path)
     if not (path.moving & (path.linear > 0)).any():
-        return _unmoved(path, commands, joined([*foreign, how_it_ended(recording)]))
+        return _unmoved(path, commands, joined([*relocated, how_it_ended(recording)]))
     start = path.at(int(path.ticks[path.first]), msg("here it starts to move"))
     text = msg("{commands} velocity commands moved turtle1.", commands=len(commands))
-    return Finding(1, joined([text, *foreign]), evidence=(start,))
+    return Finding(1, joined([text, *relocated]), evidence=(start,))
 
 
 def _silent(recording: Recording) -> Finding:
-    """No command came."""
+    """Judge a run in which no command came."""
     run = recording.run
-    if run.outcome in ("crashed", "exited", "killed"):  # its end tells when
+    if run.outcome in ("crashed", "exited", "killed"):  # its end says when
         text = msg("Your node published no velocity command on /turtle1/cmd_vel.")
     else:
         text = msg(
@@ -68,7 +68,7 @@ def _silent(recording: Recording) -> Finding:
 
 
 def _unmoved(path: Path, commands: Sequence[CmdVel], more: Message) -> Finding:
-    """Commands came, and none has moved it."""
+    """Judge a run in which commands came, and none has moved the turtle."""
     seconds = path.recording.run.simulated_s
     first = (path.at(commands[0].tick, msg("the first command")),)
     fast = too_fast(path, int(path.ticks[-1])) if len(path) else None
@@ -99,17 +99,17 @@ def _unmoved(path: Path, commands: Sequence[CmdVel], more: Message) -> Finding:
     )
 
 
-def _foreign(path: Path) -> list[str | Message]:
-    """A sentence about motion that was no driving, and a blank before it; or nothing."""
-    if not path.foreign:
+def _relocated(path: Path) -> list[str | Message]:
+    """Return a sentence on motion that was no driving, and a blank before it; or nothing."""
+    if not path.relocations:
         return []
-    names = ", ".join(sorted({event.op for event in path.foreign}))
+    names = ", ".join(sorted({event.op for event in path.relocations}))
     text = msg(
         "It was also moved by {names} ({calls} calls, the first at {first_s:.2f} s); "
         "only the longest stretch without them is judged.",
         names=names,
-        calls=len(path.foreign),
-        first_s=path.foreign[0].tick * TICK_S,
+        calls=len(path.relocations),
+        first_s=path.relocations[0].tick * TICK_S,
     )
     return [" ", text]
 

@@ -1,4 +1,4 @@
-"""Which colours an eye tells apart, and what it calls them."""
+"""Compares colours as an eye does, and names them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from turtlesim_py.world.trajectory import Floats
 
 Color = tuple[int, int, int]
 
-#: What is drawn in by whoever never asks for a pen.
+#: The colour of a pen that was never set.
 FIRST: Color = (Pen.r, Pen.g, Pen.b)
 
 # sRGB to XYZ (IEC 61966-2-1), and the white D65 that it goes with
@@ -29,7 +29,7 @@ _WHITE = _TO_XYZ.sum(axis=1)
 
 
 def lab(colors: npt.ArrayLike) -> Floats:
-    """CIELAB coordinates (CIE 15:2004, 8.2.1) of sRGB colours from 0 to 255; (n, 3) -> (n, 3)."""
+    """Convert sRGB colours, 0 to 255, (n, 3), to CIELAB (CIE 15:2004, 8.2.1), (n, 3)."""
     srgb = np.asarray(colors, dtype=np.float64).reshape(-1, 3) / 255.0
     linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
     xyz = linear @ _TO_XYZ.T / _WHITE
@@ -39,7 +39,7 @@ def lab(colors: npt.ArrayLike) -> Floats:
 
 
 def distances(colors: npt.ArrayLike, color: Color) -> Floats:
-    """How differently colours look from one, float64 (n,): the Euclidean distance in CIELAB.
+    """Return how far colours are from one, float64 (n,): the Euclidean distance in CIELAB.
 
     About 2.3 is just noticeable where two areas touch (Mahy, Van Eycken, Oosterlinck 1994).
     """
@@ -47,14 +47,14 @@ def distances(colors: npt.ArrayLike, color: Color) -> Floats:
 
 
 def alike(one: Color | None, other: Color | None, distance: float) -> bool:
-    """Whether nobody tells two colours apart; None is no colour, a pen that is up."""
+    """Whether two colours look the same; None is no colour, a pen that is up."""
     if one is None or other is None:
         return one is other
     return one == other or bool(distances(other, one)[0] < distance)
 
 
 def groups(colors: Mapping[int, Color | None], distance: float) -> list[list[int]]:
-    """The quadrants that look alike, put together; those without a colour are left out."""
+    """Group the quadrants that look alike; those without a colour are left out."""
     found: list[list[int]] = []
     for quadrant, color in sorted(colors.items()):
         if color is None:
@@ -68,8 +68,8 @@ def groups(colors: Mapping[int, Color | None], distance: float) -> list[list[int
 
 
 def name(color: Color | None) -> Message:
-    """What to call a colour, as its page does: 'red (255, 0, 0)'; 'off' for none."""
+    """Name a colour, as the page does: 'red (255, 0, 0)'; 'off' for none."""
     if color is None:
         return in_context("off", "of a pen")
-    said = words.color(*map(int, color))
-    return msg("the pen's first colour, {color}", color=said) if tuple(color) == FIRST else said
+    called = words.color(*map(int, color))
+    return msg("the pen's first colour, {color}", color=called) if tuple(color) == FIRST else called

@@ -1,4 +1,4 @@
-"""What a run's velocity commands say: to stop, to drive on, and why no circle grows wider."""
+"""Finds in a run's velocity commands stops, driving on, and why no circle grows wider."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
 
 #: Ticks after which a command moves the turtle no more.
 WATCHDOG_TICKS = int(COMMAND_TIMEOUT_NS / 1e9 / TICK_S) + 1
-#: Two full turns a second: who asks for more thinks in degrees [rad/s].
+#: Two full turns a second: a faster command was meant in degrees [rad/s].
 DEGREES = 4 * math.pi
-#: What one callback publishes arrives so near together: the simulator takes one message a step.
+#: Messages of one callback arrive so near together: the simulator reads one message a step.
 ONE_MOMENT_TICKS = 2
 #: From this part of all commands on, those of linear.x 0 between others are no accident.
-TAKE_TURNS = 0.25
+ALTERNATING = 0.25
 #: With so much from one turn to the next there is no room for two in the window [m].
 TOO_WIDE_M = 2.5
-#: Who asks for more has not divided a time in nanoseconds [m/s].
+#: A faster command comes from a time in nanoseconds that was not divided [m/s].
 NANOSECONDS = 1e5
 
 
 def drove_on(path: Path, until: int, edge_m: float) -> tuple[CmdVel, CmdVel] | None:
-    """The first command to stop near an edge that was followed by one to drive, and that one."""
+    """Find the first command to stop near an edge that one to drive followed, and that one."""
     commands = [call for call in path.calls(CmdVel) if call.tick <= until]
     for stop, further in pairwise(commands):
         if stop.linear[0] or not further.linear[0]:
@@ -41,7 +41,7 @@ def drove_on(path: Path, until: int, edge_m: float) -> tuple[CmdVel, CmdVel] | N
 
 
 def overruled_stop(drove: Sequence[CmdVel]) -> CmdVel | None:
-    """The command to stand that the last of some commands overruled in the same moment."""
+    """Find the command to stop that the last of some commands overruled in the same moment."""
     if len(drove) < 2 or not drove[-1].linear[0]:
         return None
     before, last = drove[-2:]
@@ -50,7 +50,7 @@ def overruled_stop(drove: Sequence[CmdVel]) -> CmdVel | None:
 
 
 def why_no_wider(path: Path) -> Cause | None:
-    """Why the turtle draws no wider circles, where the commands tell; None: they do not."""
+    """Find in the commands why the turtle draws no wider circles; None: it is not known."""
     commands = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
     if len(commands) < 3:
         return None
@@ -58,7 +58,7 @@ def why_no_wider(path: Path) -> Cause | None:
         too_fast(path, path.stop_tick)
         or _paused(commands)
         or _degrees(commands)
-        or _takes_turns(commands)
+        or _alternates(commands)
         or _straight(commands)
         or _same(commands)
         or _shrinks(commands)
@@ -66,7 +66,7 @@ def why_no_wider(path: Path) -> Cause | None:
 
 
 def why_so_few_turns(path: Path) -> Cause | None:
-    """Why the turtle makes no two turns before it stops, where the commands tell."""
+    """Find in the commands why the turtle makes no two turns before it stops."""
     commands = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
     speeds = np.abs([call.linear[0] for call in commands if call.linear[0]])
     found = too_fast(path, path.stop_tick) or (why_no_wider(path) if len(commands) > 2 else None)
@@ -96,7 +96,7 @@ def why_so_few_turns(path: Path) -> Cause | None:
 
 
 def too_fast(path: Path, until: int) -> Cause | None:
-    """A command that carries the turtle across the window before the next pose comes."""
+    """Find a command that carries the turtle across the window before the next pose comes."""
     for call in path.calls(CmdVel):
         if call.tick > until + 1:
             break
@@ -119,7 +119,7 @@ def too_fast(path: Path, until: int) -> Cause | None:
 
 
 def _straight(commands: Sequence[CmdVel]) -> Cause | None:
-    """The turtle never turns: by mistake another part of the Twist was set."""
+    """The turtle never turns, perhaps since another part of the Twist was set."""
     if any(call.angular[2] for call in commands):
         return None
     others = [name for at, name in ((0, "x"), (1, "y")) if any(c.angular[at] for c in commands)]
@@ -174,13 +174,13 @@ def _degrees(commands: Sequence[CmdVel]) -> Cause | None:
     )
 
 
-def _takes_turns(commands: Sequence[CmdVel]) -> Cause | None:
+def _alternates(commands: Sequence[CmdVel]) -> Cause | None:
     driving = [bool(call.linear[0]) for call in commands]
     between = sum(
         before and after and not now
         for before, now, after in zip(driving, driving[1:], driving[2:], strict=False)
     )
-    if between < TAKE_TURNS * len(commands):
+    if between < ALTERNATING * len(commands):
         return None
     return Cause(
         msg(
@@ -225,7 +225,7 @@ def _same(commands: Sequence[CmdVel]) -> Cause | None:
 
 @dataclass(frozen=True)
 class Cause:
-    """What went wrong: a sentence with numbers, and what to do."""
+    """The cause of a mistake: a sentence with numbers, and what to do."""
 
     text: Message
     help: Message

@@ -1,4 +1,4 @@
-"""Whether the turtle stops near an edge, wherever it starts: all runs together."""
+"""Judges whether the turtle stops near an edge, wherever it starts: all runs together."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.stops import (
     WALL_NAMES,
     Stop,
-    is_told_to_stop_at,
+    has_stop_command_at,
     judge_stop,
     passed_by_m,
 )
@@ -18,7 +18,7 @@ from grader.message import Message, chained, joined, msg, msg_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.turtle import TICK_S
 
-#: Who is told to stop this near to the same moment, wherever it started, counts [ticks].
+#: Stop commands this near to one moment, wherever the run started, come from counting [ticks].
 SAME_MOMENT_TICKS = 32
 
 
@@ -28,7 +28,7 @@ _BY_THE_POSE = msg(
 
 
 def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """The worst of all runs; those in which the time was up too early tell nothing."""
+    """Return the worst of all runs; those in which the time was up too early do not count."""
     first = judge_stop(Path(recordings.nominal), tolerances)
     if first.kind not in ("stopped", "halfway", "late", "wall"):
         return first.finding
@@ -62,7 +62,7 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 
 def _all_at_one_moment(stops: list[Stop]) -> bool:
-    """Whether several runs from elsewhere took as long as the first, to the tick."""
+    """Whether several runs from elsewhere lasted as long as the first, to the tick."""
     first, *others = [stop.path.stop_tick for stop in stops]
     return len(others) > 1 and all(abs(tick - first) <= 1 for tick in others)
 
@@ -87,7 +87,7 @@ def _judge_varied(path: Path, tolerances: Tolerances) -> Stop:
 
 def _all_right(stops: list[Stop]) -> Message:
     late = [number for number, stop in enumerate(stops) if stop.kind == "late"]
-    told = next(stop for stop in stops if stop.kind != "late")
+    ended = next(stop for stop in stops if stop.kind != "late")
     if not late and len(stops) > 1:
         return msg_many(
             "It stopped by a command, {gap_m:.2f} m from the wall, and in the run that starts "
@@ -95,16 +95,16 @@ def _all_right(stops: list[Stop]) -> Message:
             "It stopped by a command, {gap_m:.2f} m from the wall, and in the {n} runs that start "
             "elsewhere too.",
             len(stops) - 1,
-            gap_m=told.gap_m,
+            gap_m=ended.gap_m,
         )
     if not late:
-        return told.finding.rationale
+        return ended.finding.rationale
     more = msg(
         "In {which} the time, {seconds:.0f} s, was up before it came to a stop.",
         which=_which_run(late[0]),
         seconds=stops[late[0]].path.recording.run.simulated_s,
     )
-    return joined([told.finding.rationale, more], " ")
+    return joined([ended.finding.rationale, more], " ")
 
 
 def _which_run(number: int) -> Message:
@@ -112,15 +112,15 @@ def _which_run(number: int) -> Message:
 
 
 def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
-    """It stops when it starts from the centre, and not elsewhere."""
+    """Judge a turtle that stops when it starts from the centre, and not elsewhere."""
     here = stops[0]
     if worst.kind == "void":
         return _not_where_it_was_put(here, worst)
-    takes_long = here.path.stop_tick > 10 * SAME_MOMENT_TICKS  # else all moments are the same
+    lasts_long = here.path.stop_tick > 10 * SAME_MOMENT_TICKS  # else all moments are the same
     if (
         here.kind == "stopped"
-        and takes_long
-        and is_told_to_stop_at(worst.path, here.path.stop_tick, SAME_MOMENT_TICKS)
+        and lasts_long
+        and has_stop_command_at(worst.path, here.path.stop_tick, SAME_MOMENT_TICKS)
     ):
         text = msg(
             "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but when it "
@@ -135,20 +135,20 @@ def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
     only = _one_wall_only(stops)
     if only is not None:
         return only
-    told = worst.finding.rationale
-    if worst.finding.help == here.finding.help and worst.kind == "other":  # one cause, told once
-        told = msg("it stood {gap_m:.2f} m from the nearest wall.", gap_m=worst.gap_m)
+    seen = worst.finding.rationale
+    if worst.finding.help == here.finding.help and worst.kind == "other":  # one cause, named once
+        seen = msg("it stood {gap_m:.2f} m from the nearest wall.", gap_m=worst.gap_m)
     return Finding(
         worst.finding.share,
-        _but_elsewhere(here, worst.path.number, told),
+        _but_elsewhere(here, worst.path.number, seen),
         _BY_THE_POSE if worst.kind == "far" else worst.finding.help,
         worst.finding.evidence,
     )
 
 
 def _not_where_it_was_put(here: Stop, worst: Stop) -> Finding:
-    """In a run from elsewhere the turtle was brought away before it drove."""
-    told = started_elsewhere(worst.path.number, worst.finding.rationale)
+    """Judge a run from elsewhere in which the node moved the turtle before it drove."""
+    seen = started_elsewhere(worst.path.number, worst.finding.rationale)
     lead = [here.seen] if here.kind == "halfway" else []
     if here.kind == "stopped":
         lead = [
@@ -157,11 +157,11 @@ def _not_where_it_was_put(here: Stop, worst: Stop) -> Finding:
                 gap_m=here.gap_m,
             )
         ]
-    return replace(worst.finding, rationale=joined([*lead, told], " "))
+    return replace(worst.finding, rationale=joined([*lead, seen], " "))
 
 
 def started_elsewhere(run: int, seen: Message) -> Message:
-    """What was seen in a run that starts elsewhere."""
+    """Say what was found in a run that starts elsewhere."""
     return msg("The turtle started elsewhere (run {run}). {seen}", run=run, seen=seen)
 
 
@@ -179,7 +179,7 @@ def _but_elsewhere(here: Stop, run: int, seen: Message) -> Message:
 
 
 def _one_wall_only(stops: list[Stop]) -> Finding | None:
-    """It stops at some walls and runs into others."""
+    """Judge a turtle that stops at some walls and runs into others; None where it does not."""
     at = sorted({stop.wall for stop in stops if stop.kind in ("stopped", "halfway")})
     into = [stop for stop in stops if stop.kind == "wall" and stop.wall not in at]
     touched = [stop for stop in stops if stop.kind == "wall"]

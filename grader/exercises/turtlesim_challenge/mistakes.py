@@ -1,4 +1,4 @@
-"""What is behind wrong colours: a dividing line elsewhere, the quadrant before, a slow timer."""
+"""Finds causes of wrong colours: a dividing line elsewhere, the quadrant before, a slow timer."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ OFF_THE_LINES_M = 0.3
 ON_ONE_LINE_M = 0.12
 #: So many calls are needed to see a line, and this part of them, or of a pattern, has to fit.
 LEAST_CALLS, MOST = 3, 0.8
-#: Who takes the middle to be a little elsewhere is not so early [ticks]; this part of the changes
-#: is no accident.
+#: With the middle only a little elsewhere colours are not so early [ticks]; this part of the
+#: changes is no accident.
 EARLY_TICKS, EARLY = 6, 0.15
-#: Delays that differ by more are no fixed delay: something looks now and then [s].
+#: Delays that differ by more are no fixed delay: something is checked now and then [s].
 NOW_AND_THEN_S = 0.35
 
 WHERE = {
@@ -36,7 +36,7 @@ WHERE = {
     3: msg("x < middle and y < middle"),
     4: msg("x > middle and y < middle"),
 }
-#: As it stands in a program.
+#: As a program would write it.
 MIDDLE = f"{int(100 * CENTRE_M) / 100:g}"
 SPIRAL_FIRST = msg(
     "Look at the spiral first: colours are judged in the quadrants that it goes through."
@@ -44,12 +44,12 @@ SPIRAL_FIRST = msg(
 
 
 def causes(path: Path, found: Coloring, tolerances: Tolerances) -> Iterator[Cause]:
-    """What explains the wrong entries, the likeliest first."""
+    """Yield causes of the wrong entries, the likeliest first."""
     once = _once(path, found)
     if once is not None:
         yield once
         return
-    if None in found.own.values():
+    if None in found.by_quadrant.values():
         yield _lifted(found)
     elsewhere = found.bad and (
         _other_line(path)
@@ -59,19 +59,19 @@ def causes(path: Path, found: Coloring, tolerances: Tolerances) -> Iterator[Caus
     if elsewhere:  # it explains late colours and quadrants of one colour, too
         yield elsewhere
         return
-    if len(found.alike) < len([color for color in found.own.values() if color is not None]):
-        yield alike(found.alike, found.own)
+    if len(found.alike) < len([color for color in found.by_quadrant.values() if color is not None]):
+        yield alike(found.alike, found.by_quadrant)
     if found.bad:
         late = _late(found, tolerances)
         if late is not None:
             yield late
 
 
-def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Cause:
+def alike(groups: list[list[int]], colors: dict[int, colours.Color | None]) -> Cause:
     """Quadrants with one colour: 'Quadrants II and IV are both red ...'."""
     same = [group for group in groups if len(group) > 1]
-    told = joined([_of_one_colour(group, own) for group in same], " ")
-    if not all(len({own[quadrant] for quadrant in group}) == 1 for group in same):
+    text = joined([_of_one_colour(group, colors) for group in same], " ")
+    if not all(len({colors[quadrant] for quadrant in group}) == 1 for group in same):
         help_ = msg(
             "Give each quadrant a colour of its own, one that an eye tells from the others."
         )
@@ -95,11 +95,11 @@ def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Caus
             where=conditions,
             middle=MIDDLE,
         )
-    return Cause(told, help_)
+    return Cause(text, help_)
 
 
-def _of_one_colour(group: list[int], own: dict[int, colours.Color | None]) -> Message:
-    names = list(dict.fromkeys(colours.name(own[quadrant]) for quadrant in group))
+def _of_one_colour(group: list[int], colors: dict[int, colours.Color | None]) -> Message:
+    names = list(dict.fromkeys(colours.name(colors[quadrant]) for quadrant in group))
     quadrants = {"quadrants": listed([ROMAN[q] for q in group])}
     if len(names) > 1:
         return msg(
@@ -115,7 +115,7 @@ def _of_one_colour(group: list[int], own: dict[int, colours.Color | None]) -> Me
 def _once(path: Path, found: Coloring) -> Cause | None:
     """set_pen was called a single time, whatever quadrants the turtle came to."""
     calls, entered = len(path.calls(SetPen)), len(path.entries(0.0))
-    if calls != 1 or entered < LEAST_CALLS or len(found.own) < 2:
+    if calls != 1 or entered < LEAST_CALLS or len(found.by_quadrant) < 2:
         return None
     return Cause(
         msg(
@@ -134,9 +134,9 @@ def _before_the_line(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
     """The next quadrant's colour comes before the turtle does: nothing of x and y says so."""
     near, early = tolerances["color_distance"], []
     for entry, after in pairwise(path.entries(0.0)):
-        if not {entry.quadrant, after.quadrant} <= found.own.keys():
+        if not {entry.quadrant, after.quadrant} <= found.by_quadrant.keys():
             continue
-        here, there = found.own[entry.quadrant], found.own[after.quadrant]
+        here, there = found.by_quadrant[entry.quadrant], found.by_quadrant[after.quadrant]
         is_early = [
             colours.alike(found.colors[tick], there, near)
             for tick in entry.ticks
@@ -164,11 +164,11 @@ def _before_the_line(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
 
 
 def _lifted(found: Coloring) -> Cause:
-    lifted = [ROMAN[q] for q, color in sorted(found.own.items()) if color is None]
+    lifted = [ROMAN[q] for q, color in sorted(found.by_quadrant.items()) if color is None]
     text = msg(
         "The pen is off in quadrant {quadrants}: it draws nothing there.", quadrants=listed(lifted)
     )
-    if len(lifted) == len(found.own):
+    if len(lifted) == len(found.by_quadrant):
         text = msg("The pen is off everywhere: it draws nothing there.")
     return Cause(text, msg("What do your requests say of `off`? 0 is a pen that draws."))
 
@@ -222,7 +222,7 @@ def _quadrant_before(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
         sum(count.most_common(1)[0][1] for count in shown.values())
         for shown in (by_before, by_itself)
     )
-    # Who goes round one way only comes into each quadrant from one other: then both fit.
+    # On a way round one side each quadrant is entered from one other only: then both fit.
     if total < LEAST_CALLS or fits_before < 0.95 * total or fits_itself >= fits_before:
         return None
     return Cause(
@@ -238,7 +238,7 @@ def _quadrant_before(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
 
 
 def _late(found: Coloring, tolerances: Tolerances) -> Cause | None:
-    """How late the colours are that come too late, and whether that varies."""
+    """The colours come too late, by a fixed delay or by a varying one."""
     near = tolerances["color_distance"]
     delays = {entry: came_after(entry, found, near) for entry in found.judged}
     late = [d for e in found.bad if (d := delays[e]) is not None and d > found.waits[e]]
@@ -262,7 +262,7 @@ def _late(found: Coloring, tolerances: Tolerances) -> Cause | None:
             "The colour comes now and then only, {low_s:.2f} to {high_s:.2f} s after the turtle; "
             "{allowed_s:.2f} s are allowed.",
             low_s=low,
-            high_s=max(float(high), typical),  # what came too late is told in any case
+            high_s=max(float(high), typical),  # what came too late is shown in any case
             allowed_s=allowed,
         ),
         msg("Look at the quadrant in the pose callback, not in a slow timer."),

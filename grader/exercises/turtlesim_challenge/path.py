@@ -1,4 +1,4 @@
-"""The path of turtle1 in the words of the challenge: what it drove by itself, quadrant, entry."""
+"""The path of turtle1 in the challenge: the longest driven stretch, quadrants, entries."""
 
 from __future__ import annotations
 
@@ -63,33 +63,33 @@ class Visit:
 
 
 class Path(DrivenPath):
-    """Where turtle1 was in the longest stretch of a run that it drove by itself.
+    """The path of turtle1 in the longest stretch of a run that it drove by itself.
 
     A teleport, or a turtle1 that is killed, spawned or reset, ends a stretch: what is drawn that
     way is nobody's driving.
 
     Attributes:
         trace: all that was recorded.
-        foreign: the calls that ended stretches, as they came.
+        relocations: the calls that ended stretches, in order.
         moved_away: of a run that starts elsewhere, the call because of which its stretch does not
-            begin where it was put; None: it does. Who brings the turtle back to the centre shows
-            nothing of what such a run is for.
+            begin where it was put; None: it does. A node that moves the turtle back to the centre
+            does not show what such a run is for.
         lost_tick: from here on the position is not a number, and the path ends; None: never.
     """
 
     def __init__(self, recording: Recording, number: int = 0) -> None:
         self.trace = TurtleTrace.of(recording.trace)
-        self.foreign = list(_foreign(self.trace.events))
+        self.relocations = list(_relocations(self.trace.events))
         whole = DrivenPath(recording, self.trace.trajectory(), number)
         self.lost_tick = None if whole.lost is None else int(whole.ticks[whole.lost])
-        driven = whole.until_lost().longest_stretch(event.tick for event in self.foreign)
+        driven = whole.until_lost().longest_stretch(event.tick for event in self.relocations)
         super().__init__(recording, driven.way, number)
         self.moved_away = self._moved_away()
 
     def _moved_away(self) -> Event | None:
         if self.recording.start is None or not len(self):
             return None
-        before = [event for event in self.foreign if event.tick <= self.ticks[0]]
+        before = [event for event in self.relocations if event.tick <= self.ticks[0]]
         return before[-1] if before else None
 
     @property
@@ -104,14 +104,14 @@ class Path(DrivenPath):
         return self.distance_from(CENTRE_M, CENTRE_M)
 
     def calls(self, kind: type[SomeEvent]) -> list[SomeEvent]:
-        """The inputs of one kind to turtle1 within the stretch."""
+        """Return the inputs of one kind to turtle1 within the stretch."""
         if not len(self):
             return []
         first, last = self.ticks[0], self.ticks[-1]
         return [call for call in self.trace.of_kind(kind) if first <= call.tick <= last]
 
     def entries(self, band_m: float, centre_m: float = CENTRE_M) -> list[Visit]:
-        """Every entry into a quadrant on the turtle's way, the first one included.
+        """Return every entry into a quadrant on the turtle's way, the first one included.
 
         Within `band_m` of a dividing line the turtle still counts for where it was before.
         """
@@ -129,8 +129,8 @@ class Path(DrivenPath):
         ]
 
 
-def _foreign(events: Iterable[Event]) -> Iterator[Event]:
-    """The calls that put turtle1 somewhere; one that asks for a name that is taken does nothing."""
+def _relocations(events: Iterable[Event]) -> Iterator[Event]:
+    """Yield the calls that put turtle1 somewhere; a spawn with a name in use does nothing."""
     is_there = True
     for event in events:
         match event:

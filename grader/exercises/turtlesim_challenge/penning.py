@@ -1,4 +1,4 @@
-"""Whether each quadrant gets a colour of its own, in all runs."""
+"""Judges whether each quadrant gets a colour of its own, in all runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHOWN = 5
 
 
 def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """The worst of the runs that tell anything."""
+    """Return the worst of the runs that are conclusive."""
     path = Path(recordings.nominal)
     if not path.calls(SetPen):
         return Finding(
@@ -36,16 +36,16 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
     away = first_moved_away(recordings)
     if away is not None and nominal.share > 0:
         return away
-    telling = [n for n, coloring in enumerate(colorings) if coloring.tells or n == 0]
-    worst = min(telling, key=lambda n: colorings[n].share)
+    conclusive = [n for n, coloring in enumerate(colorings) if coloring.is_conclusive or n == 0]
+    worst = min(conclusive, key=lambda n: colorings[n].share)
     share = colorings[worst].share
     if share >= 1:
         entered = len(path.entries(tolerances["band_m"]))
         return Finding(1, _all_right(len(nominal.judged), entered, len(recordings.varied)))
-    # What the run from the centre shows as well is told of that one.
+    # What the run from the centre shows as well is reported for that one.
     shown = 0 if nominal.share <= SHOWS_IT_TOO else worst
     found, path = colorings[shown], paths[shown]
-    sentences, help_ = _told(path, found, tolerances)
+    sentences, help_ = _explain(path, found, tolerances)
     if shown:
         sentences[0] = msg(
             "When the turtle started elsewhere (run {run}): {seen}", run=worst, seen=sentences[0]
@@ -73,16 +73,16 @@ def _entries(number: int) -> Message:
 
 
 def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pens.Coloring:
-    """A run from elsewhere: a quadrant that was entered once or twice may tell no colour itself."""
+    """Judge the colours of a run from elsewhere, which may have too few entries to show them."""
     by_itself = pens.coloring(path, tolerances)
-    if by_itself.different == len(by_itself.own):
+    if by_itself.different == len(by_itself.by_quadrant):
         return by_itself
-    as_before = pens.coloring(path, tolerances, known=nominal.own)
+    as_before = pens.coloring(path, tolerances, known=nominal.by_quadrant)
     return max(by_itself, as_before, key=lambda coloring: coloring.share)
 
 
 def first_moved_away(recordings: Recordings) -> Finding | None:
-    """Of the runs that start elsewhere, the first in which the turtle was brought away."""
+    """Return the first run that starts elsewhere in which the node moved the turtle away."""
     for number, recording in enumerate(recordings.varied, start=1):
         void = judge_start(Path(recording, number))
         if void is not None:
@@ -90,10 +90,10 @@ def first_moved_away(recordings: Recordings) -> Finding | None:
     return None
 
 
-def _told(
+def _explain(
     path: Path, found: pens.Coloring, tolerances: Tolerances
 ) -> tuple[list[Message], Message]:
-    """What was seen, the cause first, and what to do."""
+    """Return what was found, the cause first, and what to do."""
     if not found.judged:
         seen = msg("The turtle left no quadrant in which there was time to change the colour.")
         return [seen], mistakes.SPIRAL_FIRST
@@ -109,16 +109,16 @@ def _told(
                 entries=_entries(of),
             )
         )
-    sentences += _told_demanded(found, tolerances)
-    if found.wanted > len(found.own):
+    sentences += _demanded(found, tolerances)
+    if found.wanted > len(found.by_quadrant):
         sentences.append(
             msg_many(
                 "Of the four quadrants {n} was entered for long enough.",
                 "Of the four quadrants {n} were entered for long enough.",
-                len(found.own),
+                len(found.by_quadrant),
             )
         )
-    if not found.tells:
+    if not found.is_conclusive:
         sentences.append(msg("One quadrant alone tells nothing."))
     return sentences, help_
 
@@ -130,11 +130,11 @@ _LOOK_THERE = msg(
 
 
 def _points(found: pens.Coloring, run: int) -> list[Message]:
-    """How the points come about, where there are some."""
+    """Say how the points are computed, where there are some."""
     if not 0 < found.share < 1:
         return []
     right, of = len(found.judged) - len(found.bad), len(found.judged)
-    wanted = max(found.wanted, len(found.own))
+    wanted = max(found.wanted, len(found.by_quadrant))
     values = {"right": right, "of": of, "different": found.different, "wanted": wanted}
     if run:
         return [
@@ -147,7 +147,7 @@ def _points(found: pens.Coloring, run: int) -> list[Message]:
     return [msg("Points: {right}/{of} (entries) times {different}/{wanted} (colours).", **values)]
 
 
-def _told_demanded(found: pens.Coloring, tolerances: Tolerances) -> list[Message]:
+def _demanded(found: pens.Coloring, tolerances: Tolerances) -> list[Message]:
     asked = pens.demanded(tolerances)
     return [
         msg(
@@ -170,13 +170,13 @@ def _evidence(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple
 
 def _note(entry: Visit, found: pens.Coloring, tolerances: Tolerances) -> Message:
     entered = {"quadrant": NAMES[entry.quadrant]}
-    own = found.own[entry.quadrant]
+    wanted = found.by_quadrant[entry.quadrant]
     before = colours.name(found.colors[entry.settled(found.waits[entry])])
     if entry not in found.bad:
         return msg("enters quadrant {quadrant}, in {color}", color=before, **entered)
-    if own is None:
+    if wanted is None:
         return msg("enters quadrant {quadrant} with the pen off", **entered)
-    color = colours.name(own)
+    color = colours.name(wanted)
     delay = pens.came_after(entry, found, tolerances["color_distance"])
     if delay is None:
         return msg(

@@ -1,4 +1,4 @@
-"""Which colour the pen had when, and which colour belongs to which quadrant."""
+"""Finds the pen's colour in each tick, and the colour of each quadrant."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ MOST_OF_A_STAY = 0.9
 
 @dataclass(frozen=True)
 class Coloring:
-    """How the entries of one run were coloured.
+    """The colours of the entries of one run.
 
     Attributes:
         judged: the entries that left time for an answer.
         bad: those of them after which the pen did not take the quadrant's colour in time.
-        own: quadrant -> its colour: the one that is asked for, or else the one that it ended with
-            most often; None: with the pen up.
-        alike: the quadrants whose colours look the same, put together.
+        by_quadrant: its colour: the one that is asked for, or else the one that it ended with most
+            often; None: with the pen up.
+        alike: the quadrants grouped by colours that look the same.
         colors: the pen's colour in each tick, None where it is up.
         waits: entry -> how many ticks the colour may take.
         wanted: how many quadrants with colours of their own make all of the points.
@@ -42,28 +42,28 @@ class Coloring:
 
     judged: list[Visit]
     bad: list[Visit]
-    own: dict[int, Color | None]
+    by_quadrant: dict[int, Color | None]
     alike: list[list[int]]
     colors: list[Color | None]
     waits: dict[Visit, int]
     wanted: int
 
     @property
-    def tells(self) -> bool:
-        """Whether the run went through enough quadrants to say anything."""
-        return len(self.own) > 1
+    def is_conclusive(self) -> bool:
+        """Whether the run went through enough quadrants to be judged."""
+        return len(self.by_quadrant) > 1
 
     @property
     def share(self) -> float:
         """The part of the entries that are right, times the part of the colours."""
-        if not self.tells:
+        if not self.is_conclusive:
             return 0.0
         right = 1 - len(self.bad) / len(self.judged)
-        return right * self.different / max(self.wanted, len(self.own))
+        return right * self.different / max(self.wanted, len(self.by_quadrant))
 
     @property
     def different(self) -> int:
-        """How many colours the quadrants have."""
+        """The number of different colours of the quadrants."""
         return len(self.alike)
 
 
@@ -82,7 +82,7 @@ def coloring(
     Args:
         wanted: how many quadrants with colours of their own make all of the points; 0: those that
             were entered.
-        known: the quadrants' colours, where another run has told them.
+        known: the quadrants' colours, where another run has shown them.
     """
     entries = path.entries(tolerances["band_m"])
     pens = pens_by_tick(path.recording)
@@ -101,27 +101,27 @@ def coloring(
     }
     judged = [entry for entry in waits if entry.tick + waits[entry] <= end]
     near = tolerances["color_distance"]
-    own = _own_colors(judged, colors)
+    by_quadrant = _usual_colors(judged, colors)
     asked = {**(known or {}), **demanded(tolerances)}
-    own = {quadrant: asked.get(quadrant, color) for quadrant, color in own.items()}
+    by_quadrant = {quadrant: asked.get(quadrant, color) for quadrant, color in by_quadrant.items()}
     bad = [
         e
         for e in judged
-        if own[e.quadrant] is None
-        or not alike(colors[e.settled(waits[e])], own[e.quadrant], near)
+        if by_quadrant[e.quadrant] is None
+        or not alike(colors[e.settled(waits[e])], by_quadrant[e.quadrant], near)
         or not _draws(colors[e.settled(waits[e]) : e.last_tick + 1])
     ]
-    return Coloring(judged, bad, own, groups(own, near), colors, waits, wanted)
+    return Coloring(judged, bad, by_quadrant, groups(by_quadrant, near), colors, waits, wanted)
 
 
 def demanded(tolerances: Tolerances) -> dict[int, Color]:
-    """The colours that the exercise asks for, by quadrant; as a rule none."""
+    """Return the colours that the exercise asks for, by quadrant; as a rule none."""
     asked = tolerances.get("colours") or {}
     return {int(quadrant): (c[0], c[1], c[2]) for quadrant, c in asked.items()}
 
 
 def check_demanded(asked: Any) -> None:
-    """Look at what an exercise says of colours.
+    """Validate the colours that an exercise asks for.
 
     Raises:
         ValueError: it is no mapping of quadrants, 1 to 4, to different colours.
@@ -159,8 +159,8 @@ def check_demanded(asked: Any) -> None:
 
 
 def came_after(entry: Visit, coloring: Coloring, distance: float) -> int | None:
-    """How many ticks after an entry the pen took the quadrant's colour; None: never."""
-    color = coloring.own[entry.quadrant]
+    """Return how many ticks after an entry the pen had the quadrant's colour; None: never."""
+    color = coloring.by_quadrant[entry.quadrant]
     if color is None:
         return None
     for tick in range(entry.tick, entry.last_tick + 1):
@@ -170,7 +170,7 @@ def came_after(entry: Visit, coloring: Coloring, distance: float) -> int | None:
 
 
 def pens_by_tick(recording: Recording) -> list[Pen | None]:
-    """The pen in each tick, None where it is up; index 0 is before the first tick."""
+    """Return the pen in each tick, None where it is up; index 0 is before the first tick."""
     pen, is_down = Pen(), True
     changes: dict[int, Pen | None] = {}
     for event in TurtleTrace.of(recording.trace).events:
@@ -199,7 +199,7 @@ def _draws(colors: list[Color | None]) -> bool:
     return 2 * colors.count(None) < len(colors)
 
 
-def _own_colors(entries: list[Visit], colors: list[Color | None]) -> dict[int, Color | None]:
+def _usual_colors(entries: list[Visit], colors: list[Color | None]) -> dict[int, Color | None]:
     counts: dict[int, Counter[Color | None]] = {}
     for entry in entries:
         counts.setdefault(entry.quadrant, Counter())[colors[entry.last_tick]] += 1

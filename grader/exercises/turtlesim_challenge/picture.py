@@ -1,4 +1,4 @@
-"""Whether the picture shows four quarters in four colours."""
+"""Judges whether the picture shows four quarters in four colours."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ Pixels = npt.NDArray[np.uint8]
 
 
 def judge_picture(recording: Recording, tolerances: Tolerances) -> Finding:
-    """Ink in all quarters, each mainly in one colour, and these colours differ."""
+    """Judge that all quarters have ink, each mainly in one colour, and these colours differ."""
     background, near = background_of(recording), tolerances["color_distance"]
-    quarters = quarters_of(own_drawing(recording), background, near)
+    quarters = quarters_of(driven_drawing(recording), background, near)
     empty = [NAMES[q] for q, quarter in quarters.items() if quarter.pixels < LEAST_PIXELS]
     if empty:
         return Finding(
@@ -63,10 +63,10 @@ def judge_picture(recording: Recording, tolerances: Tolerances) -> Finding:
             ),
             msg("The colour should change where the turtle enters a quadrant."),
         )
-    own = {quadrant: quarter.color for quadrant, quarter in quarters.items()}
-    groups = colours.groups(own, near)
+    colors = {quadrant: quarter.color for quadrant, quarter in quarters.items()}
+    groups = colours.groups(colors, near)
     if len(groups) < QUADRANTS:
-        cause = mistakes.alike(groups, own)
+        cause = mistakes.alike(groups, colors)
         hardly_driven = not shape.shown(Path(recording), tolerances)
         return Finding(0, cause.text, mistakes.SPIRAL_FIRST if hardly_driven else cause.help)
     total = sum(quarter.pixels for quarter in quarters.values())
@@ -78,7 +78,7 @@ def _mixed(quarters: dict[int, Quarter], tolerances: Tolerances) -> list[int]:
 
 
 def _pauses(recording: Recording, tolerances: Tolerances) -> list[tuple[int, int]]:
-    """From and to which ticks the colour may still be that of the quadrant before."""
+    """Return from and to which ticks the colour may still be that of the quadrant before."""
     path = Path(recording)
     entries = path.entries(tolerances["band_m"])
     waits = pens.coloring(path, tolerances).waits
@@ -117,8 +117,8 @@ class Quarter:
     share: float
 
 
-def own_drawing(recording: Recording) -> Pixels:
-    """The canvas, (500, 500, 4); without what turtle1 did not draw by driving, if there is such.
+def driven_drawing(recording: Recording) -> Pixels:
+    """Return the canvas, (500, 500, 4), without what turtle1 did not draw by driving.
 
     Other turtles, teleports and a wiped canvas leave a picture that is not the path's. Then the
     path is drawn again, from the recorded poses.
@@ -126,13 +126,13 @@ def own_drawing(recording: Recording) -> Pixels:
     path = Path(recording)
     trace = path.trace
     wiped = any(isinstance(event, Clear) for event in trace.events)
-    if not path.foreign and not wiped and set(trace.trajectories) == {FIRST_TURTLE}:
+    if not path.relocations and not wiped and set(trace.trajectories) == {FIRST_TURTLE}:
         return trace.canvas
     return _drawn_again(path, [])
 
 
 def settled_drawing(recording: Recording, pauses: Iterable[tuple[int, int]]) -> Pixels:
-    """The same without what was drawn in some ticks, each the first and the last of them."""
+    """Draw the path without some ranges of ticks, each given by its first and last."""
     return _drawn_again(Path(recording), pauses)
 
 
@@ -161,7 +161,7 @@ def background_of(recording: Recording) -> Color:
 
 
 def quarters_of(canvas: Pixels, background: Color, distance: float) -> dict[int, Quarter]:
-    """Look at the four quarters of a canvas (height, width, 4); quadrant -> ink that shows.
+    """Measure the four quarters of a canvas (height, width, 4): quadrant -> its visible ink.
 
     Args:
         distance: colours that are nearer in CIELAB look the same.
@@ -171,12 +171,12 @@ def quarters_of(canvas: Pixels, background: Color, distance: float) -> dict[int,
     left, right = slice(0, width // 2 - BAND_PX), slice(width // 2 + BAND_PX, width)
     parts = {1: (top, right), 2: (top, left), 3: (bottom, left), 4: (bottom, right)}
     return {
-        quadrant: _look(canvas[rows, columns], background, distance)
+        quadrant: _quarter(canvas[rows, columns], background, distance)
         for quadrant, (rows, columns) in parts.items()
     }
 
 
-def _look(part: Pixels, background: Color, distance: float) -> Quarter:
+def _quarter(part: Pixels, background: Color, distance: float) -> Quarter:
     ink = part[part[..., 3] > 0][:, :3]
     colors, counts = np.unique(ink, axis=0, return_counts=True)
     shows = distances(colors, background) >= distance

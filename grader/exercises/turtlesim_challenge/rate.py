@@ -1,4 +1,4 @@
-"""How often the turtle is told something: the rate of velocity commands, calls of set_pen."""
+"""Judges the rate of velocity commands, and the number of calls of set_pen."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from turtlesim_py.world.turtle import TICK_S
 
 
 def judge_rate(path: Path, tolerances: Tolerances) -> Finding:
-    """Whether the commands came regularly, until the turtle drove no more."""
+    """Judge whether the commands came regularly, until the turtle drove no more."""
     ticks = np.array([c.tick for c in path.calls(CmdVel) if c.tick <= path.stop_tick + 1])
     if len(ticks) < 3:
         text = msg("Fewer than three commands ({commands}) have no rate.", commands=len(ticks))
@@ -101,7 +101,7 @@ MANY = 4
 
 
 def judge_calls(path: Path, tolerances: Tolerances) -> Finding:
-    """Whether set_pen is called about as often as a quadrant is entered."""
+    """Judge whether set_pen is called about as often as a quadrant is entered."""
     calls = path.calls(SetPen)
     if not calls:
         return Finding(
@@ -118,7 +118,7 @@ def judge_calls(path: Path, tolerances: Tolerances) -> Finding:
             msg("What do your requests say of `off`? 0 is a pen that draws."),
             (path.at(calls[0].tick, msg("the pen is switched off here")),),
         )
-    # Near the start the count of entries depends on where exactly the centre is taken to be.
+    # Near the start the count of entries depends on where exactly the centre is assumed.
     counts = [len(path.entries(0.0, centre)) for centre in (CENTRE_M, *tolerances["centres_m"])]
     needed = max(counts)
     if len(calls) <= needed + tolerances["spare_calls"]:

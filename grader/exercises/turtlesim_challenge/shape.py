@@ -1,4 +1,4 @@
-"""Whether a path is a spiral: where it starts, how it turns, how it grows, what it goes round."""
+"""Measures of a spiral: how a path turns, how it grows, and how it goes round a centre."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ BEHIND_TURNS = 0.5
 MOSTLY = 0.9
 #: At how many places, evenly spread over all angles, a path is compared with its turn before.
 PLACES = 1000
-#: Who heads away from the centre by less than 30 degrees drives outwards, not round.
+#: A turtle that heads away from the centre by less than 30 degrees drives outwards, not round.
 OUTWARDS = math.cos(math.radians(30.0))
 #: The part of a spiral's growth that may come from driving straight outwards.
 HALFWAY = 0.5
-#: Of the turns that are asked for, this part shows nothing yet of how they are driven.
+#: This part of the turns that are asked for shows nothing yet of how they are driven.
 TELLING = 0.5
 
 
 def turned(path: Path) -> Floats:
-    """How far the turtle has turned in each tick of its free way [rad], positive to the left.
+    """Return the turn in each tick of the free way [rad], positive to the left.
 
-    From -pi to pi: whoever commands a thousand turns a tick still looks in one direction only.
+    From -pi to pi: a turtle that turns a thousand times a tick still has one heading only.
     """
     angles = path.angular[path.free] * TICK_S
     angles = np.where(np.isfinite(angles), angles, 0.0)
@@ -39,7 +39,7 @@ def turned(path: Path) -> Floats:
 
 
 def turns(path: Path) -> tuple[float, float]:
-    """Full turns in the main direction, and the share of the turning that went the other way."""
+    """Return the full turns in the main direction, and the share of turning the other way."""
     angles = turned(path)
     total, other = float(np.sum(angles)), 0.0
     way = float(np.sum(np.abs(angles)))
@@ -49,7 +49,7 @@ def turns(path: Path) -> tuple[float, float]:
 
 
 def growth(path: Path) -> Floats:
-    """By how much the mean distance from the centre grows from each full turn to the next [m]."""
+    """Return the growth of the mean distance from the centre, turn by turn [m]."""
     angle = np.abs(np.cumsum(turned(path)))
     turn = np.floor(angle / (2 * np.pi))
     if not len(turn):
@@ -79,9 +79,9 @@ class Loops(NamedTuple):
 
 
 def loops(path: Path) -> Loops:
-    """Look at the drawn line alone: how the turtle was heading does not matter.
+    """Measure the drawn line alone: how the turtle was heading does not matter.
 
-    Taken as the centre is that of the window, the beginning of the path, or its middle.
+    The centre is that of the window, the beginning of the path, or its middle.
     """
     points = path.points[path.free]
     if not len(points):
@@ -121,10 +121,10 @@ def _straight_out(points: Floats, distance: Floats, angle: Floats) -> float:
 
 
 def shown(path: Path, tolerances: Tolerances) -> float:
-    """What a path's turns are worth as evidence of how it was driven.
+    """Return how much a path's turns show of how it was driven, 0 to 1.
 
-    1 for all turns that are asked for, 0 for half of them or less, and in proportion between: who
-    hardly drives has hardly done anything wrong, and nothing right.
+    1 for all turns that are asked for, 0 for half of them or less, and linear in between: a short
+    path can hardly have anything wrong, and shows nothing right.
     """
     turned, _ = turns(path)
     made = min(turned, loops(path).rounds + BEHIND_TURNS) / max(tolerances["turns"], 1e-9)

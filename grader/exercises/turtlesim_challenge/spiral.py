@@ -1,4 +1,4 @@
-"""Whether the path is the spiral that was asked for, and what part of it is."""
+"""Judges whether the path is the spiral that was asked for, and what part of it is."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grader.message import NOTHING, Message, chained, joined, msg
 
 
 def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
-    """Its start, its turns and its growth earn points each."""
+    """Judge the start, the turns and the growth, each for its points."""
     parts = {
         "start": (tolerances["share_start"], *_start(path, tolerances)),
         "turns": (tolerances["share_turns"], *_turns(path, tolerances)),
@@ -54,14 +54,14 @@ def _all_right(path: Path) -> Message:
 
 
 def _earned(good: Mapping[str, float]) -> Message:
-    """What the parts that are right have earned."""
+    """Say what the parts that are right have earned."""
     if not good:
         return msg("It earned no points.")
-    told = [
+    earned = [
         msg("{share:.0f} % {part}", share=100 * share, part=_FOR[name])
         for name, share in good.items()
     ]
-    return msg("It earned {parts}.", parts=chained(told))
+    return msg("It earned {parts}.", parts=chained(earned))
 
 
 _FOR = {
@@ -69,7 +69,7 @@ _FOR = {
     "turns": msg("for the turns"),
     "growth": msg("for the growth"),
 }
-#: What is wrong with a part, if anything, and where to see it.
+#: The fault of a part, if any, and where to see it.
 Part = tuple[Message, tuple[Evidence, ...]]
 
 

@@ -1,4 +1,4 @@
-"""How the turtle of one run came to rest."""
+"""Judges how the turtle of one run came to rest."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from grader.scenes.turtlesim.trace import stands_still
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 
-#: What is left of the points of a stop near an edge that is not quite one: because no commands
-#: came any more, or while the turtle turns on and on.
+#: The share of points for a stop near an edge that is none by a command: because no commands came
+#: any more, or while the turtle turns on and on.
 HALF = 0.5
 HALF_OF_IT = msg("That is half of the points.")
-#: Who is told to stop so soon after a wall was touched has waited for that.
+#: A stop command so soon after a wall was touched was sent because of that.
 AT_THE_WALL_TICKS = 32
 WALLS = ("left", "bottom", "right", "top")
 #: How sentences name them: "the {wall} wall". The keys tell translators which left is meant.
@@ -42,7 +42,7 @@ WALL_NAMES = {
 }
 
 #: How a run ended. `late`: the time was up while a spiral still grew, and had not
-#: touched a wall; `far`: told to stop where no wall is near.
+#: touched a wall; `far`: a stop by a command where no wall is near.
 Kind = Literal["stopped", "halfway", "wall", "late", "far", "other", "void"]
 
 
@@ -65,12 +65,12 @@ class Stop:
 
     @property
     def gap_m(self) -> float:
-        """How far from the nearest wall it drove no more [m]."""
+        """The distance from the nearest wall at its last motion [m]."""
         return float(self.path.wall_distance[self.path.last])
 
 
 def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
-    """Whether a run ended at rest near an edge, by a command, without touching a wall."""
+    """Judge whether a run ended at rest near an edge, by a command, without touching a wall."""
     void = judge_start(path)
     if void is not None:
         return Stop("void", void, path)
@@ -88,7 +88,7 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
         if _goes_on(path):
             return Stop("other", _moving(path, tolerances), path)
         return _far(path, gap, tolerances)
-    finding = _told_to_rest(path, gap)
+    finding = _rest_by_command(path, gap)
     kind: Kind = "stopped" if finding.share >= 1 else "halfway" if finding.share else "other"
     seen = finding.rationale
     if kind == "halfway":
@@ -97,7 +97,7 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
 
 
 def judge_start(path: Path) -> Finding | None:
-    """Why a run that starts elsewhere counts for nothing; None: it counts."""
+    """Say why a run that starts elsewhere does not count; None: it counts."""
     call = path.moved_away
     if call is None:
         return None
@@ -118,19 +118,19 @@ def judge_start(path: Path) -> Finding | None:
 
 
 def nearest_wall(path: Path, row: int) -> str:
-    """The wall that the turtle is nearest to."""
+    """Return the wall that the turtle is nearest to."""
     return WALLS[int(np.argmin(path.to_walls[row]))]
 
 
 def passed_by_m(stop: Stop) -> float:
-    """By how much it had been nearer to its wall before, and drove away again [m]."""
+    """Return by how much it had been nearer to its wall before, and drove away again [m]."""
     row = stop.path.last
     to_wall = stop.path.to_walls[: row + 1, WALLS.index(stop.wall)]
     return float(to_wall[row] - to_wall.min())
 
 
-def is_told_to_stop_at(path: Path, tick: int, within_ticks: int) -> bool:
-    """Whether a command to stand still came at about this tick."""
+def has_stop_command_at(path: Path, tick: int, within_ticks: int) -> bool:
+    """Whether a command to stop came at about this tick."""
     return any(
         stands_still(call) and abs(call.tick - tick) <= within_ticks for call in path.calls(CmdVel)
     )
@@ -157,19 +157,19 @@ def _touched(path: Path, wall: str, tolerances: Tolerances) -> Finding:
     if pair is None:
         return _too_late(path, ran, touched, at)
     stop, further = pair
-    told = path.at(stop.tick, _TOLD_TO_STOP)
+    stopped = path.at(stop.tick, _STOP_NOTE)
     text = msg(
         "The turtle ran into the {wall} wall at {time_s:.1f} s: {what_came}.",
         what_came=_stop_and_go(stop, further),
         **ran,
     )
-    return Finding(0, text, _ONE_SAYS_STOP, (told, touched))
+    return Finding(0, text, _ONE_SAYS_STOP, (stopped, touched))
 
 
 def _too_late(path: Path, ran: Mapping[str, Any], touched: Evidence, at: int) -> Finding:
-    """It was told to stop, at some time, but not before it was at the wall."""
-    told = next(c for c in path.calls(CmdVel) if stands_still(c))
-    if not 0 <= told.tick - at <= AT_THE_WALL_TICKS:
+    """Judge a run whose first stop command came only at the wall."""
+    stopped = next(c for c in path.calls(CmdVel) if stands_still(c))
+    if not 0 <= stopped.tick - at <= AT_THE_WALL_TICKS:
         text = msg("The turtle ran into the {wall} wall at {time_s:.1f} s.", **ran)
         help_ = msg("Watch the pose, and stop before a wall is reached.")
         return Finding(0, text, help_, (touched,))
@@ -189,7 +189,7 @@ def _too_late(path: Path, ran: Mapping[str, Any], touched: Evidence, at: int) ->
     )
 
 
-_TOLD_TO_STOP = msg("told to stop here")
+_STOP_NOTE = msg("told to stop here")
 _LAST_PLACE = msg("the last place it moved to")
 _IS_IT_EVER_TRUE = msg(
     "Watch the pose, and stop before a wall is reached. If your node does so: is the condition "
@@ -261,9 +261,9 @@ def _moving(path: Path, tolerances: Tolerances) -> Finding:
     pair = drove_on(path, path.stop_tick, tolerances["edge_m"])
     if pair is not None:
         stop, further = pair
-        told = path.at(stop.tick, _TOLD_TO_STOP)
+        stopped = path.at(stop.tick, _STOP_NOTE)
         text = msg("{moving}: {what_came}.", moving=text, what_came=_stop_and_go(stop, further))
-        return Finding(0, text, _ONE_SAYS_STOP, (told, end))
+        return Finding(0, text, _ONE_SAYS_STOP, (stopped, end))
     nearest = float(path.wall_distance.min()) if len(path) else 0.0
     if nearest <= tolerances["edge_m"]:
         return Finding(
@@ -306,7 +306,7 @@ def _goes_on(path: Path) -> bool:
 
 
 def _far(path: Path, gap: float, tolerances: Tolerances) -> Stop:
-    """It came to rest far from every wall: told so, or carried there by its last command."""
+    """Judge a rest far from every wall: by a command, or where its last command led."""
     end = path.at(path.stop_tick, _LAST_PLACE)
     ending = how_it_ended(path.recording)
     rested = {"gap_m": gap, "near_m": tolerances["edge_m"]}
@@ -328,7 +328,7 @@ def _far(path: Path, gap: float, tolerances: Tolerances) -> Stop:
 
 
 def _unstopped(path: Path) -> tuple[Message, Message] | None:
-    """Why no command to stop was in force when it drove no more, with help; None: one was."""
+    """Say why no stop command was in force when it drove no more, with help; None: one was."""
     drove = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
     if drove and not drove[-1].linear[0]:
         return None
@@ -346,8 +346,8 @@ def _unstopped(path: Path) -> tuple[Message, Message] | None:
     ), msg("Publish a Twist of zeros to stop.")
 
 
-def _told_to_rest(path: Path, gap: float) -> Finding:
-    """Whether it was a command that ended all motion, near an edge."""
+def _rest_by_command(path: Path, gap: float) -> Finding:
+    """Judge whether it was a command that ended all motion, near an edge."""
     end = path.at(path.stop_tick, _LAST_PLACE)
     run = path.recording.run
     ending = how_it_ended(path.recording)

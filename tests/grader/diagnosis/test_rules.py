@@ -386,10 +386,10 @@ def test_a_check_that_found_an_end_unused_says_which():
     assert (str(found.help), found.place) == ("Call /turtle1/set_pen.", LINE)
 
 
-def of_check(rationale, help_="", **told):
+def of_check(rationale, help_="", **observed):
     texts = map(plain_text, (rationale, help_))
     verdict = Verdict("check", plain_text("Check"), "failed", 0, 20, *texts)
-    found = diagnose(Recordings(run_of(said(**told))), [verdict])
+    found = diagnose(Recordings(run_of(said(**observed))), [verdict])
     assert found is not None
     return found
 
@@ -412,8 +412,10 @@ def test_a_slip_stands_before_the_finding_that_it_may_explain(kind):
 
 
 def test_a_slip_that_explains_an_exception_only_is_not_told_of_anything_else():
-    slips = tuple(LintFinding(kind, "a", "b", LINE) for kind in ("method", "without_self", "class"))
-    assert of_check("It ran into a wall.", lint_findings=slips).cause == plain_text(
+    findings = tuple(
+        LintFinding(kind, "a", "b", LINE) for kind in ("method", "without_self", "class")
+    )
+    assert of_check("It ran into a wall.", lint_findings=findings).cause == plain_text(
         "It ran into a wall."
     )
 

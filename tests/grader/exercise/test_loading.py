@@ -99,16 +99,16 @@ def test_an_unknown_name_lists_the_known_ones():
         load_exercise("chess")
 
 
-def said_of(tmp_path, text):
+def message_of(tmp_path, text):
     path = tmp_path / "mine.yaml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(ExerciseError) as error:
         load_exercise(path)
     prefix = f"{path} is not an exercise: "
-    said = str(error.value.message)
-    assert said.startswith(prefix)
-    assert "\n" not in said
-    return said.removeprefix(prefix)
+    message = str(error.value.message)
+    assert message.startswith(prefix)
+    assert "\n" not in message
+    return message.removeprefix(prefix)
 
 
 @pytest.mark.parametrize(
@@ -134,9 +134,9 @@ def said_of(tmp_path, text):
 )
 def test_a_slip_is_told_with_file_and_line(tmp_path, text, words):
     head = text if isinstance(text, bytes) else text.encode()
-    said = said_of(tmp_path, f"exercise: {NAME}\n".encode() + head)
-    assert said.startswith("mine.yaml")
-    assert words in said
+    message = message_of(tmp_path, f"exercise: {NAME}\n".encode() + head)
+    assert message.startswith("mine.yaml")
+    assert words in message
 
 
 def test_an_alias_is_read_as_yaml_says(tmp_path):
@@ -146,4 +146,4 @@ def test_an_alias_is_read_as_yaml_says(tmp_path):
 
 
 def test_a_copy_of_an_exercise_in_a_folder_must_lie_there(tmp_path):
-    assert "must lie in that exercise's own folder" in said_of(tmp_path, "exercise: corner\n")
+    assert "must lie in that exercise's own folder" in message_of(tmp_path, "exercise: corner\n")

@@ -11,11 +11,11 @@ import re
 import pytest
 
 from grader.cli import main
-from grader.exercise.handing_in import LatePolicy
+from grader.exercise.policies import LatePolicy
 from grader.reports import read as read_report
 from grader.reports import render
 from grader.reports.wording import duration
-from grader.result.result import HandedIn, Result
+from grader.result.result import Result, SubmissionInfo
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
@@ -214,10 +214,13 @@ def test_what_lateness_costs_does_not_tell_what_hidden_checks_gave(tmp_path):
 @pytest.mark.parametrize(
     ("hand_in", "words"),
     [
-        (HandedIn.of("4711", "", 1, DUE, POLICY), ["4711, attempt 1, handed in 2026-11-30 22:59:"]),
-        (HandedIn.of("4711", "Zoë", 1, None, POLICY), ["Zoë, attempt 1."]),
         (
-            HandedIn("4711", "Zoë", 1, DUE, 300),
+            SubmissionInfo.of("4711", "", 1, DUE, POLICY),
+            ["4711, attempt 1, handed in 2026-11-30 22:59:"],
+        ),
+        (SubmissionInfo.of("4711", "Zoë", 1, None, POLICY), ["Zoë, attempt 1."]),
+        (
+            SubmissionInfo("4711", "Zoë", 1, DUE, 300),
             ["Handed in 5 min late, which costs no points."],
         ),
     ],

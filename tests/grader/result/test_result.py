@@ -10,13 +10,20 @@ from hypothesis import given
 from grader import reports
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.errors import UsageError
-from grader.exercise.handing_in import LatePolicy
 from grader.exercise.loading import load_exercise
+from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Evidence, Verdict
 from grader.message import NOTHING, authored, joined, msg, msg_many, plain_text
 from grader.recording.observations import SourceLine
 from grader.recording.recording import Provenance, Recordings, Run, Start
-from grader.result.result import HandedIn, Judging, Result, ResultProvenance, RunSummary, build
+from grader.result.result import (
+    Judging,
+    Result,
+    ResultProvenance,
+    RunSummary,
+    SubmissionInfo,
+    build,
+)
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
@@ -192,7 +199,7 @@ def test_a_result_adds_up_its_verdicts_and_remarks_on_its_runs():
 
 DUE = datetime(2026, 11, 30, 22, 59, tzinfo=UTC)
 POLICY = LatePolicy(DUE, 10, 10, 50)
-LATE = HandedIn.of("4711", "Zoë Müller", 2, DUE + timedelta(days=1, hours=3), POLICY)
+LATE = SubmissionInfo.of("4711", "Zoë Müller", 2, DUE + timedelta(days=1, hours=3), POLICY)
 
 
 def with_it(handed_in, **more):
@@ -216,8 +223,8 @@ def test_the_final_score_is_what_lateness_leaves_and_never_below_nothing(score, 
 
 def test_without_a_hand_in_or_a_policy_the_score_is_final():
     assert Result.from_json(samples.result()).final == 18.33
-    assert with_it(HandedIn.of("4711", "", 1, None, POLICY)).final == 18.33
-    assert with_it(HandedIn.of("4711", "", 1, DUE, None)).final == 18.33
+    assert with_it(SubmissionInfo.of("4711", "", 1, None, POLICY)).final == 18.33
+    assert with_it(SubmissionInfo.of("4711", "", 1, DUE, None)).final == 18.33
 
 
 def test_it_costs_what_the_exercise_says_now():

@@ -234,7 +234,7 @@ def test_the_folder_of_a_courses_server_with_a_zip_in_it_is_looked_into(tmp_path
         assert str(
             submission.found
         ) == "console script turtle_controller in spiral/setup.py, in " + ("spiral.zip")
-        assert submission.as_handed_in(str(submission.root)).startswith(str(folder))
+        assert submission.with_original_paths(str(submission.root)).startswith(str(folder))
 
 
 def test_a_zip_in_a_zip_is_unpacked_and_so_is_a_tar(tmp_path: Path) -> None:

@@ -222,19 +222,21 @@ def test_paths_are_told_as_they_were_handed_in(home: Path) -> None:
     for handed_in, shown in ((home, home), (home / "spiral/node.py", home / "spiral")):
         with open_submission(handed_in) as submission:
             text = f'File "{submission.root}/node.py", line 1\n{submission.root}'
-            assert submission.as_handed_in(text) == f'File "{shown}/node.py", line 1\n{shown}'
-            assert str(submission.root) not in submission.as_handed_in(text)
+            assert (
+                submission.with_original_paths(text) == f'File "{shown}/node.py", line 1\n{shown}'
+            )
+            assert str(submission.root) not in submission.with_original_paths(text)
     archive = shutil.make_archive(str(home.parent / "alice"), "zip", home)
     with open_submission(Path(archive)) as submission:
-        told = submission.as_handed_in(f"{submission.root}/spiral/node.py")
-        assert told == f"{archive}/spiral/node.py"
+        printed = submission.with_original_paths(f"{submission.root}/spiral/node.py")
+        assert printed == f"{archive}/spiral/node.py"
 
 
 def test_a_package_that_lacks_its_init_file_is_told_by_its_own_path(home: Path) -> None:
     lay(home, {"setup.py": SETUP, "spiral/node.py": NODE})
     with open_submission(home) as submission:
-        told = submission.as_handed_in(f"{submission.root}/spiral/node.py")
-        assert told == f"{home}/spiral/node.py"
+        printed = submission.with_original_paths(f"{submission.root}/spiral/node.py")
+        assert printed == f"{home}/spiral/node.py"
         assert (submission.root / "spiral/__init__.py").exists()
 
 
@@ -244,16 +246,16 @@ def test_a_path_that_was_cut_through_tells_nothing_of_the_copy() -> None:
     note = "\n[... 7 bytes left out ...]\n"
     for at in range(1, len(prefix)):
         text = f"{prefix} {prefix[:at]}{note}{prefix[at:]}/x {prefix}"
-        told = copy.as_handed_in(text)
+        printed = copy.with_original_paths(text)
         begin = shown[:at] if at >= 8 else prefix[:at]  # which tells nothing yet
-        assert told.startswith(f"{shown} {begin}\n[")
-        assert told.endswith(f"/x {shown}")
-        assert "0123" not in told and "89ab" not in told
-        assert note in told
-        assert copy.as_handed_in(f"cannot read {prefix[:at]}") == f"cannot read {begin}"
+        assert printed.startswith(f"{shown} {begin}\n[")
+        assert printed.endswith(f"/x {shown}")
+        assert "0123" not in printed and "89ab" not in printed
+        assert note in printed
+        assert copy.with_original_paths(f"cannot read {prefix[:at]}") == f"cannot read {begin}"
 
 
 def test_letters_beside_a_cut_that_are_no_path_stay_as_they_are() -> None:
     copy = PrivateCopy(Path("/tmp/a/copy/x"), Path("/home/ada/x"), "/tmp/a/copy", "/home/ada")
     text = "it is /\n[... 7 bytes left out ...]\nyes, py"
-    assert copy.as_handed_in(text) == text
+    assert copy.with_original_paths(text) == text

@@ -16,7 +16,7 @@ import pytest
 
 from grader.errors import GraderFailure, SubmissionError
 from grader.run.opening import open_submission
-from grader.submission import answer, reader
+from grader.submission import reader
 from grader.submission.start import EntryPoint
 from tests.files import lay
 from tests.limited import printed_by
@@ -314,7 +314,7 @@ def test_its_imports_come_along(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "said",
+    "answer",
     [
         b"",
         b"null\n",
@@ -326,6 +326,6 @@ def test_its_imports_come_along(tmp_path: Path) -> None:
         b"[" * 100_000 + b"\n",
     ],
 )
-def test_an_answer_that_makes_no_sense_is_the_grader_s_failure(said: bytes) -> None:
+def test_an_answer_that_makes_no_sense_is_the_grader_s_failure(answer: bytes) -> None:
     with pytest.raises(GraderFailure):
-        answer.decoded(said).submission()
+        reader.decoded(answer).submission()

@@ -8,15 +8,15 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.scenes.package.inspection import SetUp, Told
-from grader.submission.folder import HandedInFolder
+from grader.submission.folder import SubmissionFolder
 from grader.submission.set_ups import PackageFolder, read_package
 from tests.files import lay
 
 
 def read(folder: Path, *scripts: str, package_folders: tuple[str, ...] = ()) -> PackageFolder:
     lay(folder, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
-    told = Told(scripts=scripts, package_folders=package_folders)
-    return read_package(SetUp(".", told, None), HandedInFolder("pkg", folder))
+    declared = Told(scripts=scripts, package_folders=package_folders)
+    return read_package(SetUp(".", declared, None), SubmissionFolder("pkg", folder))
 
 
 @pytest.mark.parametrize(
@@ -57,8 +57,8 @@ def test_an_entry_that_no_tool_could_install_is_refused(
 def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path: Path, named: str) -> None:
     lay(tmp_path, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
     (tmp_path / named).write_text("go: pkg.node:main")
-    told = Told(scripts=("go = pkg.node:main",))
-    (script,) = read_package(SetUp(".", told, None), HandedInFolder("pkg", tmp_path)).scripts
+    declared = Told(scripts=("go = pkg.node:main",))
+    (script,) = read_package(SetUp(".", declared, None), SubmissionFolder("pkg", tmp_path)).scripts
     assert script.file == tmp_path / named
 
 

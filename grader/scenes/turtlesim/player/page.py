@@ -14,7 +14,7 @@ from string import Template
 from typing import Any
 
 import turtlesim_py
-from grader.recording.playback import JudgedCheck, Moment, Playback, Take
+from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
 from grader.scenes.turtlesim.player import runs
 from grader.scenes.turtlesim.player.film import film
 from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
@@ -40,7 +40,7 @@ def render(playback: Playback) -> str:
         "sprites": {SPRITE: base64.b64encode(picture.sprite(SPRITE).tobytes()).decode()},
         "sprite": SPRITE,
         "title": playback.title,
-        "runs": [_run(take) for take in playback.takes],
+        "runs": [_run(take) for take in playback.runs],
         "judged": [_judged(item) for item in playback.judged],
         "other": None if playback.other is None else _other(playback, playback.other),
     }
@@ -58,7 +58,7 @@ def render(playback: Playback) -> str:
     )
 
 
-def _run(take: Take) -> dict[str, Any]:
+def _run(take: PlayedRun) -> dict[str, Any]:
     made = film(TurtleTrace.of(take.trace), take.start)
     return {
         "title": take.title,
@@ -73,11 +73,11 @@ def _judged(item: JudgedCheck) -> dict[str, Any]:
 
 
 def _other(playback: Playback, other: Playback) -> dict[str, Any]:
-    traces = zip(playback.takes, other.takes, strict=False)
+    traces = zip(playback.runs, other.runs, strict=False)
     return {
         "title": other.title,
         "summary": other.summary,
-        "runs": [_run(take) for take in other.takes],
+        "runs": [_run(take) for take in other.runs],
         "differences": [
             runs.first_difference(TurtleTrace.of(one.trace), TurtleTrace.of(two.trace))
             for one, two in traces

@@ -10,7 +10,7 @@ from PIL import Image
 
 from grader.batch.entry import Entry, HandIn, Person
 from grader.message import plain_text
-from grader.result.result import HandedIn, Result
+from grader.result.result import Result, SubmissionInfo
 from grader.strict_json import to_json
 from tests.grader.reports import samples
 
@@ -78,7 +78,7 @@ def judged(folder: Path, *people: Person, deducted: float = 0.0, **more: Any) ->
     artifacts = {"canvas": "canvas.png", "output": "output.txt"}
     result = Result.from_json(samples.result(submission=hand_in.name, artifacts=artifacts, **more))
     if deducted:
-        late = HandedIn(people[0].id, deducted=deducted)
+        late = SubmissionInfo(people[0].id, deducted=deducted)
         result = Result.from_json(result.to_json() | {"handed_in": to_json(late)})
     return Entry(hand_in, "judged", MAXIMUM, result=result, folder=own)
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 
 from grader.batch.page.students import evenly, students
-from grader.result.result import HandedIn
+from grader.result.result import SubmissionInfo
 from tests.grader.batch.page.classes import entry, result, student
 
 GOOD = {"a": 10.0}
@@ -43,7 +43,7 @@ def test_the_report_is_beside_the_page_and_only_where_there_is_one():
 
 def test_how_late_it_was_is_told_with_what_it_cost():
     def late(**told):
-        return student(replace(result(GOOD), handed_in=HandedIn("zoe", **told))).late
+        return student(replace(result(GOOD), handed_in=SubmissionInfo("zoe", **told))).late
 
     assert late(late_s=93_600, days=2, deducted=10) == "1 d 2 h, −10"
     assert late(late_s=90) == "0 h 1 min"

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 
 from grader.errors import RecordingError
-from grader.recording.playback import JudgedCheck, Line, Playback, Sent, Take
+from grader.recording.playback import JudgedCheck, Line, Playback, PlayedRun, Sent
 from grader.recording.subject import Start
 from grader.scenes.turtlesim.driving import drive
 from grader.scenes.turtlesim.player import page, runs
@@ -225,7 +225,7 @@ def test_what_stands_in_a_result_ends_no_element_of_the_page():
     evil = "</script><script>alert(1)</script><!-- $data & co"
     trace: TurtleTrace = drive(eventful, 3)[0]
     judged = JudgedCheck(evil, "failed", evil, evil, evil, ())
-    made = page.render(Playback(evil, evil, (Take(0, evil, evil, trace),), (judged,)))
+    made = page.render(Playback(evil, evil, (PlayedRun(0, evil, evil, trace),), (judged,)))
     assert made.count("<script") == 2
     assert made.count("</script>") == 2
     assert "alert(1)</" not in made

@@ -1,4 +1,4 @@
-"""What exercise.yaml says beside judging: what students see of it, and what late hand-ins cost."""
+"""The keys `visible` and `late`: what students see, and what late submissions cost."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _DAY = timedelta(days=1)
 
 @dataclass(frozen=True)
 class Late:
-    """What the time of a hand-in means.
+    """How late a submission is, and what that costs.
 
     Attributes:
-        late_s: after it was due [s], grace included; 0 where it came in time.
-        days: so many started days of it cost points.
+        late_s: after it was due [s], grace included; 0 where it was in time.
+        days: how many started days of it cost points.
         points: what that costs.
     """
 
@@ -32,16 +32,16 @@ class Late:
 
 @dataclass(frozen=True)
 class LatePolicy:
-    """When an exercise is due, and what it costs to hand in later.
+    """When an exercise is due, and what a later submission costs.
 
-    What it costs depends on nothing but the time: not on the score, which could else be told from
+    The cost depends on nothing but the time: not on the score, which could else be concluded from
     it where a part of it is not shown.
 
     Attributes:
         due: with its time zone.
-        grace_min: so long after it costs nothing [minutes]; the first day begins when that is over.
+        grace_min: how long after it costs nothing [minutes]; the first day begins after that.
         per_day: points for each started day of 24 hours.
-        most: so many points in all.
+        most: the limit of these points.
     """
 
     due: datetime
@@ -50,7 +50,7 @@ class LatePolicy:
     most: float
 
     def deduction(self, at: datetime) -> Late:
-        """What a hand-in at some time costs.
+        """Return what a submission at some time costs.
 
         Raises:
             ValueError: the time has no zone.
@@ -64,7 +64,7 @@ class LatePolicy:
         return Late(max(late.total_seconds(), 0.0), days, round(points, 2))
 
 
-# What exercise.yaml says --------------------------------------------------------------------------
+# The keys of exercise.yaml ------------------------------------------------------------------------
 
 VISIBLE = get_args(Visible)
 LATE = ("due", "grace_min", "per_day", "most")
@@ -74,10 +74,10 @@ _SHOWN: Mapping[Visible, int] = {"now": 0, "points_only": 0, "after_due": 1, "ne
 
 
 def visible(given: object, checks: Checks, points: Mapping[str, float]) -> dict[str, Visible]:
-    """Check name -> what students see of it, for those that the file names.
+    """Parse `visible`: check name -> what students see of it, for those that the file names.
 
     Raises:
-        Mistake: a name or a value is none, or a check would tell of one that is not shown yet.
+        Mistake: a name or a value is none, or a check would reveal one that is not shown yet.
     """
     if given is None:
         return {}
@@ -98,7 +98,7 @@ def visible(given: object, checks: Checks, points: Mapping[str, float]) -> dict[
 
 
 def _check_order(given: Mapping[str, Visible], checks: Checks, points: Mapping[str, float]) -> None:
-    """Refuse a check that is shown before one that it depends on: "not judged" tells of that."""
+    """Refuse a check that is shown before one that it depends on: "not judged" reveals that."""
     for check in checks:
         for other in check.depends_on:
             if not {check.name, other} <= points.keys():
@@ -117,7 +117,7 @@ def _check_order(given: Mapping[str, Visible], checks: Checks, points: Mapping[s
 
 
 def late(given: object, max_score: float) -> LatePolicy | None:
-    """What late hand-ins cost; None where the file does not say when they are due.
+    """Parse `late`: what late submissions cost; None where the file has no such key.
 
     Raises:
         Mistake: something of it cannot be used.

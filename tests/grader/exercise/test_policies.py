@@ -8,8 +8,8 @@ import pytest
 import yaml
 
 from grader.errors import ExerciseError
-from grader.exercise.handing_in import Late, LatePolicy
 from grader.exercise.loading import load_exercise
+from grader.exercise.policies import Late, LatePolicy
 from grader.exercise.sheet import Start, sheet
 from grader.recording.subject import load_subject
 from tests.grader.testing import exercises

@@ -1,7 +1,7 @@
-"""What Python and rclpy say of usual mistakes, in plain words, and what to do about each.
+"""Explains the usual exceptions of Python and rclpy in plain words, and says what to do about each.
 
-The first that fits is taken. What is said is about the exception's own text and the line that it
-came from, both of which a submission may have made up.
+The first rule that fits counts. It reads the exception's text and the line that it came from, both
+of which a submission may have made up.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from grader.diagnosis.case import told
+from grader.diagnosis.case import excerpt
 from grader.message import NOTHING, Message, msg
 from grader.recording.observations import Caught, Raised, SourceLine
 
-#: So much of an exception's text is looked at [characters].
+#: So much of an exception's text is searched [characters].
 _LONGEST = 1000
-#: What a Node has under these names can only be read.
+#: Properties of a Node that can only be read.
 _OF_A_NODE = frozenset(
     {"publishers", "subscriptions", "clients", "services", "timers", "guards", "waitables"}
 )
@@ -28,7 +28,7 @@ _GIVEN = re.compile(
     r"(?:(\w{1,60})\.)?(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w"
 )
 _MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
-_LOOKED_INTO = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
+_SUBSCRIPTED = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
 _CREATES = re.compile(r"\b(create_(?:publisher|subscription|client|service))\(")
 _IN_ORDER = {
     "create_publisher": "create_publisher(Twist, '/topic', 10)",
@@ -40,7 +40,7 @@ _NOT_CALLED = msg(
     "Pass a callback by its name, without parentheses: self.NAME, not self.NAME(), which calls "
     "it at once and passes what it returns."
 )
-#: What may be said of an exception of which no more is known.
+#: The meaning of an exception that no rule explains.
 _MEANING = {
     "KeyError": msg(
         "What that line looks into has no such entry: compare it with those that it has."
@@ -61,13 +61,13 @@ _MEANING = {
 
 
 @dataclass(frozen=True)
-class Said:
-    """A mistake in words.
+class Hint:
+    """An exception in plain words.
 
     Attributes:
-        help: what to do.
-        text: in place of what the exception says; '' where that is good as it is.
-        place: where to mend it; None where that is where it was raised.
+        help: what to do; '' where that is not known.
+        text: instead of the exception's own text; '' where that is good as it is.
+        place: where to fix it; None where that is where it was raised.
     """
 
     help: Message
@@ -75,74 +75,70 @@ class Said:
     place: SourceLine | None = None
 
 
-def known(raised: Raised | Caught) -> Said | None:
-    """What is known of an exception; None where only its name is."""
+def explain(raised: Raised | Caught) -> Hint:
+    """Explain an exception by the first rule that fits, or else by its name alone."""
     name, text = raised.type.rpartition(".")[2], raised.text[:_LONGEST]
-    return next((said for rule in _RULES if (said := rule(name, text, raised.place))), None)
+    hints = (hint for rule in _RULES if (hint := rule(name, text, raised.place)))
+    return next(hints, Hint(_MEANING.get(name, NOTHING)))
 
 
-def meaning(raised: Raised | Caught) -> Message:
-    """What an exception of this name means; '' where that says no more than its name."""
-    return _MEANING.get(raised.type.rpartition(".")[2], NOTHING)
-
-
-def _without_init(name: str, text: str, _: SourceLine | None) -> Said | None:
+def _without_init(name: str, text: str, _: SourceLine | None) -> Hint | None:
     """ROS or the node has not been started."""
     if name == "NotInitializedException" or "rclpy.init() has not been called" in text:
-        return Said(
+        return Hint(
             msg("Call rclpy.init() at the start of main(), before the node is made."),
             msg("rclpy.init() has not been called"),
         )
     if name == "AttributeError" and re.search(f"has no attribute {_NODE_ATTRIBUTE}", text):
-        return Said(
+        return Hint(
             msg("super().__init__('name_of_the_node') must come first in __init__."),
             msg("the Node is not made yet when that line uses it"),
         )
     if "__init__() missing" in text and "'node_name'" in text:
-        return Said(msg("Give the node a name: super().__init__('name_of_the_node')."))
+        return Hint(msg("Give the node a name: super().__init__('name_of_the_node')."))
     return None
 
 
-def _taken_name(_: str, text: str, __: SourceLine | None) -> Said | None:
-    """An attribute that can only be read."""
+def _read_only_name(_: str, text: str, __: SourceLine | None) -> Hint | None:
+    """The program sets an attribute that can only be read."""
     found = re.search(r"property '(\w{1,60})' of .{1,80} object has no setter", text) or re.search(
         r"can't set attribute '?(\w{1,60})", text
     )
     if found is None:
         return None
     if found[1] in _OF_A_NODE:
-        return Said(
+        return Hint(
             msg(
                 "A Node has a `{name}` of its own: choose another name, as self.my_{name}.",
-                name=told(found[1]),
+                name=excerpt(found[1]),
             )
         )
-    return Said(
+    return Hint(
         msg(
             "`{name}` can only be read: choose another name for what you keep.",
-            name=told(found[1]),
+            name=excerpt(found[1]),
         )
     )
 
 
-def _class_for_instance(name: str, text: str, place: SourceLine | None) -> Said | None:
-    """A class stands where something that was made of it has to."""
+def _class_for_instance(name: str, text: str, place: SourceLine | None) -> Hint | None:
+    """A class was given instead of an instance of it."""
     line = place.text if place is not None else ""
     got = re.search(r"got <class '[\w.]{0,100}\.Metaclass_(\w{1,60})'>", text)
     if got is not None:
-        return Said(
-            msg("The parentheses are missing: {type}() makes a message.", type=told(got[1])),
-            msg("publish() was given the class {type} itself, not a message", type=told(got[1])),
+        return Hint(
+            msg("The parentheses are missing: {type}() makes a message.", type=excerpt(got[1])),
+            msg("publish() was given the class {type} itself, not a message", type=excerpt(got[1])),
         )
     wrong = re.search(r"Expected <class '[\w.]+\.(\w{1,60})'>, got <class '([\w.]{1,100})'>", text)
     if wrong is not None:
-        wanted, was = told(wrong[1]), told(wrong[2].rpartition(".")[2])
-        return Said(
+        wanted, was = excerpt(wrong[1]), excerpt(wrong[2].rpartition(".")[2])
+        return Hint(
             msg("Give it a {wanted}.", wanted=wanted),
             msg("{wanted} is what can be sent there, it was given: {was}", wanted=wanted, was=was),
         )
     if name == "TypeError" and not text and "call" in line:
-        return Said(
+        return Hint(
             msg(
                 "Are parentheses missing where the request is made? SetPen.Request() makes one, "
                 "SetPen.Request is only its class."
@@ -151,31 +147,31 @@ def _class_for_instance(name: str, text: str, place: SourceLine | None) -> Said 
         )
     if "'property' object" in text or "'getset_descriptor' object" in text:
         if "spin" in line:
-            return Said(
+            return Hint(
                 msg("The parentheses are missing where the node is made: node = MyNode()."),
                 msg("spin was given a class, not a node that was made of it"),
             )
-        return Said(msg("The parentheses are missing where the message is made, as in Twist()."))
+        return Hint(msg("The parentheses are missing where the message is made, as in Twist()."))
     return None
 
 
-def _no_node(_: str, text: str, place: SourceLine | None) -> Said | None:
-    """Something is spun that is no node."""
+def _no_node(_: str, text: str, place: SourceLine | None) -> Hint | None:
+    """The program spins something that is no node."""
     found = re.search(r"'([\w.]{1,60})' object has no attribute '(subscriptions|executor)'", text)
     if found is None or place is None or "spin" not in place.text:
         return None
-    return Said(
+    return Hint(
         msg("Make a node and spin that: node = MyNode(), then rclpy.spin(node)."),
-        msg("spin has to be given the node, it was given: {was}", was=told(found[1])),
+        msg("spin has to be given the node, it was given: {was}", was=excerpt(found[1])),
     )
 
 
-def _callback(_: str, text: str, place: SourceLine | None) -> Said | None:
+def _callback(_: str, text: str, place: SourceLine | None) -> Hint | None:
     """A callback that cannot be called as rclpy calls it."""
     if "object is not callable" in text and ("'NoneType'" in text or "'coroutine'" in text):
-        return Said(_NOT_CALLED)
+        return Hint(_NOT_CALLED)
     if "callback should be" in text:
-        return Said(
+        return Hint(
             msg(
                 "A method takes self before all else, and a callback of a subscription "
                 "the message: def on_pose(self, pose)."
@@ -183,80 +179,80 @@ def _callback(_: str, text: str, place: SourceLine | None) -> Said | None:
             msg("this callback of a subscription takes no message"),
         )
     if found := _GIVEN.search(text):
-        owner, name, takes, given = found.groups()
-        if owner and takes == "0":
-            takes = "self, msg" if int(given) > 1 else "self"
-            return Said(msg("Write def {name}({takes}).", name=told(name), takes=takes))
-        if owner and (takes, given) == ("1", "2"):
-            return Said(
+        owner, name, expected, given = found.groups()
+        if owner and expected == "0":
+            arguments = "self, msg" if int(given) > 1 else "self"
+            return Hint(msg("Write def {name}({takes}).", name=excerpt(name), takes=arguments))
+        if owner and (expected, given) == ("1", "2"):
+            return Hint(
                 msg(
                     "Write def {name}(self, msg): the callback of a subscription is given "
                     "the message, one that add_done_callback() was given the future.",
-                    name=told(name),
+                    name=excerpt(name),
                 )
             )
-        return Said(msg("Compare that call with what stands at `def {name}`.", name=told(name)))
+        return Hint(msg("Compare that call with what stands at `def {name}`.", name=excerpt(name)))
     if found := _MISSING.search(text):
         is_called_by_rclpy = place is None or "spin" in place.text or "def " in place.text
         if not is_called_by_rclpy:
-            return Said(msg("Compare with what stands at `def {name}`.", name=told(found[1])))
-        return Said(
+            return Hint(msg("Compare with what stands at `def {name}`.", name=excerpt(found[1])))
+        return Hint(
             msg(
                 "Compare with what stands at `def {name}`; the callback of a timer is given "
                 "nothing but self.",
-                name=told(found[1]),
+                name=excerpt(found[1]),
             )
         )
     return None
 
 
-def _arguments(_: str, text: str, place: SourceLine | None) -> Said | None:
-    """What a library in C++ was given."""
+def _arguments(_: str, text: str, place: SourceLine | None) -> Hint | None:
+    """A function in C++ was given values of other types, or in another order."""
     line = place.text if place is not None else ""
     if "incompatible function arguments" in text:
         if found := _CREATES.search(line):
-            return Said(
+            return Hint(
                 msg("Compare the order: {in_order}.", in_order=_IN_ORDER[found[1]]),
                 msg(
                     "{function}() was given values of other types, or in another order",
                     function=found[1],
                 ),
             )
-        return Said(
+        return Hint(
             msg("Compare the order and the types with ROS's documentation."),
             msg("a function of rclpy's was given values of other types, or in another order"),
         )
     if "create_timer(" in line and "float() argument" in text:
-        return Said(msg("The time comes first: create_timer(0.1, self.on_timer)."))
+        return Hint(msg("The time comes first: create_timer(0.1, self.on_timer)."))
     return None
 
 
-def _no_entry(name: str, text: str, place: SourceLine | None) -> Said | None:
+def _no_entry(name: str, text: str, place: SourceLine | None) -> Hint | None:
     """A dict that has no such key."""
     if name != "KeyError" or not text:
         return None
-    found = _LOOKED_INTO.search(place.text if place is not None else "")
+    found = _SUBSCRIPTED.search(place.text if place is not None else "")
     if found is None:
         return None
-    return Said(
+    return Hint(
         msg(
             "{name} has no entry {entry}: compare with those that it has, and with what can come.",
-            name=told(found[1]),
-            entry=told(text),
+            name=excerpt(found[1]),
+            entry=excerpt(text),
         )
     )
 
 
-def _parameter(name: str, text: str, _: SourceLine | None) -> Said | None:
-    """A parameter of the node, instead of its value, or one that nobody has declared."""
+def _parameter(name: str, text: str, _: SourceLine | None) -> Hint | None:
+    """A Parameter was used instead of its value, or one that was not declared."""
     if name == "ParameterNotDeclaredException":
         asked = re.search(r"parameter\(s\): ([\w.]{1,60})", text)
-        of = told(asked[1]) if asked else "NAME"
-        return Said(
+        of = excerpt(asked[1]) if asked else "NAME"
+        return Hint(
             msg("Declare it first, in __init__: self.declare_parameter('{name}', 1.0).", name=of)
         )
     if name == "TypeError" and "'Parameter'" in text:
-        return Said(
+        return Hint(
             msg(
                 "get_parameter() gives a Parameter; what it is set to is its value: "
                 "self.get_parameter('NAME').value."
@@ -265,33 +261,33 @@ def _parameter(name: str, text: str, _: SourceLine | None) -> Said | None:
     return None
 
 
-def _none_or_unknown(_: str, text: str, place: SourceLine | None) -> Said | None:
+def _none_or_unknown(_: str, text: str, place: SourceLine | None) -> Hint | None:
     """None, a name that is not there, a spin within a spin."""
     if "NoneType" in text and place is not None and ".result()" in place.text:
-        return Said(
+        return Hint(
             msg(
                 "The answer has not come yet when that line runs: go on without it, or "
                 "use it in a callback that is given to add_done_callback()."
             )
         )
     if "NoneType" in text:
-        return Said(
+        return Hint(
             msg(
                 "Something there is still None: a message that has not come yet, or a "
                 "function that returns nothing. Return early as long as it is None."
             )
         )
-    own = re.search(r"has no attribute '(\w{1,60})'", text)
-    if own is not None and place is not None and f"self.{own[1]}" in place.text:
-        return Said(
+    missing = re.search(r"has no attribute '(\w{1,60})'", text)
+    if missing is not None and place is not None and f"self.{missing[1]}" in place.text:
+        return Hint(
             msg(
                 "self.{name} has no value when that line runs: write self.{name} = ... in"
                 " __init__, before the first callback; or compare the name.",
-                name=told(own[1]),
+                name=excerpt(missing[1]),
             )
         )
     if "has no attribute" in text:
-        return Said(
+        return Hint(
             msg(
                 "Compare the name; `ros2 interface show TYPE` lists the fields of a "
                 "message. An attribute of your own (self. ...) has to be set in "
@@ -299,11 +295,19 @@ def _none_or_unknown(_: str, text: str, place: SourceLine | None) -> Said | None
             )
         )
     if "Executor is already spinning" in text:
-        return Said(msg("Do not spin in a callback: use call_async() and add_done_callback()."))
+        return Hint(msg("Do not spin in a callback: use call_async() and add_done_callback()."))
     return None
 
 
-_RULES: tuple[Callable[[str, str, SourceLine | None], Said | None], ...] = (
-    *(_without_init, _taken_name, _class_for_instance, _no_node, _callback, _arguments, _no_entry),
+_RULES: tuple[Callable[[str, str, SourceLine | None], Hint | None], ...] = (
+    *(
+        _without_init,
+        _read_only_name,
+        _class_for_instance,
+        _no_node,
+        _callback,
+        _arguments,
+        _no_entry,
+    ),
     *(_parameter, _none_or_unknown),
 )
