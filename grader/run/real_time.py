@@ -30,14 +30,14 @@ from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
 from grader.submission.start import Submission
 
-#: Told the simulated time [s] now and then.
+#: Called with the simulated time [s] now and then.
 Progress = Callable[[float], None]
 
-#: A program that used so much of the run's time on a processor has computed rather than waited.
+#: A program that used this share of the run's time on a processor has computed, not waited.
 COMPUTES = 0.5
-#: Where what runs as the submission's process is.
+#: The folder of the program that runs as the submission's process.
 STUDENT = Path(__file__).with_name("student")
-#: What runs as the simulator's process.
+#: The module that runs as the simulator's process.
 MODULE = "grader.run.simulator.real_time"
 
 
@@ -61,15 +61,15 @@ def run(
     scene = load_scene(plan.scene)
     with (
         run_context.open_context(plan.budget) as context,
-        evidence.open_evidence() as told,
+        evidence.open_evidence() as account,
         live_feed(audience, plan, "real") as feed,
         start_simulator(MODULE, context, plan, (), str(FIRST_NODE_S), feed=feed) as simulator,
     ):
         simulator.expect("ready")
         submission, student = context.start(
             submission,
-            lambda private: command(private, scene.introduction, told.page),
-            (told.page,),
+            lambda private: command(private, scene.introduction, account.page),
+            (account.page,),
             student_environment({}),
         )
         ending = partial(ended, "real", submission, student, context.isolation, started)
@@ -80,21 +80,21 @@ def run(
                 ended_s -= began_s
                 computes = linux.process_stat(student.pid).cpu_s > COMPUTES * ended_s
                 if exit_code is None:
-                    told.ask(student.pid)
-                told.close()  # what comes then is how it ends when it is told to
+                    account.request_dump(student.pid)
+                account.close()  # later entries are only about the end that we ask for
             trace, topics = handover.fetch(context.recording, scene)
         except NotNow:  # it was never started
             raise
         except GraderFailure as failure:
             raise SimulatorLost(failure, ending("killed", None)) from failure
     how = outcome(done["reason"], exit_code)
-    observations = told.observations(submission, ended_s, computes=computes)
+    observations = account.observations(submission, ended_s, computes=computes)
     flags = tuple(map(Message.parse, done["flags"]))
     return record(plan, trace, topics, ending(how, exit_code, flags), observations)
 
 
 def command(submission: Submission, introduction: Introduction, page: int) -> list[str]:
-    """The command of the submission's process."""
+    """Return the command of the submission's process."""
     awaited = json.dumps([introduction.topics, introduction.services])
     words = [awaited, str(page), *run_context.start_arguments(submission)]
     return [sys.executable, str(STUDENT / "main.py"), *words]

@@ -305,7 +305,7 @@ def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
         monkeypatch.setattr(account, "DUMP_SIGNAL", signal.SIGCONT)
         monkeypatch.setattr(evidence, "QUIET_S", 0.01)
         monkeypatch.setattr(evidence, "PATIENCE_S", 0.01)
-        heard.ask(os.getpid())
+        heard.request_dump(os.getpid())
         said = account.dumped(heard.page).splitlines()
     assert len(said) == 2
 
