@@ -190,23 +190,22 @@ def lock_folder(folder: Path) -> int | None:
     if fcntl is None:
         return os.open(os.devnull, os.O_RDONLY)
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    if _flock(descriptor):
+    if lock_file(descriptor):
         return descriptor
     os.close(descriptor)
     return None
 
 
-def lock_file(file: IO[str]) -> bool:
+def lock_file(file: IO[str] | int) -> bool:
     """Lock an open file, until it is closed; return False where it is locked already.
 
     Each `open` counts separately, also within one process.
+
+    Args:
+        file: the file, or its descriptor.
     """
-    return _flock(file.fileno())
-
-
-def _flock(descriptor: int) -> bool:
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     return True

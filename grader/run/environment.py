@@ -35,7 +35,7 @@ def lasting_environment() -> dict[str, str]:
     if system.is_ros_sourced() and "PYTHONPATH" in os.environ:
         env["PYTHONPATH"] = os.environ["PYTHONPATH"]  # ROS's own packages are there
     if site.ENABLE_USER_SITE:
-        # Python looks for packages below HOME, which is another in a run
+        # Python searches packages below HOME, which is another in a run
         env["PYTHONUSERBASE"] = site.getuserbase()
     return {
         **env,

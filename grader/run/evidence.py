@@ -12,8 +12,8 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
@@ -99,16 +99,6 @@ class EvidencePage:
             return _observations(self._account, self._dump, submission, ended_s, computes)
         except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
             return Observations()
-
-
-@contextmanager
-def open_evidence() -> Iterator[EvidencePage]:
-    """Make a page for one run."""
-    evidence = EvidencePage()
-    try:
-        yield evidence
-    finally:
-        evidence.close()
 
 
 def _awaited(pid: int, has_come: Callable[[], bool], patience_s: float) -> bool:

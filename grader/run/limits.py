@@ -23,7 +23,7 @@ from typing import Final, NamedTuple
 
 from grader.message import Message, msg
 
-KIB, MIB, GIB = 1 << 10, 1 << 20, 1 << 30
+MIB, GIB = 1 << 20, 1 << 30
 
 
 class RunLimits(NamedTuple):
@@ -81,17 +81,17 @@ ROOM: Final = (24, 8192)
 #: it, and people read it.
 KEPT_OUTPUT_BYTES: Final = 32_768
 
-#: Memory of a simulator's process [bytes]; a run takes 0.2 GB, and what may come from a submission
+#: Memory of a simulator's process [bytes]; a run uses 0.2 GB, and what may come from a submission
 #: at most as much again.
 SIMULATOR_BYTES: Final = 3_000_000_000
 #: How long a simulator may take to come up, to do anything at all, and to save what it has recorded
-#: [s]: it is ours, and only a machine in distress takes so long.
+#: [s]: it is ours, and only an overloaded machine takes so long.
 SIMULATOR_S: Final = 60.0
 #: What it records [bytes]: more than any run leaves; the grader's process holds it a few times.
 RECORDING_BYTES: Final = 256_000_000
 #: How long a submission's process may take to come up, its own code not counted [s].
 START_S: Final = 30.0
-#: How long one may take to end that has hung up, or was killed [s]; a busy machine is slow.
+#: How long one may take to end after it closed its link or was killed [s]; a busy machine is slow.
 END_S: Final = 20.0
 #: How long a run in real time waits for the submission's first node before its clock starts [s].
 FIRST_NODE_S: Final = 8.0

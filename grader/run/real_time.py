@@ -6,6 +6,7 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
@@ -13,8 +14,9 @@ from grader import linux
 from grader.errors import GraderFailure, NotNow
 from grader.message import Message
 from grader.recording.recording import Recording
-from grader.run import evidence, handover, run_context
+from grader.run import handover, run_context
 from grader.run.environment import student_environment
+from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, ended, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import FIRST_NODE_S
@@ -61,7 +63,7 @@ def run(
     scene = load_scene(plan.scene)
     with (
         run_context.open_context(plan.budget) as context,
-        evidence.open_evidence() as account,
+        closing(EvidencePage()) as account,
         live_feed(audience, plan, "real") as feed,
         start_simulator(MODULE, context, plan, (), str(FIRST_NODE_S), feed=feed) as simulator,
     ):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import socket
 import time
+from contextlib import closing
 from dataclasses import asdict, replace
 from functools import partial
 
@@ -16,8 +17,9 @@ from grader import linux
 from grader.errors import GraderFailure
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Outcome, Recording
-from grader.run import evidence, fork_servers, handover, real_time, run_context
+from grader.run import fork_servers, handover, real_time, run_context
 from grader.run.environment import virtual_environment
+from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, ended, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import END_S, SIMULATOR_S, CpuBudget, Patience
@@ -43,8 +45,6 @@ FLOODING = msg(
 #: The silences of a program that still runs, and can be asked to dump where it is.
 COMPUTES = ("stalled", "slow")
 PATIENCE = Patience()
-#: What runs as the simulator's process.
-MODULE = fork_servers.MODULE
 
 
 def run(
@@ -101,7 +101,7 @@ def _try(
     with (
         run_context.open_context(plan.budget) as context,
         cores.reserve_core(ours.fileno()) as core_id,
-        evidence.open_evidence() as account,
+        closing(EvidencePage()) as account,
         live_feed(audience, plan, "virtual") as feed,
         ours,
         theirs,
@@ -123,7 +123,7 @@ def _try(
                 server = fork_servers.server(fork_servers.SIMULATOR)
                 shared = (theirs.fileno(), account.page)
                 with start_simulator(
-                    MODULE, context, plan, shared, *more, server=server, feed=feed
+                    fork_servers.MODULE, context, plan, shared, *more, server=server, feed=feed
                 ) as simulator:
                     theirs.close()
                     message = _watch(simulator, student.pid, plan.budget)

@@ -248,7 +248,7 @@ def _work(
                 yielded_work = True
                 yield work
             entities = None
-        # where there is no other thread, nobody has changed anything since the last wait
+        # with a single thread, nothing has changed since the last wait
         if entities is None or not waitsets.WAITER.is_alone:
             entities = _entities(executor, used)
         is_out = _wait(executor, entities, timeout_ns, end_ns)

@@ -219,20 +219,20 @@ class SimulatorLink(EndpointRegistry):
             self.on_standstill()
         target = min(deadline_ns // TICK_NS, FOREVER)
         most = 1 if self.is_listening() else UNBOUNDED
-        if self._agreed.has_mail or not self._live_through_foreseen(target, most):
+        if self._agreed.has_mail or not self._use_forecast(target, most):
             self._exchange(target, most)
         scheduler.set_now(max(scheduler.now_ns, self.tick * TICK_NS))
         self.on_arrival()
 
-    def _live_through_foreseen(self, target: int, most: int) -> bool:
+    def _use_forecast(self, target: int, most: int) -> bool:
         """Let forecast ticks pass; return whether any has."""
         last = min(target, self.tick + most, self._agreed.foreseen)
         if self.tick >= last or real.monotonic() > self._agreed.replied_s + LONGEST_ALONE_S:
             return False
-        self._live_to(last)
+        self._move_to(last)
         return True
 
-    def _live_to(self, tick: int) -> None:
+    def _move_to(self, tick: int) -> None:
         """Move time to a tick, and deliver the messages up to it."""
         self.tick = tick
         self._sockets.has_reached(tick)
@@ -258,7 +258,7 @@ class SimulatorLink(EndpointRegistry):
             self._connect_anew()
         parcels = deque(packet.parcels)
         self._agreed = Agreed(packet.tick, packet.foreseen, parcels, real.monotonic())
-        self._live_to(packet.tick)
+        self._move_to(packet.tick)
         if table is not None:
             for number in table.removed:
                 self.others.pop(number, None)

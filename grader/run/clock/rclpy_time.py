@@ -84,7 +84,7 @@ def install(
         return scheduler.now_ns
 
     unpaid_ns = (lambda: scheduler.unpaid_ns) if compares_stamps else (lambda: 0)
-    clocks = rclpy_clocks.install(_rclpy, now_ns, scheduler.charge, unpaid_ns)
+    clocks = rclpy_clocks.install(now_ns, scheduler.charge, unpaid_ns)
     scheduler.clocks.append(clocks.set_now)
     scheduler.advance = link.advance
     _rclpy.ClockEvent = clock_event_class(scheduler)

@@ -61,7 +61,7 @@ class Scheduler:
         #: called where a thread that we did not start wants to block
         self.on_unknown_thread: Callable[[], None] = _no_unknown_threads
         #: called in a thread that has waited, with how long [s]
-        self.on_waited: Callable[[float], None] = _nobody_cares
+        self.on_waited: Callable[[float], None] = lambda _: None
         #: main runner: signals wait until it is out of here
         self.inside = 0
         self.on_leaving: Callable[[], None] | None = None
@@ -241,9 +241,6 @@ class Scheduler:
         while alarms and alarms[0][2].alarm != alarms[0][1]:
             heapq.heappop(alarms)
         self.advance(alarms[0][0] if alarms else NEVER)
-
-
-def _nobody_cares(_: float) -> None: ...
 
 
 def _no_unknown_threads() -> None:

@@ -6,11 +6,12 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
 from grader.run.lockstep.protocol import BOOT_NS, EPOCH_NS
 
 
 def install(
-    rclpy: Any,
     now_ns: Callable[[], int],
     charge: Callable[[], None],
     unpaid_ns: Callable[[], int] = lambda: 0,
@@ -19,10 +20,10 @@ def install(
 
     Args:
         charge: called when a clock is asked for the time.
-        unpaid_ns: how much later than `now_ns` a clock says it is when it is asked.
+        unpaid_ns: added to the time that a clock returns when it is asked.
     """
     clocks = RclpyClocks(now_ns)
-    rclpy.Clock = _clock_class(rclpy, clocks, charge, unpaid_ns)
+    _rclpy.Clock = _clock_class(clocks, charge, unpaid_ns)
     return clocks
 
 
@@ -49,13 +50,12 @@ class RclpyClocks:
 
 
 def _clock_class(
-    rclpy: Any,
     clocks: RclpyClocks,
     charge: Callable[[], None],
     unpaid_ns: Callable[[], int],
 ) -> type:
-    base = rclpy.Clock
-    kinds, point = rclpy.ClockType, rclpy.rcl_time_point_t
+    base = _rclpy.Clock
+    kinds, point = _rclpy.ClockType, _rclpy.rcl_time_point_t
 
     class VirtualClock(base):  # type: ignore[misc, valid-type]
         """A clock of any type: underneath, a ROS clock whose time is set by us."""

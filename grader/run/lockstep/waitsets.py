@@ -83,7 +83,7 @@ class GuardCondition(_rclpy.GuardCondition):
 class Timer(_rclpy.Timer):
     """A timer whose changes wake those who wait for it."""
 
-    #: somebody wants it destroyed
+    #: it is to be destroyed
     is_gone = False
 
     def destroy_when_not_in_use(self) -> None:
@@ -128,7 +128,7 @@ class EventHandle(_rclpy.EventHandle):
     events are about real time or real networks, and never come.
     """
 
-    #: somebody wants it destroyed
+    #: it is to be destroyed
     is_gone = False
 
     def __init__(self, parent: Any, kind: Any) -> None:

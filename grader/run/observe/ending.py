@@ -33,7 +33,7 @@ class EndWitness:
     # Stuck threads ----------------------------------------------------------------------------
 
     def deadlocked(self, threads: Sequence[int], main: int) -> bool:
-        """Note that all threads are blocked for good; print a stuck one, return whether it is."""
+        """Note that all threads are blocked for good; print a stuck one, return whether one is."""
         stacks = [self._stack(thread) for thread in threads]
         found = stuck.deadlock(stacks)
         if found is not None:

@@ -16,7 +16,7 @@ from typing import Any
 
 #: So much of a name, a line or a text is kept [characters].
 LONGEST = 300
-#: A larger file is no source that somebody reads [bytes].
+#: A larger file is not read as source [bytes].
 MOST_SOURCE_BYTES = 1_000_000
 #: What is installed into a submission's folder is not the student's; nor what lies beside it.
 NOT_STUDENTS = ("/site-packages/", "/dist-packages/", "/../")

@@ -93,7 +93,7 @@ def _install(witness: Witness) -> None:
     _after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
     _after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
     _around_wait(witness, client, "wait_for_service", lambda it, _: it, lambda _, there: there)
-    # what virtual time has put round it would take time
+    # virtual time's wrapper would cost time
     is_done = inspect.unwrap(future.done)
     _around_wait(
         witness,

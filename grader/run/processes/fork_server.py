@@ -205,7 +205,7 @@ class ForkServer:
         if self.is_lost:
             raise ServerLost(Refusal(0, "", "it is gone"))
         if self._preloaded is None:
-            data, _ = self._hear()
+            data, _ = self._receive()
             self._preloaded = frozenset(json.loads(data))
         return self._preloaded
 
@@ -216,7 +216,7 @@ class ForkServer:
         with self._exchanging():
             socket.send_fds(self._socket, [b"order"], fds)
         try:
-            data, got = self._hear()
+            data, got = self._receive()
         except ServerLost as lost:
             raise GraderFailure(
                 "what a process was to be forked from has died: {lost}", lost=str(lost)
@@ -228,7 +228,7 @@ class ForkServer:
             raise ServerLost(Refusal.from_line(str(answer["refused"])))
         return int(answer["pid"]), got[0] if got else -1
 
-    def _hear(self) -> tuple[bytes, list[int]]:
+    def _receive(self) -> tuple[bytes, list[int]]:
         """Receive an answer, and the descriptors that come with it."""
         with self._exchanging():
             answer, got, _, _ = socket.recv_fds(self._socket, fork_server_main.LIMIT_BYTES, 1)

@@ -183,7 +183,7 @@ class Family:
         }
         ancestor = {self._ancestor}
         members = {pid: found[pid] for pid in linux.below(ancestor, found)}
-        # one whose parent has ended meanwhile has another by now: it is found the next time
+        # one whose parent has just ended has a new one, and is found the next time
         rest = {pid: found[pid] for pid in found.keys() - members.keys() - ancestor}
         self._others |= linux.below(self._others | {0}, rest)
         return members

@@ -311,7 +311,7 @@ class SubmissionProcess(StartedProcess):
     def _await_end(self, timeout_s: float) -> int | None:
         if not self._report.await_fact("exit", timeout_s):
             return None
-        # its supervisor ends without a word of it only if somebody has killed one of them
+        # its supervisor ends without reporting it only if one of them was killed
         return int(self._report.facts.get("exit", -signal.SIGKILL))
 
     def kill(self) -> None:
@@ -328,7 +328,7 @@ class SubmissionProcess(StartedProcess):
             self._excess, self._guard = self._guard.remark, None
         self.kill()
         self._report.await_fact("over", PATIENCE_S)
-        if self._report.facts.get("over") != 0:  # somebody has stopped or killed the supervisor
+        if self._report.facts.get("over") != 0:  # the supervisor was stopped or killed
             self._signal(signal.SIGKILL)
             self._report.await_fact("over", PATIENCE_S)
             self._sweep()

@@ -133,8 +133,8 @@ OF_FILES: Final[dict[str, Numbers]] = {
     "removexattrat": (466, 466),
     "file_setattr": (469, 469),
 }
-#: What is as if the kernel did not know it, so that libraries take an older way. The flags of
-#: clone3 lie in memory, where a filter cannot look; glibc then uses clone.
+#: Calls that seem unknown to the kernel, so that libraries use older ones. The flags of clone3 lie
+#: in memory, which a filter cannot read; glibc then uses clone.
 #: inotify reports names where nothing may be read (Landlock does not check it), and the user
 #: has 128 of them for all programs.
 UNKNOWN: Final[dict[str, Numbers]] = {
@@ -173,7 +173,7 @@ SECCOMP: Final[Numbers] = (317, 277)
 NEW_NAMESPACES: Final = 0x7E020000
 #: Types into a terminal as if its user did; pastes there; loads a line discipline.
 TIOCSTI, TIOCLINUX, TIOCSETD = 0x5412, 0x541C, 0x5423
-#: Have others wait before they open a file (F_SETDELEG: from Linux 6.19 on), or are told of them.
+#: Make others wait before they open a file (F_SETDELEG: from Linux 6.19 on), or report them.
 F_SETLEASE, F_NOTIFY, F_SETDELEG = 1024, 1026, 1040
 AF_UNIX, AF_INET, AF_INET6, AF_NETLINK = 1, 2, 10, 16
 SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET, SOCK_KIND = 1, 2, 5, 0xF
@@ -270,7 +270,7 @@ def _by_arguments(place: int, *, is_apart: bool) -> list[Instruction]:
     spaces = [_load(0), (JUMP_SET, 0, 1, NEW_NAMESPACES), refused, allowed]
     terminal = [_load(1), *_if(refused, TIOCSTI, TIOCLINUX, TIOCSETD), allowed]
     others = [_load(1), *_if(refused, F_SETLEASE, F_NOTIFY, F_SETDELEG), allowed]
-    # What lies in sockets counts as nobody's memory. Asked for more room, they say yes.
+    # What lies in sockets counts as nobody's memory. A request for more room is ignored.
     room = [_load(1), *_unless(SOL_SOCKET, allowed), _load(2)]
     room += [*_if(_refuse(0), SO_SNDBUF, SO_RCVBUF), allowed]
     # Limits and priorities of the user's other processes: it could make the simulator starve.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Final
+from typing import Final
 
 from grader.message import Message, msg
 from grader.run.lockstep.endpoints import deserialized
@@ -176,9 +176,3 @@ class SimulatorEndpoints(EndpointRegistry):
         if self._may_have_unread:
             self._may_have_unread = any(reader.items for reader in self.readers)
         return self._may_have_unread
-
-
-def writer_of(publisher: Any) -> Writer:
-    """Return the writer of one of rclpy's publishers."""
-    writer: Writer = publisher.handle.writer
-    return writer

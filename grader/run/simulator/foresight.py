@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from grader.run.lockstep.protocol import Advance, Parcel, Parcels
 from grader.run.lockstep.registry import Writer
-from grader.run.simulator.endpoints import SimulatorEndpoints, writer_of
+from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.scenes.scene import Forecast, Reason, Simulation
 
 #: The most ticks of a forecast: a second.
@@ -33,7 +33,7 @@ class Foresight:
         self._registry = registry
         self._forecast = Forecast((), [])
         self._writers: list[Writer] = []
-        self._lived = 0
+        self._made = 0
         self._length = 1
         self._vain = 0
 
@@ -41,11 +41,11 @@ class Foresight:
         """Forecast the ticks after this one, as far as is worth while."""
         self.end = tick
         most = self._worth_while(tick, request)
-        self._lived = 0
+        self._made = 0
         if most <= 0 or self._registry.has_unread():
             return
         forecast = self._simulation.foresee(most)
-        writers = [writer_of(publisher) for publisher in forecast.publishers]
+        writers: list[Writer] = [each.handle.writer for each in forecast.publishers]
         if not forecast.ticks or self._registry.others_are_read(writers):
             return
         read = [
@@ -66,28 +66,28 @@ class Foresight:
         if request.most == 0:
             return 0
         if request.has_mailed:
-            self._vain = 0 if self._lived else self._vain + 1
+            self._vain = 0 if self._made else self._vain + 1
             if self._vain > PATIENCE and self._vain % SELDOM:
                 return 0
-            self._length = 2 * self._lived + 1
+            self._length = 2 * self._made + 1
         else:
             self._vain = 0
             self._length = 2 * self._length + 1
         self._length = min(MOST_TICKS, self._length)
         return min(self._length, request.target - tick)
 
-    def live_through(self, now_ns: int) -> Reason:
+    def make_tick(self, now_ns: int) -> Reason:
         """Make the next of these ticks, at this time on the scene's clock [ns].
 
         Raises:
             RuntimeError: it was not as forecast.
         """
         reason, published = self._simulation.pass_tick(now_ns)
-        if published != self._forecast.ticks[self._lived]:
+        if published != self._forecast.ticks[self._made]:
             raise RuntimeError("a tick was not as it was foreseen")
         for writer in self._writers:
             writer.sent += 1
-        self._lived += 1
+        self._made += 1
         return reason
 
     def forget(self) -> None:

@@ -173,7 +173,7 @@ class StudentLink:
                 case None:
                     self.silence = "gone"
                 case Note():
-                    self._hear(packet)
+                    self._handle(packet)
                 case Interests() | Advance():
                     return packet
                 case _:
@@ -189,7 +189,7 @@ class StudentLink:
         """Expect more of it from now on: it has asked for time, so its imports are over."""
         self._stall_cpu_s = self._patience.stall_cpu_s
 
-    def _hear(self, note: Note) -> None:
+    def _handle(self, note: Note) -> None:
         match note.kind:
             case Kind.STUCK:
                 self.waits = "stuck"

@@ -95,7 +95,7 @@ class GradedSimulator:
 
         def tick() -> bool:
             nonlocal reason
-            self._hear()
+            self._receive()
             if not self._running and self._may_start():
                 self._start()
             reason = self._simulation.tick()
@@ -146,7 +146,7 @@ class GradedSimulator:
         send_message(self._link, what, **more)
         self._link.setblocking(False)
 
-    def _hear(self) -> None:
+    def _receive(self) -> None:
         try:
             text = self._link.recv(4096)
         except BlockingIOError:

@@ -24,7 +24,6 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from grader.message import msg
@@ -69,7 +68,7 @@ class Lockstep:
         self._on_met = on_met
         self._share_core = share_core
         self.now_ns = 0
-        self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
+        self._clocks = rclpy_clocks.install(lambda: self.now_ns, lambda: None)
         waitsets.install(waitsets.Waiter(self._clocks.attach))
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, link.flag)
         endpoints.install(self._registry)
@@ -164,21 +163,21 @@ class Lockstep:
         """Make the forecast ticks that the student's side has used."""
         while self._tick < min(reached, self._foresight.end) and not self._reason:
             self._count_tick()
-            self._reason = self._foresight.live_through(EPOCH_NS + self.now_ns)
+            self._reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
         self._clocks.set_now(self.now_ns)
         self._foresight.forget()
 
     def _advance(self, request: Advance) -> None:
         last = min(request.target, self._tick + request.most)
         while self._tick < last and not self._reason:
-            self._begin_tick()
-            self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
+            self._make_tick()
             if self._registry.answered:
                 return
 
-    def _begin_tick(self) -> None:
+    def _make_tick(self) -> None:
         self._count_tick()
         self._clocks.set_now(self.now_ns)
+        self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
 
     def _count_tick(self) -> None:
         if self._feed is not None:
@@ -205,8 +204,7 @@ class Lockstep:
         if self._link.silence == "gone":
             self._simulation.submission_gone()
         while not self._reason:
-            self._begin_tick()
-            self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
+            self._make_tick()
 
 
 def main(argv: list[str]) -> int:
@@ -218,7 +216,7 @@ def main(argv: list[str]) -> int:
     link = StudentLink(theirs, page, student, Patience(**json.loads(argv[7])))
 
     def share_core() -> None:
-        # for both, from here: a submission's process may not say where threads run
+        # for both, from here: a submission's process may not choose its cores
         cores.pin(core, os.getpid(), student)
 
     plan = Plan.from_json(argv[2])
