@@ -121,7 +121,7 @@ class SimulatorSockets:
                 real.leave(1)
         return []
 
-    def has_reached(self, tick: int) -> None:
+    def write_tick(self, tick: int) -> None:
         """Write the tick where it is read after this process, even if that ends silently."""
         PROGRESS.pack_into(self._progress, 0, tick)
 
@@ -235,7 +235,7 @@ class SimulatorLink(EndpointRegistry):
     def _move_to(self, tick: int) -> None:
         """Move time to a tick, and deliver the messages up to it."""
         self.tick = tick
-        self._sockets.has_reached(tick)
+        self._sockets.write_tick(tick)
         parcels = self._agreed.parcels
         while parcels and parcels[0].tick <= tick:
             self._deliver(parcels.popleft())

@@ -58,7 +58,7 @@ class EndWitness:
 
     # Exceptions -------------------------------------------------------------------------------
 
-    def was_given(self, callback: Any) -> None:
+    def note_callback(self, callback: Any) -> None:
         """Note the callback of a timer or a future."""
         if self._uncallable is None and not callable(callback):
             self._uncallable = self._files.place(sys._getframe())

@@ -62,7 +62,7 @@ def _where_known(install: Callable[[Witness], None], witness: Witness) -> None:
     try:
         install(witness)
     except (AttributeError, ImportError):
-        witness.is_blind()
+        witness.discard()
 
 
 def _install(witness: Witness) -> None:
@@ -88,7 +88,7 @@ def _install(witness: Witness) -> None:
     _after(
         client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type)
     )
-    _after(timer, "__init__", lambda it, _: witness.ending.was_given(it.callback))
+    _after(timer, "__init__", lambda it, _: witness.ending.note_callback(it.callback))
     _after(timer, "__init__", lambda it, _: witness.made_timer(it))
     _after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
     _after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
@@ -160,9 +160,9 @@ def _around_wait(
         end: UsedEnd | None = getattr(what, "_witnessed", None)
         if end is None:
             return method(self, *args, **kwargs)
-        wait = quietly(witness.begins_to_wait, end)
+        wait = quietly(witness.begin_wait, end)
         returned = method(self, *args, **kwargs)
-        quietly(lambda: witness.ends_to_wait(wait, has_come=bool(has_come(what, returned))))
+        quietly(lambda: witness.end_wait(wait, has_come=bool(has_come(what, returned))))
         return returned
 
     setattr(owner, name, waiting)
@@ -174,12 +174,12 @@ def _around_callbacks(witness: Witness, task: Any) -> None:
 
     @functools.wraps(run)
     def call(self: Any) -> Any:
-        if not witness.begins_callback():
+        if not witness.begin_callback():
             return run(self)
         try:
             return run(self)
         finally:
-            quietly(witness.ends_callback, getattr(self, "_exception", None))
+            quietly(witness.end_callback, getattr(self, "_exception", None))
 
     task.__call__ = call
 
@@ -189,7 +189,7 @@ def _before_done_callbacks(witness: Witness, future: Any) -> None:
 
     @functools.wraps(add)
     def added(self: Any, callback: Any) -> Any:
-        quietly(witness.ending.was_given, callback)
+        quietly(witness.ending.note_callback, callback)
         return add(self, callback)
 
     future.add_done_callback = added

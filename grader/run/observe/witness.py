@@ -181,7 +181,7 @@ class Witness:
         """Write the account: counterparts may have come since."""
         self._account.write()
 
-    def is_blind(self) -> None:
+    def discard(self) -> None:
         """Note that the observations are incomplete, so that none of them counts."""
         self._is_blind = True
         self._account.write()
@@ -241,7 +241,7 @@ class Witness:
 
     # What it waits for ------------------------------------------------------------------------
 
-    def begins_to_wait(self, end: UsedEnd) -> OpenWait:
+    def begin_wait(self, end: UsedEnd) -> OpenWait:
         """Begin a wait, or go on with a failed one for the same."""
         key = end.row["name"], end.row["type"]
         wait = self._open_waits.get(key)
@@ -252,7 +252,7 @@ class Witness:
         wait.goes_on = True
         return wait
 
-    def ends_to_wait(self, wait: OpenWait, *, has_come: bool) -> None:
+    def end_wait(self, wait: OpenWait, *, has_come: bool) -> None:
         """End a wait: what was waited for has come, or the program gives up."""
         wait.goes_on, wait.lasted_s = False, self._now_s() - wait.since_s
         if has_come:
@@ -267,14 +267,14 @@ class Witness:
 
     # What its callbacks do --------------------------------------------------------------------
 
-    def begins_callback(self) -> bool:
+    def begin_callback(self) -> bool:
         """Begin a callback in this thread; return whether it is not within another."""
         is_first = get_ident() not in self._running
         if is_first:
             self._running[get_ident()] = {}
         return is_first
 
-    def ends_callback(self, error: BaseException | None) -> None:
+    def end_callback(self, error: BaseException | None) -> None:
         """End the callback of this thread, by an exception or by itself."""
         lines = self._running.pop(get_ident())
         total_s = sum(lines.values())

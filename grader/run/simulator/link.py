@@ -185,7 +185,7 @@ class StudentLink:
         if remark not in self.flags and len(self.flags) < MOST_FLAGS:
             self.flags.append(remark)
 
-    def has_started(self) -> None:
+    def note_start(self) -> None:
         """Expect more of it from now on: it has asked for time, so its imports are over."""
         self._stall_cpu_s = self._patience.stall_cpu_s
 

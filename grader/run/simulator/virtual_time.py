@@ -97,7 +97,7 @@ class Lockstep:
         self._mark("connected")
         self._share_core()
         while request and not self._reason:
-            self._link.has_started()
+            self._link.note_start()
             self._catch_up(request.reached)
             if request.has_mailed:
                 self._receive_mail()
