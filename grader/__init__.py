@@ -1,8 +1,8 @@
 """Run a submission, record what really happened, judge it, explain the verdict.
 
 The names of `__all__` are public, and so is `grader.testing`; all else may change. They are loaded
-when they are first asked for: the processes of a run import parts of this package, and must not
-wait for what only the grader's own process needs.
+at their first use: the processes of a run import parts of this package, and must not wait for what
+only the grader's process needs.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """A public name, when it is first asked for."""
+    """Load a public name at its first use."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(importlib.import_module(_MODULES[name]), name)

@@ -1,12 +1,12 @@
-r"""Hashes of files and folders by what is in them, whatever order they are found in.
+r"""Hashes of files and folders by their contents, independent of the order of listing.
 
-The hash of a folder is that of the lines which `sha256sum` prints of its files, sorted by name, so
-that anybody can find it out without us:
+The hash of a folder is that of the lines which `sha256sum` prints for its files, sorted by name, so
+that anybody can compute it without the grader:
 
     cd FOLDER
     find . -type f -printf '%P\n' | LC_ALL=C sort | xargs -d '\n' sha256sum | sha256sum
 
-A link counts as a file that holds where it leads to.
+A link counts as a file that holds its target.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 
 
 def of_folder(folder: Path) -> str:
-    """The hash of all files in a folder and below, hexadecimal.
+    """Return the hash of all files in a folder and below, hexadecimal.
 
     Raises:
         OSError: one of them cannot be read.
@@ -32,14 +32,14 @@ def of_folder(folder: Path) -> str:
 
 
 def of_files(hashes: Mapping[str, str]) -> str:
-    """The hash of files, from their relative names and their own hashes."""
+    """Return the hash of files, from their relative names and their hashes."""
     named = {os.fsencode(name): digest.encode() for name, digest in hashes.items()}
     lines = (_line(name, digest) for name, digest in sorted(named.items()))
     return of_bytes(b"".join(lines))
 
 
 def of_file(path: Path) -> str:
-    """The hash of a file, hexadecimal.
+    """Return the hash of a file, hexadecimal.
 
     Raises:
         OSError: it cannot be read.
@@ -49,7 +49,7 @@ def of_file(path: Path) -> str:
 
 
 def of_bytes(data: bytes) -> str:
-    """The hash of what a file holds, hexadecimal."""
+    """Return the hash of a file's contents, hexadecimal."""
     return hashlib.sha256(data).hexdigest()
 
 
@@ -58,7 +58,7 @@ def _of_link_or_file(path: Path) -> str:
 
 
 def _line(name: bytes, digest: bytes) -> bytes:
-    """As sha256sum writes it: a name with a line end in it cannot stand for two names."""
+    """Format a line as sha256sum does: a name with a line end in it is not two names."""
     escaped = name.replace(b"\\", b"\\\\").replace(b"\n", b"\\n").replace(b"\r", b"\\r")
     mark = b"" if escaped == name else b"\\"
     return mark + digest + b"  " + escaped + b"\n"

@@ -1,4 +1,4 @@
-"""The tree of errors: all of them say in one text what was found, and whose turn it is.
+"""The tree of errors: each has one text on what was found, and who has to act.
 
 | error | whose | exit code |
 |---|---|---|
@@ -17,7 +17,7 @@ from typing import Any, ClassVar, Literal
 from grader.message import Message, as_message, msg
 from grader.text import without_controls
 
-#: Whose turn it is: the student's, the exercise's author's, the caller's, ours.
+#: Who has to act: the student, the exercise's author, the caller, the grader's maintainers.
 Whose = Literal["submission", "exercise", "call", "grader"]
 
 
@@ -29,7 +29,7 @@ class GraderError(Exception):
 
     Attributes:
         message: what was found, what was expected, and what to do.
-        whose: whose turn it is.
+        whose: who has to act.
         exit_code: the command line's.
     """
 
@@ -70,7 +70,7 @@ class ExerciseError(GraderError):
 
 
 class CheckFailed(ExerciseError):
-    """A check raised an exception; the submission can be judged when that is mended."""
+    """A check raised an exception; the submission can be judged after its repair."""
 
     exit_code = 3
 
@@ -87,8 +87,8 @@ class GraderFailure(GraderError):
 
 
 class NotNow(GraderFailure):
-    """The system did not do what it may do the next time; see `grader.run.processes.refusal`."""
+    """The system refused what it may allow the next time; see `grader.run.processes.refusal`."""
 
 
 class NotOffered(GraderFailure):
-    """This machine does not confine submissions as all of a class are confined."""
+    """This machine does not have the isolation level of a class."""

@@ -1,6 +1,6 @@
-"""Extensions, found by the entry points of installed distributions; ours go through the same door.
+"""Extensions, found by the entry points of installed distributions, as ours are.
 
-grader.scenes       what an exercise's `scene:` names: a `grader.recording.subject.Subject`
+grader.scenes       a `grader.recording.subject.Subject`, named by an exercise's `scene:`
 grader.exercises    a module or package in the exercise's folder
 grader.reports      a `grader.reports.Format`
 grader.inspections  what an exercise's `inspections:` name: a `grader.scenes.package.inspector.
@@ -28,7 +28,7 @@ DISTRIBUTION: Final = "turtlesim_py"
 
 
 def points(group: Group) -> Mapping[str, list[EntryPoint]]:
-    """What is installed in a group, by name, ours first; several of a name are a clash.
+    """Return the entry points of a group by name, ours first; several of a name are a clash.
 
     A distribution that is found twice on the path counts once.
     """
@@ -37,7 +37,7 @@ def points(group: Group) -> Mapping[str, list[EntryPoint]]:
 
 
 def find(group: Group, name: str) -> EntryPoint:
-    """The entry point of a name. A name of ours is ours, whatever else is installed.
+    """Return the entry point of a name. A name of ours is ours, whatever else is installed.
 
     Raises:
         KeyError: there is none, or there are several.
@@ -48,16 +48,16 @@ def find(group: Group, name: str) -> EntryPoint:
     if len(found) == 1:
         return found[0]
     if found:
-        raise KeyError(f"{group}: several are called {name!r}: {', '.join(map(told, found))}")
+        raise KeyError(f"{group}: several are called {name!r}: {', '.join(map(described, found))}")
     raise KeyError(f"{group}: there is no {name!r}; there are: {', '.join(points(group))}")
 
 
 def load(group: Group, name: str) -> Any:
-    """The object that the entry point of a name is for.
+    """Load the object of an entry point.
 
     Raises:
         KeyError: see `find`.
-        UsageError: it cannot be imported; the text says why, and whose it is.
+        UsageError: it cannot be imported; the text has the reason and the distribution.
     """
     point = find(group, name)
     if name in _ours(group):
@@ -68,13 +68,13 @@ def load(group: Group, name: str) -> Any:
         raise UsageError(
             "the extension {name}, {point}, cannot be loaded: {error}",
             name=name,
-            point=told(point),
+            point=described(point),
             error=f"{type(error).__name__}: {error}",
         ) from error
 
 
-def told(point: EntryPoint) -> str:
-    """Where an entry point leads, and whose it is."""
+def described(point: EntryPoint) -> str:
+    """Return the object and the distribution of an entry point, for a message."""
     whose = point.dist.name if point.dist else "an unknown package"
     return f"{point.value} of {whose}"
 
@@ -104,5 +104,5 @@ def _changed_ns(folder: str) -> int:
 def _points(group: Group, _path: tuple[tuple[str, int], ...]) -> Mapping[str, list[EntryPoint]]:
     found: dict[str, dict[str, EntryPoint]] = {}
     for point in (*_ours(group).values(), *entry_points(group=group)):
-        found.setdefault(point.name, {}).setdefault(told(point), point)
+        found.setdefault(point.name, {}).setdefault(described(point), point)
     return {name: list(each.values()) for name, each in sorted(found.items())}

@@ -1,8 +1,8 @@
-"""Writes files whole or not at all, so that nobody reads a half of one.
+"""Writes files whole or not at all, so that half a file is never read.
 
-A path that a caller names is used as it is meant: a link stays a link, a pipe is written to
-(`write`). What has a name of ours, in a folder for results, takes the place of whatever stands
-there (`put`): the folder may have come with a submission, and no link in it is to lead us away.
+A path that a caller names is written as named: a link stays a link, a pipe is written to (`write`).
+A file with a name of ours, in a folder for results, replaces whatever is there (`put`): the folder
+may have come with a submission, and none of its links may lead us elsewhere.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from grader.message import Message, msg
 _STREAMS = {"/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
 _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,9})")
 
-#: So much of a file shows whose it is [bytes].
+#: So much of a file shows its schema [bytes].
 _BEGINNING = 200
-#: The first day that a zip can tell.
+#: The first day that a zip can store.
 _DATE = (1980, 1, 1, 0, 0, 0)
 _UNIX, _PLAIN_FILE = 3, 0o100644 << 16
 
 
 def cannot_write(path: Path, why: str | Message) -> UsageError:
-    """The error for a file or folder that cannot be written."""
+    """Return the error for a file or folder that cannot be written."""
     return UsageError("cannot write {path}: {why}", path=str(path), why=why)
 
 
@@ -52,9 +52,9 @@ def writing(path: Path) -> Iterator[None]:
 def write(path: Path, content: str) -> None:
     """Write a text as UTF-8, whole or not at all; folders are made if need be.
 
-    A link stays a link. Devices and pipes are simply written to. A name of one of our own
-    descriptors (/dev/fd/3) means just that: it also works where the file behind it could not be
-    opened again, because another user has handed it to us.
+    A link stays a link. Devices and pipes are simply written to. The name of one of our
+    descriptors (/dev/fd/3) is written by that descriptor: this also works where its file could not
+    be opened again, because it is another user's.
 
     Raises:
         UsageError: it cannot be written; what was there before is still there.
@@ -89,7 +89,7 @@ def check_writable(path: Path) -> None:
 def _why_not(path: Path) -> Message | None:
     descriptor = _descriptor(path)
     if descriptor is not None:
-        import fcntl  # here: who names a descriptor by a path is not on Windows, which lacks it
+        import fcntl  # here: Windows lacks it, and has no such paths
 
         mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
         return msg("it is open for reading only") if mode == os.O_RDONLY else None
@@ -104,7 +104,7 @@ def _why_not(path: Path) -> Message | None:
 
 
 def check_replaceable(path: Path, schema: str, inputs: Iterable[Path]) -> None:
-    """Refuse to replace what somebody else has written, or what this very call reads.
+    """Refuse to replace a file that the grader has not written, or that this call reads.
 
     Args:
         schema: how the schema of what may be replaced begins: "turtlesim-grader/error/".
@@ -155,10 +155,10 @@ def make_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def sole_writer(folder: Path) -> Iterator[None]:
-    """Be the only one of us who writes into a folder, for as long as the context lasts.
+    """Be the only grading that writes into a folder, as long as the context lasts.
 
     Raises:
-        UsageError: another one does.
+        UsageError: another one writes into it.
     """
     lock = scratch.lock_folder(folder)
     if lock is None:
@@ -173,7 +173,7 @@ def sole_writer(folder: Path) -> Iterator[None]:
 
 
 def withdraw(path: Path) -> None:
-    """Remove what an earlier call has written there; a link, a device, a pipe stays.
+    """Remove what an earlier call has written to a path; a link, a device, a pipe stays.
 
     Raises:
         UsageError: it cannot be removed.
@@ -184,7 +184,7 @@ def withdraw(path: Path) -> None:
 
 
 def put(path: Path, content: bytes) -> None:
-    """Write a file of ours, whole or not at all, in the place of whatever has its name.
+    """Write a file of ours, whole or not at all, in place of whatever has its name.
 
     Raises:
         UsageError: it cannot be written.
@@ -194,14 +194,14 @@ def put(path: Path, content: bytes) -> None:
 
 
 def read_ours(path: Path, most_bytes: int) -> bytes:
-    """Read a file of ours in a folder for results, which others may have changed.
+    """Read a file of ours from a folder for results, which others may have changed.
 
     No link is followed and no pipe waited for.
 
     Raises:
         OSError: it cannot be read, is no ordinary file, or has more than `most_bytes`.
     """
-    with open(path, "rb", opener=_open_own) as file:
+    with open(path, "rb", opener=_open_unfollowed) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             raise OSError(errno.EINVAL, msg("it is no ordinary file"))
         data = file.read(most_bytes + 1)
@@ -210,7 +210,7 @@ def read_ours(path: Path, most_bytes: int) -> bytes:
     return data
 
 
-def _open_own(path: str, flags: int) -> int:
+def _open_unfollowed(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
 
 
@@ -218,8 +218,8 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     """Find out whether `put` will work, without changing anything.
 
     Args:
-        schema, inputs: as of `check_replaceable`; without a schema an older file of this name is
-            taken for ours.
+        schema, inputs: see `check_replaceable`; without a schema an older file of this name counts
+            as ours.
 
     Raises:
         UsageError: it will not; or an older file is not ours.
@@ -244,16 +244,16 @@ def check_can_fill(folder: Path) -> None:
     check_writable((folder.parent if mode is None or stat.S_ISLNK(mode) else folder) / "new")
 
 
-def check_leads_nowhere_else(folder: Path, handed_in: Path) -> None:
-    """Refuse a folder whose path goes through a link that others have laid.
+def check_leads_nowhere_else(folder: Path, submitted: Path) -> None:
+    """Refuse a folder whose path goes through a link of a submission's.
 
     Args:
-        handed_in: a folder with what others have handed in.
+        submitted: a folder with submissions.
 
     Raises:
         UsageError: it does.
     """
-    base = os.path.realpath(handed_in)
+    base = os.path.realpath(submitted)
     whole = Path(os.path.abspath(folder))  # noqa: PTH100  resolving would follow the link
     for at in (whole, *whole.parents):
         if at.is_symlink() and Path(os.path.realpath(at.parent)).is_relative_to(base):
@@ -268,7 +268,7 @@ def check_leads_nowhere_else(folder: Path, handed_in: Path) -> None:
 
 
 def clear(path: Path) -> None:
-    """Remove what has a name of ours and is no folder; of a link, the link.
+    """Remove what has a name of ours, unless it is a folder; of a link, the link.
 
     Raises:
         UsageError: it cannot be removed.
@@ -280,7 +280,7 @@ def clear(path: Path) -> None:
 
 
 def zipped(members: Iterable[tuple[str, bytes]]) -> bytes:
-    """A zip of these names, each once, and contents, in this order; the same at any time."""
+    """Return a zip of these names, each once, and contents, in this order; without the time."""
     import zipfile  # here: only a class makes zips
 
     file = io.BytesIO()
@@ -295,7 +295,7 @@ def zipped(members: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def _mode(path: Path) -> int | None:
-    """What stands at a path, itself and not what it may lead to; None if nothing does."""
+    """Return the mode of what is at a path, without following a link; None for nothing."""
     with writing(path), contextlib.suppress(FileNotFoundError, NotADirectoryError):
         return path.lstat().st_mode
     return None
@@ -308,11 +308,11 @@ def _write_beside(path: Path, data: bytes) -> None:
 
 @contextlib.contextmanager
 def _beside(path: Path) -> Iterator[Path]:
-    """An empty file beside the path, which takes its name if nothing goes wrong."""
+    """Make an empty file beside a path, which replaces it if nothing goes wrong."""
     unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished.touch(exist_ok=False)  # not through a link that somebody has laid there
+        unfinished.touch(exist_ok=False)  # not through a link that somebody has put there
         yield unfinished
         unfinished.replace(path)
     except BaseException:
@@ -322,12 +322,12 @@ def _beside(path: Path) -> Iterator[Path]:
 
 
 def _target(path: Path) -> Path:
-    """The file itself, where the path is a link."""
+    """Return the path with links followed."""
     return Path(os.path.realpath(path))
 
 
 def _descriptor(path: Path) -> int | None:
-    """The number of the descriptor of ours that a path names; None for any other path."""
+    """Return the number of the descriptor that a path names; None for any other path."""
     name = str(path)
     if name in _STREAMS:
         return _STREAMS[name]

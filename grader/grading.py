@@ -1,8 +1,8 @@
-"""Grade a submission: run it, judge what was recorded, put the result together.
+"""Grade a submission: run it, judge the recordings, build the result.
 
-`grade` does all of it, `record` one half, `grader.judging.judge` the other. They change nothing of
-the process that calls them (no signal handler, no current folder, no environment variable), and may
-be called from any thread, several at once.
+`grade` does all of it, `record` one half, `grader.judging.judge` the other. They change nothing in
+the calling process (no signal handler, no current folder, no environment variable), and may be
+called from any thread, several at once.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ from grader.submission.start import Submission
 
 Progress = Callable[[float], None]
 REPEATED = msg("repeated, because the first try failed in the grader")
-#: So many runs go at once even on less than two cores: each waits now and then.
+#: The least number of runs at once, even on less than two cores: each waits now and then.
 LEAST_AT_ONCE = 2
-#: A run by its number, 0 nominal, 1, 2, ... varied, and what was recorded of it.
+#: A run's number, 0 nominal, 1, 2, ... varied, and its recording.
 Finished = tuple[int, Recording]
 
 
@@ -50,11 +50,11 @@ class Runner(Protocol):
     def __call__(
         self, submission: Submission, plan: Plan, progress: Progress | None = None
     ) -> Recording:
-        """Return what happened."""
+        """Return the recording of the run."""
 
 
 class ClockedRunner(Protocol):
-    """One at which somebody can look on."""
+    """A runner with an optional audience."""
 
     def __call__(
         self,
@@ -64,17 +64,17 @@ class ClockedRunner(Protocol):
         *,
         audience: Audience | None = None,
     ) -> Recording:
-        """Return what happened."""
+        """Return the recording of the run."""
 
 
 RUNNERS: Mapping[Clock, ClockedRunner] = {"real": real_time.run, "virtual": virtual_time.run}
 
 
 def runner(exercise: Exercise, time: Clock, audience: Audience | None = None) -> Runner:
-    """What runs submissions to an exercise; where nothing is started, no clock counts.
+    """Return the runner for an exercise; without a clock where nothing is started.
 
     Args:
-        audience: who looks on at the runs, of which there is to be one at once.
+        audience: receives the runs live, of which there must be one at once.
     """
     if not exercise.is_started:
         return inspecting.run
@@ -92,15 +92,15 @@ def grade(
 ) -> Result:
     """Run a submission and judge it. Nothing is written, and no process of the run is left behind.
 
-    Two that have imported what runs need wait for the next grading, and end with this process; see
+    Two fork servers wait for the next grading, and end with this process; see
     `grader.run.fork_servers`.
 
     Args:
-        submission: the path of a .py file, a folder, a package or a zip; or what
-            `open_submission` has made of one.
+        submission: the path of a .py file, a folder, a package or a zip; or what `open_submission`
+            has returned for one.
         exercise: the name of an installed exercise, the path of one, or one that is loaded.
-        time: the clock that the submission lives by: "virtual" takes seconds, "real" minutes.
-        seed: chooses where the varied runs start; None takes the exercise's own.
+        time: the clock of the submission: "virtual" takes seconds, "real" minutes.
+        seed: chooses where the varied runs start; None for the exercise's seed.
         executable: which console script or file to start, where there are several.
         progress: called now and then with the simulated time of the nominal run [s], from
             another thread.
@@ -126,7 +126,7 @@ def record(
     executable: str | None = None,
     progress: Progress | None = None,
 ) -> Recordings:
-    """Run a submission, and do not judge it; see `grade`."""
+    """Run a submission without judging it; see `grade`."""
     asked = loaded(exercise)
     with _opened(submission, executable, asked) as opened:
         return _record(opened, asked, time, seed, progress)
@@ -143,7 +143,7 @@ def run_all(
     """Run a submission from its usual start and, where the exercise asks for it, from elsewhere.
 
     Args:
-        seed: chooses where the varied runs start; None takes the exercise's own.
+        seed: chooses where the varied runs start; None for the exercise's seed.
         progress: called with the simulated seconds of the nominal run.
 
     Raises:
@@ -156,7 +156,7 @@ def run_all(
 
 
 def plan(submission: Submission, exercise: Exercise, seed: int | None = None) -> list[Plan]:
-    """The runs of a submission: the nominal one, and where the exercise asks for them, varied ones.
+    """Plan the nominal run of a submission and, where the exercise asks for it, varied ones.
 
     Raises:
         SubmissionError: there is no ROS in which it could run.
@@ -188,7 +188,7 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
 
 
 def provenance(submission: Submission, exercise: Exercise, seed: int | None = None) -> Provenance:
-    """What is known of runs before they begin, for whoever asks later where they come from."""
+    """Return what is known of runs before they begin, for the record of their origin."""
     used = exercise.varied.seed if seed is None else seed
     copy = submission.copy
     return Provenance(
@@ -215,16 +215,15 @@ def start(
     origin: Provenance | None = None,
     at_once: int | None = None,
 ) -> Iterator[Iterator[Finished]]:
-    """Start runs, as many at once as there are cores; yields each as soon as it is over.
+    """Start runs, as many at once as there are cores; yield each as soon as it is over.
 
-    In the meantime the caller can do what is to be done for the others. None goes on when the
-    context is left.
+    The caller can handle one while the others go on. None goes on after the context.
 
     Args:
         plans: from `plan`.
         progress: called with the simulated seconds of the nominal run.
         origin: from `provenance`; comes into the nominal recording.
-        at_once: so many instead; one after the other they go in the order of `plans`.
+        at_once: so many at once instead; 1 runs them in the order of `plans`.
 
     Raises:
         GraderFailure: a run could not be made, twice; while iterating.
@@ -245,18 +244,18 @@ def start(
         except GraderFailure:
             return run(submission, again, show)
 
-    looks = plans[0].looks_at_package
-    if looks:
-        # Here, since two threads that import rosbags at once, each from another end, lock each
-        # other out: Python ends one of them by a _DeadlockError.
+    inspects = plans[0].looks_at_package
+    if inspects:
+        # Here, since two threads that import different parts of rosbags at once deadlock: Python
+        # ends one of them by a _DeadlockError.
         load_subject(PACKAGE_SCENE)
-    many = min(len(plans) + looks, max(LEAST_AT_ONCE, math.ceil(cores.share())))
+    many = min(len(plans) + inspects, max(LEAST_AT_ONCE, math.ceil(cores.share())))
     pool = ThreadPoolExecutor(max_workers=at_once or many)
     try:
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
-        looked = pool.submit(_inspect_twice_at_most, submission, plans[0]) if looks else None
+        inspection = pool.submit(_inspect_twice_at_most, submission, plans[0]) if inspects else None
         over = ((numbers[future], future.result()) for future in as_completed(numbers))
-        yield ((n, r if n else _nominal(r, origin, looked)) for n, r in over)
+        yield ((n, r if n else _nominal(r, origin, inspection)) for n, r in over)
     finally:
         pool.shutdown(cancel_futures=True)
 
@@ -271,16 +270,16 @@ def _inspect_twice_at_most(submission: Submission, plan: Plan) -> tuple[Trace, t
 def _nominal(
     recording: Recording,
     origin: Provenance | None,
-    looked: Future[tuple[Trace, tuple[Message, ...]]] | None,
+    inspection: Future[tuple[Trace, tuple[Message, ...]]] | None,
 ) -> Recording:
-    """The nominal run with all that was found out beside it."""
-    package, remarks = looked.result() if looked else (None, ())
+    """Add to the nominal run the inspection beside it and its origin."""
+    package, remarks = inspection.result() if inspection else (None, ())
     run = replace(recording.run, flags=(*remarks, *recording.run.flags))
     return replace(recording, run=run, package=package, provenance=origin)
 
 
 def gather(runs: Iterable[Finished]) -> Recordings:
-    """Runs, in whatever order they ended, as what is judged."""
+    """Collect runs, in whatever order they ended, for judging."""
     nominal, *varied = (recording for _, recording in sorted(runs, key=lambda run: run[0]))
     return Recordings(nominal, tuple(varied))
 

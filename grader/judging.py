@@ -1,4 +1,4 @@
-"""Judge what was recorded, on any system: nothing is run for it."""
+"""Judge recordings, on any system: this runs nothing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ AnyPath = str | os.PathLike[str]
 def judge(
     recordings: Recordings, exercise: AnyPath | Exercise = DEFAULT, *, submission: str = ""
 ) -> Result:
-    """Judge what was recorded, as often as one likes.
+    """Judge recordings, as often as needed.
 
     Args:
         submission: its name, for the result.
@@ -33,7 +33,7 @@ def judge(
 
 
 def load_recordings(folder: AnyPath) -> Recordings:
-    """The recordings in the folder `recording` of a graded run.
+    """Load the recordings in the folder `recording` of a graded run.
 
     Raises:
         RecordingError: there are none that can be judged.
@@ -51,12 +51,12 @@ def save_recordings(recordings: Recordings, folder: AnyPath) -> None:
 
 
 def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "") -> Result:
-    """What the nominal run alone decides, as a result that lacks all other verdicts."""
+    """Judge the nominal run alone; return a result without the other verdicts."""
     verdicts = check.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
     alone = Recordings(nominal)
     return build(submission, exercise, alone, verdicts, {}, diagnose(alone, verdicts))
 
 
 def loaded(exercise: AnyPath | Exercise) -> Exercise:
-    """An exercise, loaded if it is not yet."""
+    """Return an exercise, loaded if it is not yet."""
     return exercise if isinstance(exercise, Exercise) else load_exercise(exercise)

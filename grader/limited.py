@@ -1,14 +1,13 @@
 """Work in a copy of this process, within limits of time and memory: what it breaks ends there.
 
-For code that should come to an end and may not: an author's checks, a reader of a file from
-anywhere. The copy is a fork of this process and not of a fork server, so it has everything that we
-have: the exercise, a recording, a function. It hands nothing back but bytes.
-Whatever happens to it, a loop without end, os._exit, an allocation without measure, a crash in C,
-is here a `LimitHit` with a line that says so.
+For code that may never end: an author's checks, a reader of a file from anywhere. The copy is a
+fork of this process and not of a fork server, so it has everything that we have: the exercise, a
+recording, a function. It returns nothing but bytes. Whatever happens to it, a loop without end,
+os._exit, a huge allocation, a crash in C, is here a `LimitHit` with the reason.
 
-The kernel ends what goes on for too long (SIGPROF, SIGALRM, which nobody handles there), so no loop
-in C and no `except BaseException` helps against it. Where submissions are not run (macOS, Windows)
-the work is done in this process: then only what Python itself notices is a limit.
+The kernel ends what takes too long (SIGPROF, SIGALRM, which have no handlers there), so no loop in
+C and no `except BaseException` helps against it. Where submissions are not run (macOS, Windows) the
+work is done in this process: then only what Python itself notices is a limit.
 """
 
 from __future__ import annotations
@@ -31,19 +30,19 @@ from typing import NoReturn
 from grader import system
 from grader.message import Message, msg
 
-#: Before each answer: whether it is one, why there is none, or that there are no more; its length.
+#: Before each answer: its mark (an answer, a hit limit, the end), and its length.
 _HEAD = Struct("<cq")
 _ANSWER, _HIT, _END = b"=", b"!", b"."
-#: So long after its last second the kernel has surely ended a copy [s].
+#: So long after its limit the kernel has surely ended a copy [s].
 _GRACE_S = 10.0
-#: So often it is asked whether it has stalled [s].
-_LOOK_S = 0.5
+#: How often a copy is checked for a stall [s].
+_STALL_CHECK_S = 0.5
 _ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIGPIPE")
 
 
 @dataclass(frozen=True)
 class WorkLimits:
-    """How much a copy may take.
+    """How much a copy may use.
 
     Attributes:
         cpu_s: processor time [s]: a busy machine shortens nothing.
@@ -58,7 +57,7 @@ class WorkLimits:
     answer_bytes: int = 2**24
 
 
-#: Made before: who has no memory left makes no sentence.
+#: Made before: without memory no sentence can be made.
 TOO_MUCH = msg("needed more memory than it may have")
 TOO_DEEP = msg("called itself too deeply")
 _SERIALISED = {each: json.dumps(each.serialise()).encode() for each in (TOO_MUCH, TOO_DEEP)}
@@ -73,15 +72,15 @@ class LimitHit(Exception):
 
 
 class NoEnd(LimitHit):
-    """Its time was over: the processor's or that on the wall, which depends on the machine."""
+    """Its time was over, on the processor or on the wall clock."""
 
 
 class Stalled(NoEnd):
-    """It waited, and nothing that it had started did anything either."""
+    """It waited, and the caller saw that it would wait for ever."""
 
 
 class Slow(NoEnd):
-    """The time on the wall is over, though the processor's is not."""
+    """Its time on the wall clock was over, which depends on the machine."""
 
 
 Work = Callable[[], Iterator[bytes]]
@@ -90,14 +89,14 @@ Work = Callable[[], Iterator[bytes]]
 def stream(
     work: Work, limits: WorkLimits, is_stalled: Callable[[], bool] = lambda: False
 ) -> Generator[bytes]:
-    """The answers that a generator yields in one copy of this process, each as it is made.
+    """Yield the answers of a generator in a copy of this process, each as it is made.
 
-    A fork has the locks that other threads of ours held, and would wait for one in vain: the
-    generator must need none that another thread takes.
+    A fork inherits locks that other threads held, and would wait for one for ever: the generator
+    must need none that another thread acquires.
 
     Args:
-        limits: of all that it does.
-        is_stalled: asked now and then whether to wait any longer.
+        limits: of the whole work.
+        is_stalled: called now and then; True ends the work.
 
     Raises:
         LimitHit: there are no more, while iterating.
@@ -114,7 +113,7 @@ def stream(
 def call(
     work: Callable[[], bytes], limits: WorkLimits, is_stalled: Callable[[], bool] = lambda: False
 ) -> bytes:
-    """What one call of a function returns, within limits; see `stream`.
+    """Return what a function returns, within limits; see `stream`.
 
     Raises:
         LimitHit: it returned nothing.
@@ -124,7 +123,7 @@ def call(
 
 
 def _within_python(work: Work) -> Iterator[bytes]:
-    """Answers, and the limits that Python itself notices."""
+    """Yield the answers; turn what Python itself notices into hit limits."""
     try:
         yield from work()
     except MemoryError:
@@ -152,7 +151,7 @@ class _Copy:
         os.close(ours)
 
     def answers(self, is_stalled: Callable[[], bool]) -> Iterator[bytes]:
-        """All of them.
+        """Yield all answers.
 
         Raises:
             LimitHit: there are no more.
@@ -177,21 +176,21 @@ class _Copy:
     def close(self) -> None:
         """End it."""
         os.close(self._answers)
-        if not self._has_ended:  # else its number may be somebody else's
+        if not self._has_ended:  # else its process id may be in use again
             with suppress(ProcessLookupError):
                 os.kill(self._pid, signal.SIGKILL)
-            with suppress(ChildProcessError):  # somebody in this process waits for every child
+            with suppress(ChildProcessError):  # other code here may wait for every child
                 os.waitpid(self._pid, 0)
 
     def _read(self, size: int, deadline: float, is_stalled: Callable[[], bool]) -> bytes:
-        """So many bytes."""
+        """Read so many bytes."""
         waiting = select.poll()
         waiting.register(self._answers, select.POLLIN)
         found = bytearray(size)
         rest = memoryview(found)
         while rest:
             left_s = max(0.0, deadline - time.monotonic())
-            if not waiting.poll(min(left_s, _LOOK_S) * 1000):
+            if not waiting.poll(min(left_s, _STALL_CHECK_S) * 1000):
                 if not left_s:
                     raise Slow(
                         msg("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
@@ -206,7 +205,7 @@ class _Copy:
         return bytes(found)
 
     def _why_it_ended(self) -> LimitHit:
-        # It has hung up; with time it surely ends, by itself or by the kernel.
+        # It has closed its pipe; soon it surely ends, by itself or by the kernel.
         status = self._reaped()
         if status is None:
             return LimitHit(msg("ended the process that it ran in"))
@@ -228,7 +227,7 @@ class _Copy:
         )
 
     def _reaped(self) -> int | None:
-        """How a copy that has hung up ended; None: it has not, or nobody knows."""
+        """Return the status of a copy that has closed its pipe; None where it is unknown."""
         deadline = time.monotonic() + _GRACE_S
         with suppress(ChildProcessError):
             while time.monotonic() < deadline:
@@ -246,7 +245,7 @@ class _Copy:
 def _be_copy(work: Work, limits: WorkLimits, answers: int) -> NoReturn:
     code, copy = 1, os.getpid()
     try:
-        gc.freeze()  # to look through all that is inherited would copy it, and might end it
+        gc.freeze()  # searching all that is inherited for garbage would copy it, and use memory
         _confine(limits, answers)
         _print_to_standard_error()
         signal.setitimer(signal.ITIMER_PROF, limits.cpu_s)
@@ -254,7 +253,7 @@ def _be_copy(work: Work, limits: WorkLimits, answers: int) -> NoReturn:
         try:
             for answer in _within_python(work):
                 if os.getpid() != copy:
-                    os._exit(1)  # the work has forked, and this one is no copy that was asked
+                    os._exit(1)  # the work has forked, and this is the fork
                 _write(answers, _HEAD.pack(_ANSWER, len(answer)) + answer)
             last, why = _END, b""
         except LimitHit as hit:
@@ -271,17 +270,17 @@ def _be_copy(work: Work, limits: WorkLimits, answers: int) -> NoReturn:
 
 
 def _confine(limits: WorkLimits, kept: int) -> None:
-    """Nothing of what this copy does reaches further than itself, or lasts."""
+    """Keep the effects of this copy to itself, and set its limits."""
     import resource  # here: Windows has none
 
     from grader import linux
 
     for name in _ENDING:
         signal.signal(getattr(signal, name), signal.SIG_DFL)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is told to the one who asks, too
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches our caller, too
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM, signal.SIGPROF})
     linux.signal_at_parents_death(signal.SIGKILL)
-    # Whoever waits for the other end of one of our sockets is not to wait for this copy.
+    # A process that waits for the end of one of our sockets is not to wait for this copy.
     linux.close_descriptors((0, 1, 2, kept))
     pages = int((system.PROC / "self" / "statm").read_text(encoding="ascii").split()[0])
     most = pages * linux.PAGE_BYTES + limits.memory_bytes
@@ -290,7 +289,7 @@ def _confine(limits: WorkLimits, kept: int) -> None:
 
 
 def _print_to_standard_error() -> None:
-    """Standard output may be a result that a program reads, and our caller's objects are copies."""
+    """Redirect standard output, which may be a result that a program reads, to standard error."""
     with suppress(OSError):  # it may be closed
         os.dup2(2, 1)
         sys.stdout = sys.stderr = open(  # noqa: SIM115  as long as the copy lasts

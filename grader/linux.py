@@ -1,6 +1,6 @@
-"""What Linux knows and Python has no name for: calls, limits of resources, /proc/PID/stat.
+"""Linux's calls that Python lacks, limits of resources, /proc/PID/stat.
 
-Nothing but the standard library, and little of that: processes that import this start in a few
+Imports little of the standard library and nothing else: processes that import this start in a few
 milliseconds. Elsewhere than on Linux each call is refused as unknown.
 """
 
@@ -60,7 +60,7 @@ def call(function: str, *arguments: object) -> int:
 
 
 def system_call(number: int, *words: int | bytes | None, of: str = "syscall") -> int:
-    """Make a system call that the C library has no function for; `of`: what it belongs to.
+    """Make a system call that the C library has no function for; `of` names it in errors.
 
     Raises:
         OSError: the system does not allow it, or does not know it; its `filename` is `of`.
@@ -86,12 +86,12 @@ def unshare(kinds: int) -> None:
 
 
 def unshare_user(uid: int, proc: int, kinds: int = 0) -> None:
-    """Go on in a user namespace of our own, as this user and group in it; of other kinds as well.
+    """Enter a new user namespace as this user and group, and new ones of other kinds.
 
-    What was made in the one before, mounts and networks, is then none of our business.
+    There are no rights over what was made in the one before, such as mounts and networks.
 
     Args:
-        proc: our folder of /proc, opened where it can be written to.
+        proc: a descriptor of this process's folder in a writable /proc.
 
     Raises:
         OSError: the system does not allow it.
@@ -127,19 +127,19 @@ def mount(kind: str, target: str, flags: int, data: str = "", source: str = "non
     call("mount", *words, ctypes.c_ulong(flags), data.encode())
 
 
-def change_mount(target: str, put: int, take: int = 0, *, below: bool = False) -> None:
-    """Put attributes on a mount and take some away; `below`: on those below it as well.
+def change_mount(target: str, added: int, removed: int = 0, *, below: bool = False) -> None:
+    """Add attributes to a mount and remove others; `below`: also for the mounts below it.
 
     Raises:
         OSError: the system does not allow it, or is older than Linux 5.12.
     """
-    attributes = bytes((ctypes.c_uint64 * 4)(put, take, 0, 0))
+    attributes = bytes((ctypes.c_uint64 * 4)(added, removed, 0, 0))
     flags = AT_RECURSIVE if below else 0
     system_call(_MOUNT_SETATTR, AT_FDCWD, os.fsencode(target), flags, attributes, len(attributes))
 
 
 def change_root() -> None:
-    """Make the current folder, a mount, the root of all; what was the root is there no more.
+    """Make the current folder, a mount, the root; the old root is detached.
 
     Raises:
         OSError: the system does not allow it.
@@ -153,7 +153,7 @@ def change_root() -> None:
 
 
 def control(option: int, *values: int) -> bool:
-    """Call prctl; whether it succeeded."""
+    """Call prctl; return whether it succeeded."""
     words = [ctypes.c_ulong(value) for value in (*values, 0, 0, 0, 0)[:4]]
     there = getattr(_libc, "prctl", None)
     return there is not None and bool(there(option, *words) == 0)
@@ -172,7 +172,7 @@ def go_with_parent(parent: int, number: int) -> None:
 
 
 def forbid_new_privileges() -> None:
-    """No program that is started from now on has more privileges than who starts it.
+    """Keep programs that are started from now on from gaining privileges.
 
     Raises:
         OSError: the system does not know this.
@@ -182,7 +182,7 @@ def forbid_new_privileges() -> None:
 
 
 def set_capabilities(permitted: int = 0) -> None:
-    """Have these capabilities, a set of bits, and no others; none of them is inherited.
+    """Set the capabilities to exactly these bits; none is inherited.
 
     Raises:
         OSError: the system does not allow it.
@@ -218,13 +218,13 @@ def close_descriptors(kept: Collection[int]) -> None:
 
 
 def resource_limits() -> list[tuple[int, int, int]]:
-    """What this process may use of every resource: its number, the soft and the hard limit."""
+    """Return this process's limit of every resource: its number, the soft and the hard limit."""
     numbers = sorted({getattr(resource, n) for n in dir(resource) if n.startswith("RLIMIT_")})
     return [(number, *resource.getrlimit(number)) for number in numbers]
 
 
 def set_limit(number: int, soft: int, hard: int) -> None:
-    """Limit a resource of the calling process to just this, where it is anything else.
+    """Set a limit of the calling process, if it is not this already.
 
     Raises:
         OSError, ValueError: the system does not allow it.
@@ -234,7 +234,7 @@ def set_limit(number: int, soft: int, hard: int) -> None:
 
 
 def lower_limit(number: int, soft: int, hard: int) -> None:
-    """Limit a resource of the calling process, unless it is limited to less already."""
+    """Lower a limit of the calling process; a lower one stays."""
     now_soft, now_hard = resource.getrlimit(number)
     hard = _lesser(hard, now_hard)
     resource.setrlimit(number, (_lesser(_lesser(soft, now_soft), hard), hard))
@@ -250,16 +250,16 @@ def _lesser(one: int, other: int) -> int:
 
 
 class ProcessStat(NamedTuple):
-    """What a process does and has used; where there is no such process, nothing but zeros.
+    """The state and usage of a process; all zero where there is none.
 
     Attributes:
-        state: the kernel's letter for what it does; '' if there is no such process.
+        state: the kernel's letter for its state; '' if there is no such process.
         parent: the process id of its parent.
         ticks: the processor time that it has used [ticks].
-        waited_ticks: that of its children which it has waited for [ticks].
-        tasks: its threads.
+        waited_ticks: that of the children that it has waited for [ticks].
+        tasks: the number of its threads.
         memory_bytes: its pages, with those of files and those that it shares.
-        env: where what it was started with as its environment begins and ends [addresses].
+        env: where its environment at its start begins and ends [addresses].
     """
 
     state: str = ""
@@ -277,7 +277,7 @@ class ProcessStat(NamedTuple):
 
     @property
     def is_stopped(self) -> bool:
-        """Whether somebody has stopped it, by SIGSTOP or as a debugger does."""
+        """Whether it was stopped, by SIGSTOP or by a debugger."""
         return self.state in ("T", "t")
 
     @property
@@ -301,7 +301,7 @@ def process_stat(pid: int) -> ProcessStat:
 
 
 def process_ids() -> set[int]:
-    """The numbers of all processes that /proc shows.
+    """Return the ids of all processes that /proc shows.
 
     Raises:
         OSError: it cannot be listed.
@@ -310,9 +310,9 @@ def process_ids() -> set[int]:
 
 
 def descendants(ancestor: int) -> dict[int, ProcessStat]:
-    """All processes below one, as /proc shows them: its children, their children, and so on.
+    """Return all processes below one, as /proc shows them: its children, theirs, and so on.
 
-    A zombie counts: threads of it may go on.
+    A zombie counts: its threads may still run.
 
     Raises:
         OSError: /proc cannot be listed.
@@ -322,7 +322,7 @@ def descendants(ancestor: int) -> dict[int, ProcessStat]:
 
 
 def below(ancestors: Set[int], stats: Mapping[int, ProcessStat]) -> set[int]:
-    """Those of some processes that descend from one of these ancestors."""
+    """Return the processes that descend from one of these ancestors."""
     found = set(ancestors)
     while more := {pid for pid, stat in stats.items() if stat.parent in found} - found:
         found |= more

@@ -1,7 +1,7 @@
 """Sentences for people: a key and values, rendered in the reader's language at the edges only.
 
-A `Message` is no `str`: wherever one would be lost in a text before its time, mypy or `format`
-says so. Between processes and in files it is JSON.
+A `Message` is no `str`: mypy or `format` reports where one would be rendered into a text too early.
+Between processes and in files it is JSON.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from dataclasses import dataclass, field
 from typing import Any, Union
 
 Value = Union[str, int, float, "Message"]
-#: What is shown as it is, or rendered.
+#: A text that is shown as it is, or a message that is rendered.
 Text = Union[str, "Message"]
 #: How a value may be written: a name, and a format that cannot ask for a page of blanks.
 _NAME = re.compile(r"[a-z_][a-z0-9_]*", re.IGNORECASE)
 _FORMAT = re.compile(r"[+,]?[0-9]{0,2},?(\.[0-9]{1,2})?[a-zA-Z%]?")
-#: Messages in messages: none that a check makes is deeper.
+#: The deepest nesting of messages: none that a check makes is deeper.
 _DEEPEST = 12
-#: Of a message that is read, as it is in English [characters].
+#: The longest message that is parsed, in English [characters].
 _LONGEST = 1_000_000
 #: The key of a text that is the same in every language, and the name of its value.
 _TEXT = "text"
@@ -36,9 +36,9 @@ class Message:
     """A sentence that can be rendered in any language.
 
     Attributes:
-        key: the English sentence with names for its values, `It made {turns:.1f} turns.`; what
-            translators find in the catalogues.
-        values: what the names stand for.
+        key: the English sentence with names for its values, `It made {turns:.1f} turns.`; the key
+            of the catalogues.
+        values: the values of the names.
         many: the key for more than one, where the value `n` decides; '' for none.
         words: language -> the whole sentence there, where its author gives it with the key; it
             comes before any catalogue.
@@ -50,7 +50,7 @@ class Message:
     words: Mapping[str, str] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        """Whether it says anything."""
+        """Whether it is not empty."""
         return bool(self.key) and self != _EMPTY_TEXT
 
     def __hash__(self) -> int:
@@ -81,7 +81,7 @@ class Message:
 
     @property
     def is_row(self) -> bool:
-        """Whether it is parts one behind the other, which have their own sentences."""
+        """Whether it is a row of parts, each with a sentence of its own."""
         return bool(_ROW.fullmatch(self.key))
 
     @property
@@ -91,22 +91,22 @@ class Message:
 
     @property
     def text(self) -> str | None:
-        """The text that it is in every language; None for a sentence."""
+        """Its text, if that is the same in every language; None for a sentence."""
         value = self.values.get(_TEXT)
         return value if self.key == _KEY_OF_TEXT and isinstance(value, str) else None
 
     def given(self, **values: Any) -> Message:
-        """The message with values for some of its names."""
+        """Return the message with values for some of its names."""
         made = {name: _value(value) for name, value in values.items()}
         return Message(self.key, {**self.values, **made}, self.many, self.words)
 
     def map_texts(self, change: Callable[[str], str]) -> Message:
-        """The message with each text among its values, and theirs, changed."""
+        """Return the message with each text among its values, and theirs, changed."""
         values = {name: _changed(value, change) for name, value in self.values.items()}
         return Message(self.key, values, self.many, self.words)
 
     def serialise(self) -> Any:
-        """The message as JSON: a text as such, else its key, and what else is not empty."""
+        """Return the message as JSON: a text as such, else its key, and all that is not empty."""
         if not self or self.text is not None:
             return self.text or ""
         values = {name: _serialised(value) for name, value in self.values.items()}
@@ -117,17 +117,17 @@ class Message:
     def parse(
         cls, data: object, text: Callable[[Any], str] | None = None, depth: int = 0
     ) -> Message:
-        """Return the message that JSON means.
+        """Parse a message from JSON.
 
         Args:
-            text: holds a text of it against bounds, and returns what is taken of it.
+            text: checks a text of it, and returns the text to keep.
 
         Raises:
-            ValueError: it means none.
+            ValueError: it is no message.
         """
-        take = text or _a_text
+        checked = text or _a_text
         if isinstance(data, str):
-            return plain_text(take(data))
+            return plain_text(checked(data))
         if not isinstance(data, dict) or "key" not in data or depth > _DEEPEST:
             raise ValueError(f"expected a message: a key with values; found {reprlib.repr(data)}")
         if unknown := data.keys() - {"key", "values", "many", "words"}:
@@ -138,16 +138,16 @@ class Message:
                 return cls.parse(found, text, depth + 1)
             if type(found) is int or type(found) is float:
                 return found
-            return take(found)
+            return checked(found)
 
         values, words = data.get("values", {}), data.get("words", {})
         if not isinstance(values, dict) or not isinstance(words, dict):
             raise ValueError("expected the values of a message by their names")
         made = cls(
-            take(data["key"]),
-            {take(name): value(found) for name, found in values.items()},
-            take(data.get("many", "")),
-            {take(language): take(word) for language, word in words.items()},
+            checked(data["key"]),
+            {checked(name): value(found) for name, found in values.items()},
+            checked(data.get("many", "")),
+            {checked(language): checked(word) for language, word in words.items()},
         )
         try:
             fill(made.number_key, made.values, _in_english, _LONGEST)
@@ -157,20 +157,20 @@ class Message:
 
 
 def msg(key: str, /, **values: Any) -> Message:
-    """A sentence: `msg("It made {turns:.1f} turns.", turns=2.5)`.
+    """Make a sentence: `msg("It made {turns:.1f} turns.", turns=2.5)`.
 
-    Numbers are written as the reader's language writes them; what is code is given as a text.
+    Numbers are written as in the reader's language; numbers that are code are passed as texts.
     """
     return Message(key, {name: _value(value) for name, value in values.items()})
 
 
 def msg_many(one: str, many: str, n: float, /, **values: Any) -> Message:
-    """A sentence about `{n}` things: `msg_many("{n} pin", "{n} pins", 3)`."""
+    """Make a sentence about `{n}` things: `msg_many("{n} pin", "{n} pins", 3)`."""
     return Message(one, {name: _value(v) for name, v in {"n": n, **values}.items()}, many)
 
 
 def in_context(english: str, context: str) -> Message:
-    """A word that English has for several things: `in_context("left", "of a wall")`.
+    """Make a word that has several meanings in English: `in_context("left", "of a wall")`.
 
     Translators find it by both, as 'left (of a wall)'.
     """
@@ -178,17 +178,17 @@ def in_context(english: str, context: str) -> Message:
 
 
 def plain_text(text: str) -> Message:
-    """A text that is the same in every language: a name, code, what a program printed."""
+    """Make a message of a text that is never translated: a name, code, a program's output."""
     return Message(_KEY_OF_TEXT, {_TEXT: text}) if text else NOTHING
 
 
 def as_message(text: str | Message) -> Message:
-    """A message, also of a text that nobody translates."""
+    """Return a message as it is, or a text as a message that is never translated."""
     return text if isinstance(text, Message) else plain_text(text)
 
 
 def authored(text: str, words: Mapping[str, str] | None = None) -> Message:
-    """What an exercise's author has written, with its words in other languages, if there are some.
+    """Make a message of an author's text, with its translations, if there are some.
 
     Args:
         words: language -> text. In a language that is left out, a catalogue may know the text.
@@ -197,7 +197,7 @@ def authored(text: str, words: Mapping[str, str] | None = None) -> Message:
 
 
 def joined(parts: Iterable[str | Message], between: str | Message = "") -> Message:
-    """Texts and messages one behind the other, with the same between each two."""
+    """Join texts and messages, with `between` between each two."""
     row: list[str | Message] = []
     for part in parts:
         row += [between] if row and between else []
@@ -212,7 +212,7 @@ def joined(parts: Iterable[str | Message], between: str | Message = "") -> Messa
 
 
 def listed(items: Iterable[str | Message]) -> Message:
-    """Some things in one row: 'a', 'a and b', 'a, b and c'."""
+    """Join things as a list: 'a', 'a and b', 'a, b and c'."""
     *those, last = list(items) or [NOTHING]
     if not those:
         return as_message(last)
@@ -220,12 +220,12 @@ def listed(items: Iterable[str | Message]) -> Message:
 
 
 def chained(items: Iterable[str | Message]) -> Message:
-    """Some things with a word between each two: 'a and b and c'."""
+    """Join things with "and" between each two: 'a and b and c'."""
     return joined(items, msg(" and "))
 
 
 def reason(error: Exception) -> Message:
-    """What an exception says."""
+    """Return the message of an exception."""
     is_message = len(error.args) == 1 and isinstance(error.args[0], Message)
     return error.args[0] if is_message else plain_text(str(error))
 
@@ -236,17 +236,17 @@ def fill(
     write: Callable[[Any, str], str] = format,
     most: float = math.inf,
 ) -> str:
-    """A key with its values in their places.
+    """Fill the values into a key.
 
-    `{clause!u}` is a clause with which a sentence begins: with a capital, where it is no file's
-    name.
+    `{clause!u}` is a clause at the beginning of a sentence: it gets a capital, unless it is the
+    name of a file.
 
     Args:
-        write: makes a text of a value and its format.
-        most: characters there may be; a value may stand in a key many times.
+        write: formats a value by its format.
+        most: the most characters; a value may occur in a key many times.
 
     Raises:
-        ValueError: it names what is not there, is no sentence with values, or becomes too long.
+        ValueError: it names a missing value, is no valid key, or becomes too long.
     """
     made, length = [], 0
     for before, name, form, conversion in string.Formatter().parse(key):
@@ -274,7 +274,7 @@ def _as_beginning(clause: str) -> str:
 
 
 def _value(value: Any) -> Value:
-    """A value as JSON has it: numpy's numbers, paths and what is not finite are none of JSON's."""
+    """Convert a value to one of JSON's, which has no numpy numbers, paths or infinite numbers."""
     value = value.item() if hasattr(value, "item") else value
     if isinstance(value, Message) and (not value or value.text is not None):
         return value.text or ""
@@ -299,6 +299,6 @@ def _a_text(found: object) -> str:
     return found
 
 
-#: Says nothing, where a sentence could stand.
+#: The empty message.
 NOTHING = Message()
 _EMPTY_TEXT = Message(_KEY_OF_TEXT, {_TEXT: ""})

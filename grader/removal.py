@@ -1,9 +1,9 @@
-"""Removes a file or a folder whatever a stranger has made of it, and nothing beside it.
+"""Removes a file or a folder whatever a submission has made of it, and nothing beside it.
 
-A submission's process may leave folders that it has forbidden (mode 000), that lie 300 levels deep
-or have names that are no text, links to all the world, pipes and sockets, files that are immutable
-(root's), or still being made. No link is followed, nothing is waited for, and a folder that lies in
-another is moved up before it is opened, so that no depth is too deep for us.
+A submission's process may leave folders with mode 000, 300 levels deep, or with names that are no
+text, links to anywhere, pipes and sockets, files that are immutable (root's), or still being made.
+No link is followed, nothing is waited for, and a folder in another is moved up before it is opened,
+so that no depth is too deep.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW"
 
 
 def remove(path: Path) -> bool:
-    """Remove what is there; whether nothing is left. It never fails, and never waits."""
+    """Remove what is there; return whether nothing is left. It never fails, and never waits."""
     for _ in range(PASSES):
         with suppress(OSError):
             if not stat.S_ISDIR(path.lstat().st_mode):
@@ -44,7 +44,7 @@ def _remove_folder(path: Path) -> None:
 
 
 def _empty(top: int) -> None:
-    """Remove what is in an open folder, as far as that can be."""
+    """Remove the contents of an open folder, as far as possible."""
     pending = ["."]
     while pending:
         name = pending.pop()
@@ -61,7 +61,7 @@ def _empty(top: int) -> None:
 
 
 def _drop(entry: str, folder: int, top: int, pending: list[str]) -> None:
-    """Remove an entry; a folder that is not empty becomes one of the top's, and is left pending."""
+    """Remove an entry; a folder that is not empty is moved to the top, and becomes pending."""
     if not stat.S_ISDIR(os.stat(entry, dir_fd=folder, follow_symlinks=False).st_mode):
         try:
             os.unlink(entry, dir_fd=folder)
@@ -79,7 +79,7 @@ def _drop(entry: str, folder: int, top: int, pending: list[str]) -> None:
 
 
 def _enter(name: str, parent: int | None = None) -> int:
-    """Open a folder that its owner may do all with, whatever he could do before."""
+    """Open a folder, and give its owner all rights to it."""
     try:
         folder = os.open(name, _FOLDER, dir_fd=parent)
     except PermissionError:
@@ -102,7 +102,7 @@ def _thaw_file(name: str, parent: int) -> None:
 
 
 def _thaw(opened: int) -> None:
-    """Make what is immutable a file, or folder, like any other."""
+    """Clear the attributes of an immutable file or folder."""
     import fcntl  # here: Windows lacks it
 
     with suppress(OSError):
@@ -112,7 +112,7 @@ def _thaw(opened: int) -> None:
 
 
 def _permit(name: str, parent: int | None) -> None:
-    """Let us read a folder of ours; if it is a link by now, that is not followed."""
+    """Give us all rights to a folder of ours; if it is a link by now, that is not followed."""
     folder = os.open(name, _FOLDER | os.O_PATH, dir_fd=parent)
     try:
         Path(f"/proc/self/fd/{folder}").chmod(stat.S_IRWXU)

@@ -1,7 +1,7 @@
-"""Packages that only part of the grader needs: named in one line where they are missing.
+"""Packages that only part of the grader needs: a missing one is reported in one line.
 
-pip brings all of them, the extra `cluster` only if it is asked for. `rosdep install` brings what
-Ubuntu has; the rest is for pip, which may not touch the Python of Ubuntu unless it is told to.
+pip installs all of them, the extra `cluster` only on request. `rosdep install` installs what Ubuntu
+has; the rest is for pip, which refuses to change Ubuntu's Python without a flag.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from importlib.util import find_spec
 from grader.errors import GraderFailure
 from grader.message import msg
 
-#: The module that is imported, what it is needed for, and what pip is told to install; the bounds
-#: are those of pyproject.toml.
+#: The module to import, its use, and the requirement for pip, with the bounds of pyproject.toml.
 OPTIONAL = {
     "rosbags": ("rosbags.rosbag2", msg("recordings are rosbag2 folders"), "rosbags>=0.11.9,<0.12"),
     "distributed": (
@@ -36,11 +35,11 @@ OPTIONAL = {
 
 
 def require(package: str, load: bool = True) -> None:
-    """Find out whether a package can be imported, before anything is done that needs it.
+    """Check that a package can be imported, before anything that needs it.
 
     Args:
         package: one of `OPTIONAL`.
-        load: import it; else only look whether it is there, which takes no time.
+        load: import it; else only search for it, which costs no time.
 
     Raises:
         GraderFailure: it is missing, or a package that it needs is.
@@ -53,9 +52,11 @@ def require(package: str, load: bool = True) -> None:
             raise ImportError(name=package)
     except ImportError as error:
         found = error.name or package
-        own = found.partition(".")[0] == package
+        is_package = found.partition(".")[0] == package
         missing = (
-            package if own else msg("{found}, which {package} needs,", found=found, package=package)
+            package
+            if is_package
+            else msg("{found}, which {package} needs,", found=found, package=package)
         )
         raise GraderFailure(
             "the Python package {missing} is missing ({use}). Install it with: "

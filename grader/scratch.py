@@ -1,7 +1,7 @@
 """A folder for each run, removed with it, or at the latest by the next run; and locks.
 
 All of them, and the locks of cores and ROS domains, lie in one folder that is this user's alone.
-Its name can be guessed, and everybody may write where it lies: what somebody else has put there is
+Its name can be guessed, and everybody may write into its parent: what another user has put there is
 avoided. Whatever lies in it and is no lock of ours is removed. A lock vanishes with the process
 that holds it, however that ends.
 """
@@ -22,20 +22,20 @@ from grader.removal import remove
 
 try:
     import fcntl
-except ImportError:  # Windows, where nothing is run, and recordings are judged all the same
+except ImportError:  # Windows, where recordings are judged, but nothing is run
     fcntl = None  # type: ignore[assignment]
 
 PREFIX = "run-"
-#: The lock of a folder lies beside it: it is there before that, and goes after it.
+#: The lock of a folder lies beside it: it is made before the folder, and removed after it.
 LOCK = ".lock"
 #: So many names for a folder are tried; one is enough, unless somebody removes its lock each time.
 MOST_TRIES = 100
 
 
 def home() -> Path:
-    """Where this user's runs, and the locks of their ROS domains, are: below the system's /tmp.
+    """Return the folder of this user's runs and locks: below the system's /tmp.
 
-    Where somebody else was there first: where else only this user may write.
+    Where another user has that name there: another place where only this user may write.
 
     Raises:
         GraderFailure: there is no such place.
@@ -57,7 +57,7 @@ def home() -> Path:
 
 
 def _places() -> Iterator[Path]:
-    """Where the folder may be, best first; later ones are only for those whose place is taken."""
+    """Yield possible places of the folder; later ones only count where the first is occupied."""
     with suppress(FileNotFoundError):  # no /tmp that can be written into
         yield home_below(Path(tempfile.gettempdir()))
     if runtime := os.environ.get("XDG_RUNTIME_DIR"):
@@ -67,15 +67,15 @@ def _places() -> Iterator[Path]:
 
 
 def home_below(folder: Path) -> Path:
-    """The path of this user's folder in one that is everybody's."""
+    """Return the path of this user's folder in a shared one."""
     return folder / f"turtlesim-grader-{os.getuid()}"
 
 
 def _make_private(folder: Path) -> None:
-    """Make a folder that only this user may write into, or find that it is one.
+    """Make a folder that only this user may write into, or check that it is one.
 
     Raises:
-        OSError: it cannot be made, or is something else; the text says whose.
+        OSError: it cannot be made, or is something else; the text names its owner.
     """
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700, parents=True)
@@ -90,7 +90,7 @@ def _make_private(folder: Path) -> None:
 
 
 def _owner(found: os.stat_result) -> str:
-    """Whose a file is, for a message: a name, or else a number."""
+    """Return the owner of a file, for a message: a name, or else a number."""
     import pwd  # here: Windows lacks it
 
     try:
@@ -101,9 +101,9 @@ def _owner(found: os.stat_result) -> str:
 
 @contextmanager
 def make_folder() -> Iterator[Path]:
-    """An empty folder, removed at the end of the context.
+    """Make an empty folder, removed at the end of the context.
 
-    A grader that is killed cannot remove its own; its lock is free then, and the next one does.
+    A killed grader cannot remove its folder; its lock is free then, and the next grader does.
 
     Raises:
         GraderFailure: there is no place for it.
@@ -114,8 +114,8 @@ def make_folder() -> Iterator[Path]:
         path = place / f"{PREFIX}{uuid.uuid4().hex[:12]}"
         beside = path.with_suffix(LOCK)
         with _open_lock(beside) as lock:
-            # else another grader has taken it for a leftover between two of our steps
-            if take(lock) and _is_in_place(lock, beside):
+            # else another grader has removed it as a leftover between two of our steps
+            if lock_file(lock) and _is_in_place(lock, beside):
                 path.mkdir(mode=0o700)
                 try:
                     yield path
@@ -130,7 +130,7 @@ def make_folder() -> Iterator[Path]:
 
 
 def _clear(place: Path) -> None:
-    """Remove the folders of runs that are no more."""
+    """Remove the folders of runs that have ended."""
     with suppress(OSError):
         names = [entry.name for entry in place.iterdir() if entry.name.startswith(PREFIX)]
         for run in {name.removesuffix(LOCK) for name in names}:
@@ -141,7 +141,7 @@ def _clear_one(path: Path, beside: Path) -> None:
     try:
         with _open_lock(beside) as lock:
             # a folder is made after its lock, and goes before it: one without is left over, too
-            if take(lock):
+            if lock_file(lock):
                 remove(path)
                 _forget(beside)
     except OSError:
@@ -156,13 +156,13 @@ def _forget(lock: Path) -> None:
 # Locks ----------------------------------------------------------------------------------------
 
 
-def take_lock(name: str) -> IO[str] | None:
-    """Take the lock of a name among all of this user's gradings; it is held until it is closed.
+def acquire_lock(name: str) -> IO[str] | None:
+    """Acquire the lock of a name among all of this user's gradings, held until it is closed.
 
-    The file stays there for the next one. What is in its place and is no lock goes.
+    The file stays there for the next one. Anything else of its name is removed.
 
     Returns:
-        None where somebody else has it, or where it cannot be had.
+        None where another grading holds it, or where it cannot be opened.
 
     Raises:
         GraderFailure: there is no place for locks.
@@ -174,7 +174,7 @@ def take_lock(name: str) -> IO[str] | None:
         except OSError:
             remove(path)
             continue
-        if take(file) and _is_in_place(file, path):
+        if lock_file(file) and _is_in_place(file, path):
             return file
         file.close()
         break
@@ -182,38 +182,37 @@ def take_lock(name: str) -> IO[str] | None:
 
 
 def lock_folder(folder: Path) -> int | None:
-    """Lock a folder, unless somebody else has it locked; Windows cannot, and lets anybody.
+    """Lock a folder, unless it is locked already; on Windows this never fails, and locks nothing.
 
     Returns:
-        A descriptor to be closed, which ends the lock; None where somebody else has it.
+        A descriptor, whose closing ends the lock; None where another process holds it.
     """
     if fcntl is None:
         return os.open(os.devnull, os.O_RDONLY)
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    if _flock(descriptor):
+    if lock_file(descriptor):
         return descriptor
     os.close(descriptor)
     return None
 
 
-def take(file: IO[str]) -> bool:
-    """Lock an open file, unless somebody else has it locked; held until the file is closed.
+def lock_file(file: IO[str] | int) -> bool:
+    """Lock an open file, until it is closed; return False where it is locked already.
 
-    Each `open` counts for itself, also within one process.
+    Each `open` counts separately, also within one process.
+
+    Args:
+        file: the file, or its descriptor.
     """
-    return _flock(file.fileno())
-
-
-def _flock(descriptor: int) -> bool:
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     return True
 
 
 def _open_lock(path: Path) -> IO[str]:
-    """Open the file of a lock, which is made if it is not there, and never changed.
+    """Open the file of a lock, which is made if missing, and never changed.
 
     Raises:
         OSError: it cannot be opened, or is not an ordinary file of this user's: a link is not
@@ -232,7 +231,7 @@ def _open_private(path: str, flags: int) -> int:
 
 
 def _is_in_place(file: IO[str], path: Path) -> bool:
-    """Whether an open file is still the one of this name: another's lock may be on a new one."""
+    """Whether an open file still has this name: another grader may have locked a new one."""
     try:
         return os.path.samestat(os.fstat(file.fileno()), path.lstat())
     except OSError:

@@ -1,10 +1,10 @@
-"""JSON as it is defined, and dataclasses as JSON and back; strictly, for it may be a stranger's.
+"""Strict JSON, and dataclasses as JSON and back; strictly, because it may be a stranger's.
 
-A dataclass says by its annotations what is taken: `str`, `int`, `float`, `bool`, `datetime` (with
-its zone), `Path`, `Literal`, `tuple[T, ...]`, `tuple[T, T]`, `NamedTuple`, `Mapping[str, T]`,
+The annotations of a dataclass define what is accepted: `str`, `int`, `float`, `bool`, `datetime`
+(with its zone), `Path`, `Literal`, `tuple[T, ...]`, `tuple[T, T]`, `NamedTuple`, `Mapping[str, T]`,
 `T | None`, dataclasses (of several, the one that has such keys), and `Annotated`: with `Bounds`,
-and with functions that get a value and return what is taken of it, or raise ValueError. A `Message`
-is an object of its own, see `grader.message`, if the bounds do not say how else it is written.
+and with functions that get a value and return the value to keep, or raise ValueError. A `Message`
+is an object with key and values, see `grader.message`, unless the bounds have another form for it.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ from grader.message import Message
 _Number = TypeVar("_Number", int, float)
 Made = TypeVar("Made")
 
-#: As metadata of a field: it is not written where it has its default; it is never written.
+#: Metadata of a field: not written where it has its default; never written.
 SPARSE, UNSTORED = {"is_sparse": True}, {"is_stored": False}
 
 
 class Bounds(NamedTuple):
-    """What is taken of a value and all within it.
+    """The bounds of a value and all within it.
 
     Attributes:
-        characters, entries: how long a text, or a list, may be.
-        number: what a whole number has to be below, but for its sign.
-        clean: what is taken of a text; None takes it as it is.
+        characters, entries: the longest text, and list.
+        number: the absolute value of a whole number is below this.
+        clean: returns the text to keep; None keeps it as it is.
         may_lack: whether a field that has a default may be absent.
         write, read: a message as JSON, and back; None for an object with key and values.
     """
@@ -69,10 +69,10 @@ OURS = Bounds(math.inf, math.inf, math.inf, may_lack=True)
 
 
 def loads(text: str) -> Any:
-    """What a text in JSON says; without NaN and infinite numbers, which Python takes.
+    """Parse JSON, without NaN and infinite numbers, which Python accepts.
 
     Raises:
-        ValueError: it is no JSON, or a number in it is none that can be computed with.
+        ValueError: it is no JSON, or a number in it is not finite.
         RecursionError: it is nested too deeply.
     """
     return json.loads(
@@ -81,7 +81,7 @@ def loads(text: str) -> Any:
 
 
 def to_json(value: Any, bounds: Bounds = STRANGERS) -> Any:
-    """As `from_json` takes it: what is longer than that is cut."""
+    """Convert to JSON that `from_json` accepts: what is longer is cut."""
     if isinstance(value, Message):
         return bounds.write(value) if bounds.write else value.serialise()
     if is_dataclass(value):
@@ -102,24 +102,24 @@ def to_json(value: Any, bounds: Bounds = STRANGERS) -> Any:
 
 
 def from_json(kind: type[Made], data: Any, bounds: Bounds = STRANGERS) -> Made:
-    """The dataclass that data means.
+    """Make a dataclass from JSON data.
 
     Raises:
-        ValueError: it has another form, or something in it is longer than it may be; the text says
-            what and where.
+        ValueError: it has another form, or something in it is too long; the text names it, and its
+            place.
     """
     made: Made = _value(kind, data, bounds)
     return made
 
 
 def line(value: Any) -> bytes:
-    """A dataclass in one line, for other processes of ours and small files; see `of_line`."""
+    """Serialise a dataclass in one line, for other processes and small files; see `of_line`."""
     data = to_json(value, OURS)
     return json.dumps(data, separators=(",", ":")).encode("ascii") + b"\n"
 
 
 def of_line(kind: type[Made], data: bytes, bounds: Bounds = OURS) -> Made:
-    """The dataclass that `line` has written.
+    """Parse a dataclass that `line` has written.
 
     Raises:
         ValueError: it is none.
@@ -164,7 +164,7 @@ def _value(kind: Any, data: Any, bounds: Bounds) -> Any:
             return None
         wanted = [each for each in args if each is not type(None)]
         fitting = (
-            [each for each in wanted if _takes(each, data, bounds)] if len(wanted) > 1 else wanted
+            [each for each in wanted if _fits(each, data, bounds)] if len(wanted) > 1 else wanted
         )
         if len(fitting) != 1:
             raise ValueError(f"expected one of {len(wanted)} objects, found {data!r:.80}")
@@ -220,7 +220,7 @@ def _list(args: tuple[Any, ...], data: Any, bounds: Bounds) -> tuple[Any, ...]:
 
 def _object(kind: Any, data: Any, bounds: Bounds) -> Any:
     parts = _parts(kind)
-    if not _takes(kind, data, bounds):
+    if not _fits(kind, data, bounds):
         unknown = sorted(data.keys() - parts.keys()) if isinstance(data, dict) else data
         raise ValueError(f"expected an object of {', '.join(parts)}, found {unknown or data!r:.80}")
     made = {}
@@ -232,7 +232,7 @@ def _object(kind: Any, data: Any, bounds: Bounds) -> Any:
     return kind(**made)
 
 
-def _takes(kind: Any, data: Any, bounds: Bounds) -> bool:
+def _fits(kind: Any, data: Any, bounds: Bounds) -> bool:
     """Whether an object of a dataclass has keys like these."""
     parts = {name: part for name, part in _parts(kind).items() if part.is_stored}
     lacks = bounds.may_lack
@@ -241,7 +241,7 @@ def _takes(kind: Any, data: Any, bounds: Bounds) -> bool:
 
 
 class _Part(NamedTuple):
-    """What a dataclass says of a field."""
+    """The definition of a field of a dataclass."""
 
     kind: Any
     default: Any

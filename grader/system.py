@@ -1,4 +1,4 @@
-"""What this system has: submissions are run on Linux, and judged and shown anywhere."""
+"""Checks of this system: submissions run on Linux, and are judged and shown anywhere."""
 
 from __future__ import annotations
 

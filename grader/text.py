@@ -1,4 +1,4 @@
-"""Text made fit to be shown: a submission may print, raise and name what it likes."""
+"""Cleans text for display: a submission may print, raise and name anything."""
 
 from __future__ import annotations
 
@@ -20,21 +20,20 @@ _LINE_BREAKS = re.compile(r"\r\n?|[\u2028\u2029]")
 _CONTROLS = r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069]"
 _REPLACEMENT = "\ufffd"
 
-#: What the runners of GitHub and Azure obey in what a step prints, in any case of letters: words at
-#: the start of a line after `::`, and words anywhere after `##[` or `##vso[`. In a narrow terminal
-#: any word may come to stand at the start of a line.
+#: Commands that the runners of GitHub and Azure obey in the output of a step, in any case of
+#: letters: words at the start of a line after `::`, and words anywhere after `##[` or `##vso[`. In
+#: a narrow terminal any word may come to the start of a line.
 _COMMANDS = re.compile(r"^([^\S\n]*)::|##(?=\[|vso\[)", re.MULTILINE | re.IGNORECASE)
 _COMMANDS_WRAPPED = re.compile(r"::(?=[a-z-]+[ :])|##(?=\[|vso\[)", re.IGNORECASE)
 
 
 def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str:
-    """The text with `sign` for each character that a terminal, a log or XML would stumble over.
+    """Replace by `sign` each character that breaks a terminal, a log or XML.
 
     Args:
-        keep: those of them that may stay.
+        keep: those of them that stay.
     """
-    shown = _controls_but(keep).sub(lambda _: sign, text)
-    return shown
+    return _controls_but(keep).sub(lambda _: sign, text)
 
 
 @cache
@@ -43,24 +42,24 @@ def _controls_but(keep: str) -> re.Pattern[str]:
 
 
 def plain(text: str) -> str:
-    r"""The text without colours, control characters and commands for a runner of CI.
+    r"""Remove colours, control characters and commands for a runner of CI.
 
-    `\n` is its only line break.
+    `\n` is the only line break of the result.
     """
     text = without_controls(_LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", text)), keep="\t\n")
     return _COMMANDS.sub(lambda match: f"{match[1]}: :" if match[0].endswith(":") else "# #", text)
 
 
 def for_terminal(text: str) -> str:
-    """The text as it may be printed, however it is wrapped; what colours it must not read it."""
+    """Clean a text for printing, however it is wrapped; do not parse it for colours afterwards."""
     return _COMMANDS_WRAPPED.sub(lambda match: " ".join(match[0]), plain(text))
 
 
 def plain_all(value: Any, limit: int = 1_000_000) -> Any:
-    """The same value, JSON or a dataclass, with each of its texts made plain.
+    """Make each text of a value plain, which is JSON or a dataclass.
 
     Args:
-        limit: what a text has above this many characters is not even looked at.
+        limit: texts are cut to this many characters first.
     """
     if isinstance(value, str):
         return plain(clip(value, limit))
@@ -79,24 +78,24 @@ def plain_all(value: Any, limit: int = 1_000_000) -> Any:
 
 
 def one_line(text: str) -> str:
-    """The text with every run of white space as one space."""
+    """Replace every run of white space by one space."""
     return " ".join(text.split())
 
 
 def in_one_line(message: Message) -> Message:
-    """The message with every run of white space as one space, its own around an empty name too."""
+    """Replace every run of white space in a message by one space, also around an empty value."""
     made = message.map_texts(lambda text: _BLANKS.sub(" ", text))
     shown = one_line(str(made))
     return made if str(made) == shown else plain_text(shown)
 
 
 def clip(text: str, limit: int) -> str:
-    """The text, its end cut off if it has more than `limit` characters."""
+    """Cut a text to `limit` characters."""
     return text if len(text) <= limit else text[: limit - 1] + "…"
 
 
 def clip_inside(text: str, limit: int) -> str:
-    """The same in one line: start and end of a text that has more than `limit` characters."""
+    """Cut the middle out of a text of one line that has more than `limit` characters."""
     if len(text) <= limit:
         return text
     half = (limit - 1) // 2
@@ -104,7 +103,7 @@ def clip_inside(text: str, limit: int) -> str:
 
 
 def clip_middle(text: str, limit: int) -> str:
-    """The start and the end of a text that has more than about `limit` characters."""
+    """Cut the middle out of a text that has more than about `limit` characters, with a note."""
     if len(text) <= limit:
         return text
     half = limit // 2
@@ -113,17 +112,17 @@ def clip_middle(text: str, limit: int) -> str:
 
 
 def points(value: float) -> str:
-    """Points as people write them: two decimals at most, 12.5, 30."""
+    """Format points for people: two decimals at most, 12.5, 30."""
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
 def number(value: float) -> float | int:
-    """A number as JSON formats get it: two decimals at most, and whole where it is."""
+    """Round a number for JSON: two decimals at most, and an int where it is whole."""
     rounded = round(value, 2)
     return int(rounded) if float(rounded).is_integer() else rounded
 
 
 def place(x: float, y: float) -> Message:
-    """A place in the window [m]: '(5.54, 7.20)'."""
+    """Format a place in the window [m]: '(5.54, 7.20)'."""
     known = math.isfinite(x) and math.isfinite(y)
     return msg("({x:.2f}, {y:.2f})", x=x, y=y) if known else msg("an unknown place")

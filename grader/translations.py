@@ -1,7 +1,7 @@
 """Messages rendered in a language: its sentences are in `languages/CODE.json`, by their keys.
 
-A catalogue may have holes: what it does not know is said in English. A sentence about a number has
-a list of forms there. docs/languages.md says how sentences are found and translated.
+A catalogue may have holes: a missing sentence is shown in English. A sentence about a number has a
+list of forms there. docs/languages.md explains how sentences are collected and translated.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from typing import Any, Final
 
 from grader.message import Message, fill, msg, msg_many
 
-#: Code -> how the language calls itself.
+#: Code -> the language's name for itself.
 LANGUAGES: Final = {"en": "English", "fr": "français", "zh": "中文"}
 ENGLISH: Final = "en"
-#: Where POSIX looks for the language of messages, first come, first served.
+#: The variables of POSIX for the language of messages; the first that is set counts.
 _VARIABLES = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
 
 _POINT = re.compile(r"(?<=\d)\.(?=\d)")
 _COMMA = re.compile(r"(?<=\d),(?=\d{3})")
-#: Blanks behind full-width punctuation: where English parts sentences, Chinese has nothing.
+#: Blanks after full-width punctuation: Chinese has none between sentences.
 _BEHIND_FULL_WIDTH = re.compile("(?<=[\u3002\uff0c\uff1b\uff1a\uff1f\uff01\uff09]) ")
 #: Between thousands: a narrow blank where no line is broken.
 _THOUSANDS = "\N{NARROW NO-BREAK SPACE}"
@@ -33,7 +33,7 @@ _current = ENGLISH
 
 
 def current() -> str:
-    """The language of this process's user."""
+    """Return the language of this process's user."""
     return _current
 
 
@@ -50,7 +50,7 @@ def use(language: str) -> None:
 
 
 def of_environment(environment: Mapping[str, str] = os.environ) -> str:
-    """The language that the user's locale asks for; English where there are no sentences in it."""
+    """Return the language of the user's locale; English where there is no catalogue for it."""
     first = next((found for name in _VARIABLES if (found := environment.get(name))), "")
     for wanted in first.split(":"):  # LANGUAGE may name several
         code = re.split("[-_.@]", wanted)[0].lower()
@@ -60,19 +60,19 @@ def of_environment(environment: Mapping[str, str] = os.environ) -> str:
 
 
 def tr(key: str, /, **values: Any) -> str:
-    """A sentence in the language of this process's user, at once; see `msg`."""
+    """Render a sentence in the language of this process's user; see `msg`."""
     return translate(msg(key, **values))
 
 
 def tr_many(one: str, many: str, n: float, /, **values: Any) -> str:
-    """A sentence about `{n}` things, at once; see `msg_many`."""
+    """Render a sentence about `{n}` things; see `msg_many`."""
     return translate(msg_many(one, many, n, **values))
 
 
 def translate(message: str | Message, language: str = "") -> str:
-    """A message as a text in a language, that of this process's user if none is given.
+    """Render a message in a language, that of this process's user if none is given.
 
-    A text stays as it is. What the catalogue does not know stays English.
+    A text stays as it is. What the catalogue lacks stays English.
     """
     language = language or current()
     if isinstance(message, str):
@@ -98,7 +98,7 @@ def translate(message: str | Message, language: str = "") -> str:
 
 
 def number(text: str, language: str = "") -> str:
-    """A number that is written in English, as a language writes it: '4,210.5', '4 210,5'."""
+    """Convert a number in English notation to a language's: '4,210.5', '4 210,5'."""
     if (language or current()) != "fr":
         return text
     return _POINT.sub(",", _COMMA.sub(_THOUSANDS, text))
@@ -106,7 +106,7 @@ def number(text: str, language: str = "") -> str:
 
 @cache
 def catalogue(language: str) -> Mapping[str, str | list[str]]:
-    """Key -> sentence, or its forms for one and for more; empty for English."""
+    """Load a catalogue: key -> sentence, or its forms for one and for more; empty for English."""
     if language == ENGLISH:
         return {}
     file = files("grader") / "languages" / f"{language}.json"
@@ -115,7 +115,7 @@ def catalogue(language: str) -> Mapping[str, str | list[str]]:
 
 
 def _translated(message: Message, language: str) -> str:
-    """The sentence with names for its values, as the language has it; '' for a hole."""
+    """Return the catalogue's sentence with names for its values; '' for a hole."""
     found = catalogue(language).get(message.key, "")
     if isinstance(found, str):
         return found

@@ -1,4 +1,4 @@
-"""Which versions of what are at work here: told with every result, and by `grader --version`."""
+"""The versions of the grader, Python, rclpy and ROS, for each result and `grader --version`."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ import re
 import sys
 from pathlib import Path
 
-#: What stands for a version that nothing here tells.
+#: Stands for an unknown version.
 UNKNOWN = "?"
 
 
 def grader() -> str:
-    """Ours."""
+    """Return the version of the grader."""
     return _of_distribution("turtlesim_py") or UNKNOWN
 
 
 def python() -> str:
-    """Python's."""
+    """Return the version of Python."""
     return ".".join(map(str, sys.version_info[:3]))
 
 
 def rclpy() -> str:
-    """That of the installed rclpy, which is not imported to find out."""
+    """Return the version of the installed rclpy, without importing it."""
     # from PyPI; its package.xml may say less
     if found := _of_distribution("ros-rclpy"):
         return found
@@ -39,12 +39,12 @@ def rclpy() -> str:
 
 
 def ros_distro() -> str:
-    """The name of the ROS 2 release that is sourced; '' where none is."""
+    """Return the name of the ROS 2 release that is sourced; '' where none is."""
     return os.environ.get("ROS_DISTRO", "")
 
 
 def _of_distribution(name: str) -> str:
-    """The version of an installed distribution; '' where it is not there."""
+    """Return the version of an installed distribution; '' where it is missing."""
     from importlib import metadata  # costs 15 ms, and is not needed by every process
 
     try:

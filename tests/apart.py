@@ -62,7 +62,7 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["TMPDIR"] = tempfile.tempdir = folder
     os.environ["ROS_DOMAIN_ID"] = str(number)
     os.environ["ROS_LOG_DIR"] = _open.enter_context(tempfile.TemporaryDirectory(prefix="log-"))
-    if lock := scratch.take_lock(f"domain-{number}"):
+    if lock := scratch.acquire_lock(f"domain-{number}"):
         _open.enter_context(lock)
 
 

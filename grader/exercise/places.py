@@ -27,7 +27,7 @@ from types import ModuleType
 from grader import extensions
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
-from grader.extensions import EXERCISES, told
+from grader.extensions import EXERCISES, described
 from grader.message import NOTHING, Message, joined, msg, plain_text
 
 DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
@@ -79,7 +79,7 @@ def installed(name: str) -> Place:
             "several exercises are installed as {name}: {found}. Remove one, or "
             "give the path of its folder.",
             name=repr(name),
-            found=", ".join(map(told, found)),
+            found=", ".join(map(described, found)),
         )
     if found:
         return _of_entry_point(found[0])
@@ -191,11 +191,11 @@ def _of_entry_point(point: EntryPoint) -> Place:
         spec = importlib.util.find_spec(point.value)
     except Exception as error:  # importing what is above it can do anything
         raise ExerciseError(
-            "{told} cannot be imported: {error}", told=told(point), error=str(error)
+            "{told} cannot be imported: {error}", told=described(point), error=str(error)
         ) from None
     if spec is None:
         raise ExerciseError(
-            "{told} is not there, though its package is installed", told=told(point)
+            "{told} is not there, though its package is installed", told=described(point)
         )
     folders = list(spec.submodule_search_locations or [])
     folder = Path(folders[0]) if folders else Path(spec.origin or "").parent
@@ -203,7 +203,7 @@ def _of_entry_point(point: EntryPoint) -> Place:
     if why := _wrong_with(folder):
         raise ExerciseError(
             "{told} is not an exercise: {folder}: {why}",
-            told=told(point),
+            told=described(point),
             folder=str(folder),
             why=why,
         )

@@ -1,4 +1,4 @@
-"""The environment variables of a run: none of the user's but those that Python and ROS stand on.
+"""The environment variables of a run: of the user's only those that Python and ROS need.
 
 The environment of a grader may hold tokens (that of a CI job does), which are none of a
 submission's business, and settings that would change a run. So variables are let through by name,
@@ -30,12 +30,12 @@ KEPT = frozenset((*PLACES, *MANNERS, *ROS))
 
 
 def lasting_environment() -> dict[str, str]:
-    """The variables that are the same in all runs: all that Python and libraries read at start."""
+    """Return the variables of all runs: those that Python and libraries read at start."""
     env = {name: value for name, value in os.environ.items() if name in KEPT}
     if system.is_ros_sourced() and "PYTHONPATH" in os.environ:
         env["PYTHONPATH"] = os.environ["PYTHONPATH"]  # ROS's own packages are there
     if site.ENABLE_USER_SITE:
-        # Python looks for packages below HOME, which is another in a run
+        # Python searches packages below HOME, which is another in a run
         env["PYTHONUSERBASE"] = site.getuserbase()
     return {
         **env,
@@ -49,11 +49,11 @@ def lasting_environment() -> dict[str, str]:
 
 
 def environment(folder: Path, isolated: Mapping[str, str]) -> dict[str, str]:
-    """Environment variables for both processes of a run: nothing of the user's that changes it.
+    """Return the variables for both processes of a run: nothing of the user's that changes it.
 
     Args:
-        folder: where ROS may log, temporary files go, and programs keep what is their user's.
-        isolated: what the isolation adds.
+        folder: where ROS may log, temporary files go, and programs keep their user's files.
+        isolated: the variables that the isolation adds.
     """
     (folder / "tmp").mkdir()
     (folder / "home").mkdir()
@@ -67,23 +67,23 @@ def environment(folder: Path, isolated: Mapping[str, str]) -> dict[str, str]:
 
 
 def student_environment(env: Mapping[str, str]) -> dict[str, str]:
-    """Have a submission's messages check what is put into them, as all did up to ROS 2 Humble.
+    """Return the variables of a submission: its messages check their fields.
 
-    Later ones do so where they are asked to. Else `linear.x = 2`, an int where a float belongs, is
-    sent as 1e-323 by the wheels of Jazzy, and aborts the process where rclpy's assertions in C are
-    compiled in; 256 in an uint8 becomes 0. Each message module reads this where it is imported, so
-    a fork server has to have it as well.
+    Up to ROS 2 Humble all messages did; later ones do so only if asked. Without the check,
+    `linear.x = 2`, an int where a float belongs, is sent as 1e-323 by the wheels of Jazzy, and
+    aborts the process where rclpy's assertions in C are compiled in; 256 in an uint8 becomes 0.
+    Each message module reads this at its import, so a fork server has to have it as well.
     """
     return {**env, "ROS_PYTHON_CHECK_FIELDS": "1"}
 
 
 def virtual_environment(env: Mapping[str, str]) -> dict[str, str]:
-    """The variables of a submission in virtual time: its sets have the same order every time."""
+    """Return the variables of a submission in virtual time: sets have the same order every time."""
     return {**student_environment(env), "PYTHONHASHSEED": "0"}
 
 
 def simulator_environment(env: Mapping[str, str]) -> dict[str, str]:
-    """The variables of the simulator, which finds our packages first and none that lie about."""
+    """Return the variables of the simulator: our packages come first, the current folder never."""
     ours = str(Path(__file__).resolve().parents[2])
     path = os.pathsep.join(filter(None, [ours, env.get("PYTHONPATH", "")]))
     return {**env, "PYTHONPATH": path, "PYTHONSAFEPATH": "1"}

@@ -1,9 +1,10 @@
-"""What a submission's process tells of itself, on its way to the recording.
+"""Reads what a submission's process reports of itself, and checks it for the recording.
 
-Its account lies in a page that both have (`observe.account`), and so does what Python's
-faulthandler writes at a signal, or where the process dies by a fault in C. That is written in C,
-also where a program computes without end. Both may be anybody's: they are held against the
-annotations of `Observations`, and where anything is not as our own code writes it, nothing counts.
+Its account lies in a page that both processes have (`observe.account`), and so does the dump that
+Python's faulthandler writes at a signal, or where the process dies by a fault in C. The dump is
+written by C code, so it comes even where a program computes without end. The submission may have
+written either: both are checked by the annotations of `Observations`, and if anything differs from
+what our own code writes, nothing counts.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
@@ -22,7 +23,7 @@ from grader.run.observe import account, stuck
 from grader.run.observe.files import Frame, SubmissionFiles
 from grader.submission.start import Submission
 
-#: How long a process may take to say where it is [s]; it has nothing else to do.
+#: How long a process may take to dump where it is [s]; it has nothing else to do.
 PATIENCE_S = 1.0
 #: A dump comes line by line, and is over when nothing more comes for so long [s].
 QUIET_S = 0.1
@@ -42,7 +43,7 @@ _THREAD = re.compile(
     r"(?:Current thread|Thread) 0x[0-9a-f]{1,16}.{0,40}\(most recent call first\):"
 )
 _FRAME = re.compile(r'  File "([^"]{1,500})", line (\d{1,9}) in (.{1,500})')
-#: Of a process that has left no account, and says where it is all the same.
+#: The account of a process that has left none, but a dump.
 _NOTHING: dict[str, Any] = {
     **{"is_blind": False, "ends": [], "waits": [], "slow": [], "timers": [], "caught": []},
     **{"spun_s": None, "stop": None, "raised": None, "returned_s": None},
@@ -61,15 +62,15 @@ class EvidencePage:
         self._account = self._dump = b""
 
     def close(self) -> None:
-        """Read what was told till now, and close what is open."""
+        """Read the account and the dump as they are now, and close the page."""
         if self.page >= 0:
             self._account, _ = account.read(self.page)
             self._dump = account.dumped(self.page)
             os.close(self.page)
             self.page = -1
 
-    def ask(self, pid: int) -> None:
-        """Have a process that still runs dump where its threads are, and wait for that."""
+    def request_dump(self, pid: int) -> None:
+        """Have a running process dump where its threads are, and wait for the dump."""
         before, patience_s = account.dumped(self.page), PATIENCE_S
 
         def has_more() -> bool:
@@ -80,14 +81,14 @@ class EvidencePage:
             while _awaited(pid, has_more, patience_s):
                 before, patience_s = account.dumped(self.page), QUIET_S
 
-    def hear_out(self, pid: int) -> None:
-        """Wait until a process has told all, or has ended, which it does when its run is over."""
+    def await_last_write(self, pid: int) -> None:
+        """Wait until a process has written its last account, or has ended, when its run is over."""
         _awaited(pid, lambda: account.read(self.page)[1], PATIENCE_S)
 
     def observations(
         self, submission: Submission, ended_s: float, *, computes: bool
     ) -> Observations:
-        """Return all that was told; of a process that told nothing, or nonsense, that it did not.
+        """Return the observations; empty ones where the account is missing or invalid.
 
         Args:
             ended_s: how far the process has got, on the clock of the run [s].
@@ -100,18 +101,8 @@ class EvidencePage:
             return Observations()
 
 
-@contextmanager
-def open_evidence() -> Iterator[EvidencePage]:
-    """Make a page for one run."""
-    evidence = EvidencePage()
-    try:
-        yield evidence
-    finally:
-        evidence.close()
-
-
 def _awaited(pid: int, has_come: Callable[[], bool], patience_s: float) -> bool:
-    """Whether something comes; while a process waits for a processor, its time stands still."""
+    """Wait until something comes; return whether it has. Waiting for a processor is free."""
     used_s, slept_s = linux.process_stat(pid).cpu_s, 0.0
     gives_up = time.monotonic() + LONGEST_S
     while not has_come():
@@ -125,36 +116,36 @@ def _awaited(pid: int, has_come: Callable[[], bool], patience_s: float) -> bool:
     return True
 
 
-# What was told --------------------------------------------------------------------------------
+# The account ----------------------------------------------------------------------------------
 
 
 def _observations(
     data: bytes, dumped: bytes, submission: Submission, ended_s: float, computes: bool
 ) -> Observations:
-    """Raises ValueError and its like: it is not what our own code writes."""
+    """Decode an account; raise ValueError and its like where our own code did not write it."""
     files = SubmissionFiles(str(submission.root))
     signal, threads = _read_dump(dumped.decode("ascii").splitlines(), files)
     if not data and not threads:
         return Observations()
-    told = strict_json.loads(data.decode("ascii")) if data else dict(_NOTHING)
-    if told.pop("is_blind"):
+    summary = strict_json.loads(data.decode("ascii")) if data else dict(_NOTHING)
+    if summary.pop("is_blind"):
         raise ValueError("our own code does not know this rclpy")
-    if all(told[key] is None for key in ("stop", "raised", "returned_s")):
-        told |= _ending(signal, threads, files, ended_s, computes=computes)
+    if all(summary[key] is None for key in ("stop", "raised", "returned_s")):
+        summary |= _ending(signal, threads, files, ended_s, computes=computes)
     found = [strict_json.to_json(each) for each in submission.lint_findings]
-    observations = Observations.from_json(told | {"is_known": True, "lint_findings": found})
-    shown: Observations = _as_handed_in(observations, submission)
+    observations = Observations.from_json(summary | {"is_known": True, "lint_findings": found})
+    shown: Observations = _as_submitted(observations, submission)
     return shown
 
 
-def _as_handed_in(value: Any, submission: Submission) -> Any:
-    """Return the same with the paths of what was handed in, in place of those of a run's copy."""
+def _as_submitted(value: Any, submission: Submission) -> Any:
+    """Replace the paths of a run's copy by those of the submission."""
     if isinstance(value, tuple):
-        return tuple(_as_handed_in(each, submission) for each in value)
+        return tuple(_as_submitted(each, submission) for each in value)
     if not is_dataclass(value) or isinstance(value, type):
         return value
     names = [each.name for each in fields(value)]
-    parts = {name: _as_handed_in(getattr(value, name), submission) for name in names}
+    parts = {name: _as_submitted(getattr(value, name), submission) for name in names}
     if isinstance(value, SourceLine):
         top = submission.copy.folder if submission.copy else submission.root
         folder = submission.root.relative_to(top).as_posix()
@@ -168,9 +159,9 @@ def _as_handed_in(value: Any, submission: Submission) -> Any:
 
 
 def _read_dump(lines: list[str], files: SubmissionFiles) -> tuple[str, list[list[Frame]]]:
-    """Read the last dump in these lines: the fault in C, '' for none, and the threads' frames.
+    """Parse the last dump in these lines: the fault in C, '' for none, and the threads' frames.
 
-    First of the threads comes the one that wrote it, last the main thread.
+    The thread that wrote it comes first, the main thread last.
     """
     fatal, threads = "", list[list[Frame]]()
     for line in lines:
@@ -192,7 +183,7 @@ def _ending(
     *,
     computes: bool,
 ) -> dict[str, Any]:
-    """Return how a process has ended, or where it went no further; nothing where no dump tells."""
+    """Return how a process has ended, or where it got stuck; nothing where no dump shows it."""
     if fatal:
         last = stuck.last_line(threads[0]) if threads else None
         place = files.row_of_frame(last) if last else None

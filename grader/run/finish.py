@@ -2,8 +2,8 @@
 
 A run whose simulator ended too early is repeated once, and then judged by what is there, nothing
 (`recording_of_nothing`). A simulator that ends beside one submission, whenever that runs, ends
-because of it: whoever could have the grader fail at will would get "not the submission's fault" for
-a wrong solution. Where it ends before the submission has said anything to it, the grader has
+because of it: a submission that could make the grader fail at will would get "not the submission's
+fault" for a wrong solution. If it ends before the submission has sent it anything, the grader has
 failed.
 """
 
@@ -25,8 +25,8 @@ from grader.scenes.scene import Reason
 from grader.submission.start import Submission
 from grader.text import without_controls
 
-NOTHING_TOLD = Observations()
-#: Reasons of a scene's that mean: nothing more will come.
+NO_OBSERVATIONS = Observations()
+#: Reasons of a scene's after which nothing more will come.
 DONE: tuple[Reason, ...] = ("rest", "seen")
 #: How much of a process's output is searched for why it ended [characters], [lines].
 LAST_WORDS, MOST_LAST_LINES = 8192, 20
@@ -43,7 +43,7 @@ _FULL = msg("the folder for temporary files is full: there is little room in it"
 _READ_ONLY = msg(
     "a run may write into its own folder, tempfile.gettempdir() and ~, and nowhere else"
 )
-#: How the line begins with which a program ends that was refused something -> what the limit is.
+#: The start of the last line of a program that was refused something -> the limit.
 LAST_LINES = {
     "MemoryError": _MEMORY,
     "numpy._core._exceptions._ArrayMemoryError": _MEMORY,
@@ -68,13 +68,13 @@ LONGEST_WORDS = 200
 
 
 class Ending(NamedTuple):
-    """What the grader knows of a run beside its trace: how it went, and what was printed."""
+    """What the grader knows of a run beside its trace: its facts, and the printed output."""
 
     run: Run
     output: str = ""
 
     def with_flags(self, *flags: Message) -> Ending:
-        """The same with these remarks alone."""
+        """Return a copy with these remarks alone."""
         return self._replace(run=replace(self.run, flags=flags))
 
 
@@ -88,7 +88,7 @@ def ended(
     exit_code: int | None,
     flags: tuple[Message, ...] = (),
 ) -> Ending:
-    """Return how a run ended that is over.
+    """Return the ending of a run that is over.
 
     Args:
         process: the submission's.
@@ -103,7 +103,7 @@ def ended(
 
 
 def outcome(reason: Reason, exit_code: int | None) -> Outcome:
-    """The outcome of a run, from what the simulator saw and how the submission's process ended."""
+    """Return the outcome of a run, from the simulator's reason and the submission's exit code."""
     if exit_code is None:
         return "finished" if reason in DONE else "time_limit"
     if exit_code < 0:
@@ -114,7 +114,7 @@ def outcome(reason: Reason, exit_code: int | None) -> Outcome:
 
 
 def not_run(plan: Plan) -> Recording:
-    """The recording of a run that was not begun: the grading had used up its budget."""
+    """Return the recording of a run that was not started: the grading had used up its budget."""
     ending = Ending(Run("virtual", "not_run", flags=(plan.budget.remark,)))
     return record(plan, load_subject(plan.scene).untouched(plan.start), (), ending)
 
@@ -132,28 +132,28 @@ class SimulatorLost(GraderFailure):
 
 
 def recording_of_nothing(plan: Plan, lost: SimulatorLost) -> Recording:
-    """The recording of a run that was lost twice: nothing has happened in it."""
+    """Return the recording of a run that was lost twice: nothing has happened in it."""
     values = lost.message.values
     how, last_words = str(values.get("how", lost.message)), str(values.get("last", ""))
     # what stands in brackets is ROS's log, and has the submission's words in it
     lines = [line for line in last_words.splitlines() if line and not line.startswith("[")]
-    told = [without_controls(text, "?")[:LONGEST_WORDS] for text in (how.rstrip("."), *lines[-1:])]
-    flags = (*lost.ending.run.flags, LOST_TWICE.given(words="; ".join(told)))
+    shown = [without_controls(text, "?")[:LONGEST_WORDS] for text in (how.rstrip("."), *lines[-1:])]
+    flags = (*lost.ending.run.flags, LOST_TWICE.given(words="; ".join(shown)))
     trace = load_subject(plan.scene).untouched(plan.start)
     return record(plan, trace, (), lost.ending.with_flags(*flags))
 
 
 def limits_struck(exit_code: int | None, output: str, excess: Message) -> tuple[Message, ...]:
-    """Remarks on what a submission was refused, or ended for, because a run may use no more.
+    """Return remarks on the limits that a submission has hit.
 
-    What the grader has seen itself (`excess`), or the kernel shows by its signal, is a fact. What a
-    limit has refused only the process knows: its last lines are believed, since they excuse
+    What the grader has measured itself (`excess`), or the kernel shows by its signal, is a fact.
+    What a limit has refused only the process knows: its last lines are believed, since they excuse
     nothing.
 
     Args:
         exit_code: of the submission's process; None if it still ran.
         output: what it has printed.
-        excess: of what it took too much, as seen from outside; nothing if of nothing.
+        excess: what it used too much of, as measured from outside; NOTHING for none.
     """
     if excess:
         return (excess,)
@@ -173,7 +173,7 @@ def record(
     trace: Trace,
     topics: tuple[PublishedTopic, ...],
     ending: Ending,
-    observations: Observations = NOTHING_TOLD,
+    observations: Observations = NO_OBSERVATIONS,
 ) -> Recording:
     """Put together the recording of a run that is over."""
     run = replace(

@@ -1,9 +1,9 @@
 """The two fork servers of this grader process, one for each side of a run in virtual time.
 
-Each has imported what nearly every run needs, and forks itself for each: a run then starts in
-hundredths of a second instead of half of one. They start with the first run, or earlier by
-`warm`, wait for the next one, and end with this process, however that ends. Whatever keeps one
-from working costs time, and nothing else: the run starts from nothing.
+Each has imported what nearly every run needs, and forks for each: a run then starts in hundredths
+of a second instead of half of one. They start with the first run, or earlier by `warm`, wait for
+the next one, and end with this process, however that ends. If one does not work, that costs time
+and nothing else: the run makes a cold start.
 
 Cheap to import: the command line starts them before it imports what it needs itself.
 """
@@ -36,7 +36,7 @@ MESSAGES = (
 #: What runs as the submission's.
 SCRIPT = Path(__file__).parent / "student" / "virtual_main.py"
 STUDENT, SIMULATOR = "student", "simulator"
-#: A server that was lost so often is not started again.
+#: A server that was lost this often is not started again.
 MOST_LOSSES = 3
 #: A submission with more files than this is not searched.
 MOST_FILES = 10_000
@@ -49,13 +49,13 @@ _losses: Counter[str] = Counter()
 
 
 def warm() -> None:
-    """Start both now, and do not wait for them; the one that imports more comes first."""
+    """Start both now without waiting for them; the one that imports more comes first."""
     server(SIMULATOR)
     server(STUDENT)
 
 
 def for_student(root: Path) -> ForkServer | None:
-    """The server for the process of a submission; None where it has to start from nothing."""
+    """Return the server for a submission's process; None where that needs a cold start."""
     found = server(STUDENT)
     try:
         if found is None or shadows(root, found.preloaded()):
@@ -66,10 +66,10 @@ def for_student(root: Path) -> ForkServer | None:
 
 
 def shadows(folder: Path, names: Collection[str]) -> bool:
-    """Whether a submission has a module of one of these names itself, or may have.
+    """Whether a submission has, or may have, a module of one of these names itself.
 
-    What a server has loaded would win, where a start from nothing finds the submission's own. It
-    may lie anywhere: submissions put folders of theirs on the import path.
+    A module that a server has loaded would win, where a cold start finds the submission's. It may
+    lie anywhere: submissions put folders of theirs on the import path.
     """
     seen = 0
     for place, folders, files in os.walk(folder):
@@ -89,14 +89,18 @@ def _is_module(file: str) -> bool:
 
 
 def command(side: str) -> list[str]:
-    """The command that starts a side, without its arguments."""
+    """Return the command that starts a side, without its arguments."""
     if side == STUDENT:
         return [sys.executable, str(SCRIPT)]
     return [sys.executable, "-m", MODULE]
 
 
 def server(side: str) -> ForkServer | None:
-    """The server of a side, started if there is none as it would be now; None: it cannot be had."""
+    """Return the server of a side, started if none with its present environment runs.
+
+    Returns:
+        None where it does not start, or was lost too often.
+    """
     words = command(side)
     made = virtual_environment if side == STUDENT else simulator_environment
     env, needs = made(lasting_environment()), json.dumps(MESSAGES)
@@ -120,7 +124,7 @@ def server(side: str) -> ForkServer | None:
 
 
 def close() -> None:
-    """End both, and wait for that; the next run starts others."""
+    """End both, and wait for that; the next run starts new ones."""
     with _lock:
         for each in (*_servers.values(), *_retired):
             each.close()
@@ -130,7 +134,7 @@ def close() -> None:
 
 
 def _is_absolute(path: str) -> bool:
-    """Whether an import path means the same wherever a process stands."""
+    """Whether an import path means the same in any current folder."""
     return all(Path(entry).is_absolute() for entry in path.split(os.pathsep)) if path else True
 
 

@@ -1,8 +1,8 @@
-"""What the grader and a simulator's process hand each other: a run's plan, and its recording.
+"""The plan that the grader passes to a simulator's process, and the recording that comes back.
 
-The plan is an argument. The recording is left in a file: its topics as JSON, behind their length in
-eight bytes, then the trace (`grader.recording.transfer`). Nothing is unpickled: a pickle could have
-the grader do anything.
+The plan is an argument. The recording is a file: its topics as JSON, after their length in eight
+bytes, then the trace (`grader.recording.transfer`). Nothing is unpickled: a pickle could have the
+grader do anything.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ class Plan:
     Attributes:
         limits: when it ends.
         start: where it begins; None for the scene's usual place.
-        scene: the name of what runs beside the submission.
-        seed: of the varied runs that this one has beside it, for the record.
+        scene: the name of the scene that runs beside the submission.
+        seed: the seed of the varied runs beside this one, for the record.
         flags: remarks that are known before it begins.
-        interfaces: those that the submission was written for, where the scene has several; '' for
-            its usual ones.
-        setting: what the exercise sets the scene up with; '' for nothing.
+        interfaces: the interfaces that the submission was written for, where the scene has several;
+            '' for the scene's usual ones.
+        setting: the exercise's setting of the scene; '' for none.
         looks_at_package: whether the package around the submission's program is inspected as well.
         inspections: the names of the inspectors that examine a package.
-        budget: the one of the whole grading, which the simulator's process does not know.
+        budget: that of the whole grading, which the simulator's process does not know.
     """
 
     limits: Limits
@@ -56,15 +56,15 @@ class Plan:
     )
 
     def to_json(self) -> str:
-        """As an argument of the simulator's process."""
+        """Serialise it as an argument of the simulator's process."""
         return json.dumps(strict_json.to_json(self, strict_json.OURS))
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """The plan that `to_json` has written.
+        """Parse what `to_json` has written.
 
         Raises:
-            ValueError: it has written none such.
+            ValueError: the text is no plan.
         """
         return strict_json.from_json(cls, json.loads(text), strict_json.OURS)
 
@@ -80,7 +80,7 @@ def leave(path: Path, scene: Scene, trace: Trace, published: Mapping[str, str]) 
     """Write the file, in the simulator's process.
 
     Args:
-        published: on which topics the submission has published: topic -> type.
+        published: the topics on which the submission has published: topic -> type.
     """
     topics = {topic: kind for topic, kind in sorted(published.items()) if topic not in USUAL}
     facts = json.dumps(topics).encode()
@@ -109,7 +109,7 @@ def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
 
 
 def read_bounded(file: int, most_bytes: int) -> bytes:
-    """Return all that an open file holds.
+    """Return the contents of an open file.
 
     Raises:
         ValueError: it is more than `most_bytes`.

@@ -1,13 +1,13 @@
-"""An inspection of packages: one process of the submission's, without a clock.
+"""Inspects packages in one confined process, without a clock.
 
-Nothing of the submission is started by it, but it evaluates a stranger's set-up and launch files.
-So it is confined as a submission's process is, and what it leaves is decoded as strictly as
-anything that a submission says. It is made for three things:
+It starts nothing of the submission, but evaluates a stranger's set-up and launch files. So it is
+confined as a submission's process is, and its findings are decoded as strictly as anything that a
+submission sends. It has three uses:
 
-- `run`: it is the only run where a scene has no nodes.
-- `inspect`: what there is to start of a package is known by it.
-- `inspect_beside`: it goes beside the nominal run where an exercise has the package inspected that
-  is around what is started, unless `inspect` has done so.
+- `run`: the only run where a scene has no nodes.
+- `inspect`: finds what a package has to start.
+- `inspect_beside`: beside the nominal run, where an exercise has the package around the program
+  inspected, unless `inspect` has done so.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ from grader.scenes.package.inspection import Inspection, SetUp, Told
 from grader.scenes.package.trace import FAILED, PackageTrace
 from grader.submission.start import EntryPoint, Submission, Whole
 
-#: Told the simulated time [s], of which none passes here.
+#: Called with the simulated time [s], of which none passes here.
 Progress = Callable[[float], None]
 #: The program that examines a package, from `ROOT` on.
 EXAMINER: Final = "grader/scenes/package/examining/main.py"
 #: How often the process is checked for being stopped [s], and how many checks together decide.
-EVERY_S, STOPPED_LOOKS = 0.5, 4
+EVERY_S, STOPPED_CHECKS = 0.5, 4
 ROOT: Final = Path(__file__).resolve().parents[2]
 STOPPED: Final = msg("the package's own code has stopped (SIGSTOP) the process that looks at it")
 _LOST: Final = msg(
@@ -70,10 +70,10 @@ def inspect(
     budget: CpuBudget,
     inspections: Sequence[str] | None,
 ) -> tuple[Inspection, tuple[Message, ...]]:
-    """Find what of packages there is to start; with remarks on what kept it from being found.
+    """Find what packages have to start; return it with remarks on what could not be found.
 
     Args:
-        submission: all that was handed in.
+        submission: all of it.
         folders: those with set-up files, below its root.
         program: the console script that is asked for.
         inspections: by which its package is inspected as by `inspect_beside`; None for not at all.
@@ -93,8 +93,8 @@ def inspect_beside(submission: Submission, plan: Plan) -> tuple[Trace, tuple[Mes
     """Inspect the package in which a submission's program is, and those beside it.
 
     Returns:
-        What was found, and remarks for the result: what kept it from being found, and what launch
-        files would have started otherwise.
+        What was found, and remarks for the result: what could not be found, and what launch files
+        would have started otherwise.
 
     Raises:
         GraderFailure: the process could not be started.
@@ -118,7 +118,7 @@ def _inspected(
     asked: Mapping[str, object],
     budget: CpuBudget,
 ) -> tuple[Inspection | None, Ending]:
-    """Inspect in a process; return what it found, None where that cannot be read, and its end."""
+    """Inspect in a process; return its findings, None where they cannot be read, and its ending."""
     started = time.monotonic()
     with run_context.open_context(budget) as context:
         submission, process = context.start(
@@ -145,7 +145,7 @@ def _inspected(
 
 
 def command(submission: Submission, asked: Mapping[str, object], leaves: int) -> list[str]:
-    """The command of the process; `leaves` is the descriptor of the file for its findings."""
+    """Return the command of the process; `leaves`: the descriptor of the file for its findings."""
     order = {"root": str(submission.root), **asked, "leaves": leaves}
     if submission.package:
         order["folder"] = str(submission.package)
@@ -153,7 +153,7 @@ def command(submission: Submission, asked: Mapping[str, object], leaves: int) ->
 
 
 def _wait(process: SubmissionProcess) -> int | None:
-    """Wait for the process; its exit code, None where its own code has stopped it.
+    """Wait for the process; return its exit code, None where its own code has stopped it.
 
     Raises:
         GraderFailure: it does not end.
@@ -165,14 +165,14 @@ def _wait(process: SubmissionProcess) -> int | None:
         if exit_code is not None:
             return exit_code
         stopped = stopped + 1 if linux.process_stat(process.pid).is_stopped else 0
-        if stopped >= STOPPED_LOOKS:
+        if stopped >= STOPPED_CHECKS:
             return None
     seconds = f"{INSPECTION_S:.0f}"
     raise GraderFailure("looking at the package took more than {seconds} s", seconds=seconds)
 
 
 def _failure(output: str) -> Message:
-    """The message for a process that has failed, which no package should be able to cause."""
+    """Return the message for a failed process, which no package should be able to cause."""
     last = next((line.strip() for line in reversed(output.splitlines()) if line.strip()), "")
     return msg(
         "the program that looks at packages failed: {last}. That is no "
@@ -182,7 +182,7 @@ def _failure(output: str) -> Message:
 
 
 def _fetch(file: int) -> tuple[Inspection | None, str]:
-    """Decode what the process left; None, and why, where that is impossible."""
+    """Decode the findings of the process; return None, and why, where that is impossible."""
     try:
         return inspection.decode(handover.read_bounded(file, INSPECTION_BYTES)), ""
     except (OSError, ValueError, RecursionError) as error:

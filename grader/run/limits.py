@@ -1,15 +1,15 @@
-"""The table of limits: how much a run may take of the machine, and why so much.
+"""The table of limits: how much a run may use of the machine, and why so much.
 
-Four mechanisms look after them, each where the others cannot. The kernel limits every process by
-itself (`rlimits`; `grader.run.sandbox.confinement` puts them on). A thread of the grader adds up
-what all processes of a submission use (`grader.run.processes.limits_guard`). The simulator notices
-when nothing comes of a submission in virtual time (`Patience`). A supervisor ends what is left when
-a run is over (`grader.run.processes.supervisor`). A course may bound the processor time of a
-grading as a whole (`CpuBudget`).
+Four mechanisms enforce them, each where the others cannot. The kernel limits every process by
+itself (`rlimits`; `grader.run.sandbox.confinement` sets them). A thread of the grader adds up what
+all processes of a submission use (`grader.run.processes.limits_guard`). The simulator notices when
+nothing comes from a submission in virtual time (`Patience`). A supervisor ends what is left when a
+run is over (`grader.run.processes.supervisor`). A course may bound the processor time of a grading
+as a whole (`CpuBudget`).
 
-Limits of their own have a step of an inspection (`grader.scenes.package.examining.steps`), what
-both sides of virtual time say to each other (`grader.run.lockstep.protocol`), and the reading of
-what was handed in (`grader.submission.reader_main`).
+A step of an inspection (`grader.scenes.package.examining.steps`), the link of virtual time
+(`grader.run.lockstep.protocol`) and the reading of a submission (`grader.submission.reader_main`)
+have limits of their own.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Final, NamedTuple
 
 from grader.message import Message, msg
 
-KIB, MIB, GIB = 1 << 10, 1 << 20, 1 << 30
+MIB, GIB = 1 << 20, 1 << 30
 
 
 class RunLimits(NamedTuple):
@@ -45,9 +45,9 @@ class RunLimits(NamedTuple):
             of these for each thread.
         tasks: processes and threads at once, of the user in this user namespace.
         open_files: descriptors of one process. Linux counts those that lie in sockets for each
-            user, and refuses more than who sends them may have open: far fewer than the grader's.
-        file_bytes: the length of one file [bytes]; a write past it fails, with SIGXFSZ for who does
-            not ignore that, as Python does.
+            user, and refuses more than their sender may have open: far fewer than the grader's.
+        file_bytes: the length of one file [bytes]; a write past it fails, with SIGXFSZ unless that
+            is ignored, as Python does.
         stack_bytes: of the first thread, and of each other that asks for no size [bytes].
         most_stack_bytes: to which a process may raise that [bytes].
         locked_bytes: memory that may not be swapped out [bytes].
@@ -81,17 +81,17 @@ ROOM: Final = (24, 8192)
 #: it, and people read it.
 KEPT_OUTPUT_BYTES: Final = 32_768
 
-#: Memory of a simulator's process [bytes]; a run takes 0.2 GB, and what may come from a submission
+#: Memory of a simulator's process [bytes]; a run uses 0.2 GB, and what may come from a submission
 #: at most as much again.
 SIMULATOR_BYTES: Final = 3_000_000_000
 #: How long a simulator may take to come up, to do anything at all, and to save what it has recorded
-#: [s]: it is ours, and only a machine in distress takes so long.
+#: [s]: it is ours, and only an overloaded machine takes so long.
 SIMULATOR_S: Final = 60.0
 #: What it records [bytes]: more than any run leaves; the grader's process holds it a few times.
 RECORDING_BYTES: Final = 256_000_000
 #: How long a submission's process may take to come up, its own code not counted [s].
 START_S: Final = 30.0
-#: How long one may take to end that has hung up, or was killed [s]; a busy machine is slow.
+#: How long one may take to end after it closed its link or was killed [s]; a busy machine is slow.
 END_S: Final = 20.0
 #: How long a run in real time waits for the submission's first node before its clock starts [s].
 FIRST_NODE_S: Final = 8.0
@@ -110,13 +110,13 @@ class Patience:
     Processor time is that of the process alone: other load on the machine decides nothing.
 
     Attributes:
-        stall_cpu_s: it has stalled when it says nothing for so much of its own processor time,
+        stall_cpu_s: it has stalled when it sends nothing for so much of its own processor time,
         start_cpu_s: or for so much while it still imports.
         asleep_s: it waits for something outside of virtual time when it sleeps for so long,
         all_asleep_s: or for so long in a whole run, not counting naps.
         run_cpu_s: so much of its own processor time a whole run may take.
-        simulator_cpu_s: so much the simulator may take for what the submission sends; beside one
-            that only drives it takes about one second.
+        simulator_cpu_s: so much the simulator may use for what the submission sends; beside one
+            that only drives it uses about one second.
     """
 
     stall_cpu_s: float = 6.0
@@ -128,7 +128,7 @@ class Patience:
 
 
 class CpuBudget:
-    """The processor time that all processes of one grading may take together.
+    """The processor time that all processes of one grading may use together.
 
     Processor time, since a busy machine must decide nothing. Its runs spend it from several
     threads.
@@ -137,7 +137,7 @@ class CpuBudget:
         cpu_s: so much processor time [s].
 
     Attributes:
-        spent_s: so much of it was taken [s].
+        spent_s: so much of it was used [s].
     """
 
     def __init__(self, cpu_s: float = math.inf) -> None:
@@ -146,18 +146,18 @@ class CpuBudget:
         self._lock = Lock()
 
     def spend(self, cpu_s: float) -> None:
-        """Take so much more [s]."""
+        """Count so much more as used [s]."""
         with self._lock:
             self.spent_s += cpu_s
 
     @property
     def is_spent(self) -> bool:
-        """Whether more was taken than there was: what still runs is to be ended."""
+        """Whether more was used than there was: what still runs is to be ended."""
         return self.spent_s > self._cpu_s
 
     @property
     def remark(self) -> Message:
-        """For the result of a run that was ended, or not begun."""
+        """The remark for the result of a run that was ended, or not started."""
         return msg(
             "the whole grading used more than {seconds} s of processor time",
             seconds=f"{self._cpu_s:g}",
@@ -165,7 +165,7 @@ class CpuBudget:
 
 
 def rlimits(limits: RunLimits = LIMITS, *, is_alone: bool) -> list[tuple[int, int, int]]:
-    """The kernel's limits of each process of a submission: resource, soft and hard limit.
+    """Return the kernel's limits of each process of a submission: resource, soft and hard limit.
 
     Args:
         is_alone: the process's user has nothing else running in its user namespace. If not, the
@@ -193,7 +193,7 @@ def rlimits(limits: RunLimits = LIMITS, *, is_alone: bool) -> list[tuple[int, in
 
 
 def _tasks_of_all() -> int:
-    """All processes and threads of the machine: "0.42 0.17 0.07 2/345 6789"."""
+    """Count the processes and threads of the machine, from "0.42 0.17 0.07 2/345 6789"."""
     try:
         return int(Path("/proc/loadavg").read_text().split()[3].partition("/")[2])
     except (OSError, IndexError, ValueError):
@@ -201,7 +201,7 @@ def _tasks_of_all() -> int:
 
 
 def size(number_bytes: int) -> str:
-    """A size as people say it: "1 GiB", "64 MiB"."""
+    """Format a size for people: "1 GiB", "64 MiB"."""
     if number_bytes >= GIB and number_bytes % GIB == 0:
         return f"{number_bytes // GIB} GiB"
     return f"{number_bytes // MIB} MiB"

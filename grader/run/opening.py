@@ -1,9 +1,9 @@
-"""`open_submission`: what was handed in — a file, a folder, a package, an archive — and its start.
+"""`open_submission`: find what to start in a file, a folder, a package or an archive.
 
-Nothing of it is read in this process: a file can be made so that its parser takes all memory, or
-falls over. `grader.submission.finding` has the rules, and goes by them in a process with limits. A
+Nothing of it is parsed in this process: a file can be made so that its parser takes all memory, or
+crashes. `grader.submission.finding` has the rules, and applies them in a process with limits. A
 single file is found without running anything. What a package has to start stands in its set-up and
-launch files, so an inspection evaluates them in between, in a process of the submission's.
+launch files, so an inspection evaluates them first, in a process confined like the submission's.
 """
 
 from __future__ import annotations
@@ -38,17 +38,17 @@ def open_submission(
     inspections: Sequence[str] | None = None,
     cpu_s: float = math.inf,
 ) -> Iterator[Submission]:
-    """Find what to start, in a copy that is there until the context ends.
+    """Find what to start, in a copy that is removed when the context ends.
 
     `executable` chooses among the console scripts or Python files of a folder or zip; a single
-    .py file leaves no choice. Without it, `usual` is taken where there are several. Where nothing
+    .py file leaves no choice. Without it, `usual` is used where there are several. Where nothing
     is started (`is_started`), the submission is all of it, a folder or an archive with a package;
     `executable` then chooses among packages.
 
     Args:
         inspections: by which the whole package around what is started is inspected at the same
             time; None for not at all.
-        cpu_s: the processor time that it may take [s].
+        cpu_s: the processor time that it may use [s].
 
     Raises:
         SubmissionError: there is nothing to start, no way to tell what, or too much to be read.
@@ -78,27 +78,31 @@ def _inspected(
     budget: CpuBudget,
     inspections: Sequence[str] | None,
 ) -> tuple[Submission, PrivateCopy]:
-    """A package as it is started by what an inspection says of it, and the copy of it."""
+    """Return a package as it is started according to an inspection, and its copy."""
     from grader.run import inspecting  # here: most submissions are a file
 
     copy = copy_privately(path, asked.base, scratch)
     everything = Submission(path.name, copy.of(asked.base), Whole(), NOTHING, copy=copy)
-    said, remarks = inspecting.inspect(
+    inspection, remarks = inspecting.inspect(
         everything, asked.folders, executable or usual, budget, inspections
     )
-    found = reader.read(path, executable, scratch, usual=usual, again=(asked, said))
+    found = reader.read(path, executable, scratch, usual=usual, again=(asked, inspection))
     notes = (*remarks, *found.notes)
     if inspections is None:  # else that is reported with the run
-        notes = (*notes, *_by_itself(found, said.trace))
-    elif said.trace.setup and found.package == asked.base / said.package and not found.added:
-        found = replace(found, seen=said.trace)
-    if found.added:  # it was mended in a copy of its own
+        notes = (*notes, *_by_itself(found, inspection.trace))
+    elif (
+        inspection.trace.setup
+        and found.package == asked.base / inspection.package
+        and not found.added
+    ):
+        found = replace(found, seen=inspection.trace)
+    if found.added:  # it was repaired in a copy of its own
         copy = copy_privately(path, found.root, scratch)
     return replace(found, notes=notes, spent_s=budget.spent_s), copy
 
 
 def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
-    """The same in a copy of its own."""
+    """Return a submission with its paths in a private copy."""
     start = submission.start
     if isinstance(start, Script):
         start = replace(start, path=copy.of(start.path))
@@ -107,7 +111,7 @@ def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
 
 
 def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
-    """Notes on how a program started by itself differs from what launch files make of it."""
+    """Return notes on how a program started by itself differs from its start by launch files."""
     from grader.scenes.package.by_itself import not_read, unlike_launched
 
     if not isinstance(submission.start, EntryPoint):

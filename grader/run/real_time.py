@@ -6,6 +6,7 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
@@ -13,8 +14,9 @@ from grader import linux
 from grader.errors import GraderFailure, NotNow
 from grader.message import Message
 from grader.recording.recording import Recording
-from grader.run import evidence, handover, run_context
+from grader.run import handover, run_context
 from grader.run.environment import student_environment
+from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, ended, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import FIRST_NODE_S
@@ -30,14 +32,14 @@ from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
 from grader.submission.start import Submission
 
-#: Told the simulated time [s] now and then.
+#: Called with the simulated time [s] now and then.
 Progress = Callable[[float], None]
 
-#: A program that used so much of the run's time on a processor has computed rather than waited.
+#: A program that used this share of the run's time on a processor has computed, not waited.
 COMPUTES = 0.5
-#: Where what runs as the submission's process is.
+#: The folder of the program that runs as the submission's process.
 STUDENT = Path(__file__).with_name("student")
-#: What runs as the simulator's process.
+#: The module that runs as the simulator's process.
 MODULE = "grader.run.simulator.real_time"
 
 
@@ -61,15 +63,15 @@ def run(
     scene = load_scene(plan.scene)
     with (
         run_context.open_context(plan.budget) as context,
-        evidence.open_evidence() as told,
+        closing(EvidencePage()) as account,
         live_feed(audience, plan, "real") as feed,
         start_simulator(MODULE, context, plan, (), str(FIRST_NODE_S), feed=feed) as simulator,
     ):
         simulator.expect("ready")
         submission, student = context.start(
             submission,
-            lambda private: command(private, scene.introduction, told.page),
-            (told.page,),
+            lambda private: command(private, scene.introduction, account.page),
+            (account.page,),
             student_environment({}),
         )
         ending = partial(ended, "real", submission, student, context.isolation, started)
@@ -80,21 +82,21 @@ def run(
                 ended_s -= began_s
                 computes = linux.process_stat(student.pid).cpu_s > COMPUTES * ended_s
                 if exit_code is None:
-                    told.ask(student.pid)
-                told.close()  # what comes then is how it ends when it is told to
+                    account.request_dump(student.pid)
+                account.close()  # later entries are only about the end that we ask for
             trace, topics = handover.fetch(context.recording, scene)
         except NotNow:  # it was never started
             raise
         except GraderFailure as failure:
             raise SimulatorLost(failure, ending("killed", None)) from failure
     how = outcome(done["reason"], exit_code)
-    observations = told.observations(submission, ended_s, computes=computes)
+    observations = account.observations(submission, ended_s, computes=computes)
     flags = tuple(map(Message.parse, done["flags"]))
     return record(plan, trace, topics, ending(how, exit_code, flags), observations)
 
 
 def command(submission: Submission, introduction: Introduction, page: int) -> list[str]:
-    """The command of the submission's process."""
+    """Return the command of the submission's process."""
     awaited = json.dumps([introduction.topics, introduction.services])
     words = [awaited, str(page), *run_context.start_arguments(submission)]
     return [sys.executable, str(STUDENT / "main.py"), *words]

@@ -1,4 +1,4 @@
-"""The run context: what a run is given while it lasts, in real time as in virtual time."""
+"""The run context: the folder, isolation, environment and budget of one run, by either clock."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from grader.submission.start import EntryPoint, Launch, Submission, Whole
 
 @dataclass(frozen=True)
 class RunContext:
-    """What a run is given while it lasts.
+    """The resources of one run.
 
     Attributes:
-        folder: where the files of the run are, as far as its processes know.
-        simulator_folder: the same as the current folder of the simulator: an open folder, which
-            stays one where a submission that may do so takes it away.
-        recording: where the simulator leaves the recording: an open file without a name. The
+        folder: the folder of the run's files, by the path that its processes know.
+        simulator_folder: a descriptor of it, for the current folder of the simulator: that stays
+            usable even where a submission may move the folder, and does.
+        recording: the file for the simulator's recording: an open file without a name. The
             submission does not get it.
         isolation: for the result: how the submission's process is confined, and what keeps the
             run apart from others.
         env: environment variables of both processes.
-        namespaces: which both processes are in: kind -> descriptor.
+        namespaces: the namespaces of both processes: kind -> descriptor.
         level: how the submission's process is confined.
         budget: what the submission's process and all that it starts spend of.
     """
@@ -54,13 +54,13 @@ class RunContext:
         env: Mapping[str, str],
         server: ForkServer | None = None,
     ) -> tuple[Submission, SubmissionProcess]:
-        """Start the submission's process; the submission is the one that this run has for itself.
+        """Start the submission's process; return it after the submission's copy for this run.
 
         Args:
             words: makes the command of that process.
             fds: descriptors that it inherits.
             env: environment variables beside those of both processes.
-            server: what it is forked from, if that can be; None: it starts from nothing.
+            server: the server that it is forked from, if possible; None for a cold start.
         """
         is_apart = bool(self.namespaces)
         confinement = levels.prepare(self.level, submission.folder, self.folder, is_apart=is_apart)
@@ -74,10 +74,10 @@ class RunContext:
 
 @contextmanager
 def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
-    """Set one up; nothing of it is left afterwards.
+    """Set up a run context, which is removed at the end.
 
     Args:
-        budget: of the grading; None for one without an end.
+        budget: of the grading; None for an unlimited one.
 
     Raises:
         GraderFailure: it cannot be isolated from other runs, or confined as was required.
@@ -98,7 +98,7 @@ def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
 
 
 def start_arguments(submission: Submission) -> list[str]:
-    """What of a submission is started, as arguments of its process's `main`."""
+    """Return a submission's start as arguments of its process's `main`."""
     start = submission.start
     if isinstance(start, Launch):
         words = [json.dumps([[p.name, _entry(p.entry), p.arguments] for p in start.programs])]

@@ -1,7 +1,7 @@
 """The simulator's process from the grader's side: start it, exchange messages, end it.
 
-While a run goes on it also reports to an audience, over a socket of its own. Nothing goes the other
-way there, so what is recorded does not depend on it. The submission's process has neither end.
+During a run it also reports to an audience, over a separate socket. Nothing goes the other way
+there, so the recording does not depend on the audience. The submission's process has neither end.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import StartedProcess
 from grader.run.run_context import RunContext
-from grader.run.simulator.process import say
+from grader.run.simulator.process import send_message
 
 SimulatorMessage = dict[str, Any]
-#: News of so long travels together [s]: 31 times a second.
+#: News of this time is passed on together [s]: 31 times a second.
 TOGETHER_S: Final = 0.032
 #: The most that is read at once, and the longest line [bytes].
 CHUNK_BYTES, LONGEST_BYTES = 1 << 20, 64_000_000
@@ -41,7 +41,7 @@ class Simulator:
     """The simulator's process, and the socket over which the grader talks with it."""
 
     def __init__(self, process: StartedProcess, ours: socket.socket) -> None:
-        #: whether a submission has something to do with it
+        #: whether a submission has sent it something
         self.is_driven = False
         self._process = process
         self._socket = ours
@@ -80,7 +80,7 @@ class Simulator:
             GraderFailure: it does not listen.
         """
         try:
-            say(self._socket, what)
+            send_message(self._socket, what)
         except OSError:
             raise self.failure(msg("stopped listening")) from None
 
@@ -108,7 +108,7 @@ class Simulator:
         return message
 
     def failure(self, what: Message) -> GraderFailure:
-        """The exception for a simulator that did not do its work."""
+        """Return the exception for a simulator that did not do its work."""
         code = self._process.wait(2.0)
         state = msg("it still runs") if code is None else msg("its exit code is {code}", code=code)
         last = self._process.output().strip()[-2000:]
@@ -119,33 +119,33 @@ class Simulator:
         )
 
 
-# What an audience sees ------------------------------------------------------------------------
+# The audience ---------------------------------------------------------------------------------
 
 
 class Audience(Protocol):
-    """Somebody who watches runs, one after the other."""
+    """Receives runs live, one after the other."""
 
     @property
     def speed(self) -> float | None:
-        """How many times as fast as in real time virtual time goes; None: as fast as it can."""
+        """The speed of virtual time, as a multiple of real time; None: as fast as it can."""
 
     def begins(self, plan: Plan, time: Clock) -> None:
-        """A run begins by this clock; another one of the same plan, where the first was in vain."""
+        """Called when a run begins; again with the same plan where the first run was in vain."""
 
     def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
-        """Receive what is to be seen of the run, in order; called in a thread of its own."""
+        """Receive the news of the run, in order; called in a separate thread."""
 
     def ends(self, is_whole: bool) -> None:
-        """Nothing more comes of this run; `is_whole`: and nothing was left out."""
+        """Called when nothing more comes of this run; `is_whole`: nothing was left out."""
 
 
 @dataclass(frozen=True)
 class LiveFeed:
-    """What the simulator's process needs to report on a run while it goes on.
+    """The simulator's end of a live report on a run.
 
     Attributes:
-        argument: an argument of it; '' where there is no audience.
-        fds: descriptors that it inherits.
+        argument: an argument of the simulator's process; '' where there is no audience.
+        fds: descriptors that the process inherits.
     """
 
     argument: str = ""
@@ -175,7 +175,7 @@ def live_feed(audience: Audience | None, plan: Plan, time: Clock) -> Iterator[Li
 
 
 def _listen(ours: socket.socket, audience: Audience) -> None:
-    """Pass on what comes until the other end is closed."""
+    """Pass on the news until the other end is closed."""
     pause = threading.Event()
     text, is_whole = b"", False
     try:
@@ -217,8 +217,8 @@ def start_simulator(
         shared: descriptors that it inherits as well; their numbers follow the first three
             arguments.
         more: further arguments.
-        server: what it is forked from, if that can be.
-        feed: for its reports on the run while it goes on; its argument comes last.
+        server: the server that it is forked from, if possible.
+        feed: for its live reports on the run; its argument comes last.
     """
     ours, theirs = socket.socketpair()
     with ours:

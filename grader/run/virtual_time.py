@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import socket
 import time
+from contextlib import closing
 from dataclasses import asdict, replace
 from functools import partial
 
@@ -16,8 +17,9 @@ from grader import linux
 from grader.errors import GraderFailure
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Outcome, Recording
-from grader.run import evidence, fork_servers, handover, real_time, run_context
+from grader.run import fork_servers, handover, real_time, run_context
 from grader.run.environment import virtual_environment
+from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, ended, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import END_S, SIMULATOR_S, CpuBudget, Patience
@@ -40,11 +42,9 @@ STOPPED = msg("the node's process was stopped (SIGSTOP), and nobody let it go on
 FLOODING = msg(
     "the node sent so much that the simulator used more than {seconds} s of processor time"
 )
-#: Of silences: a program that is still there, and could be asked where it is.
+#: The silences of a program that still runs, and can be asked to dump where it is.
 COMPUTES = ("stalled", "slow")
 PATIENCE = Patience()
-#: What runs as the simulator's process.
-MODULE = fork_servers.MODULE
 
 
 def run(
@@ -60,14 +60,14 @@ def run(
     Args:
         progress: called now and then with the simulated time [s], if the run takes so long.
         patience: how long the submission's process is waited for, in real seconds.
-        marks: filled with the times, on the machine's monotonic clock [s], at which the two
-            processes first heard of each other (`met`), were connected by DDS (`connected`), ticked
-            last (`over`).
+        marks: filled with the times, on the machine's monotonic clock [s], of the first message
+            between the two processes (`met`), of their connection by DDS (`connected`), of the last
+            tick (`over`).
         audience: receives the run live; changes nothing of what is recorded.
 
     Raises:
-        GraderFailure: the simulator could not be started or died; where the submission had said
-            something to it, as a `SimulatorLost`.
+        GraderFailure: the simulator could not be started or died; a `SimulatorLost` where the
+            submission had sent it something.
     """
     why = _not_in_virtual_time(submission)
     if not why:
@@ -80,7 +80,7 @@ def run(
 
 
 def _not_in_virtual_time(submission: Submission) -> Message:
-    """What of its start virtual time cannot follow, if anything, to complete "because ..."."""
+    """Return why a start does not fit virtual time, for "because ..."; NOTHING where it does."""
     if not isinstance(submission.start, Launch):
         return NOTHING
     names = ", ".join(each.name for each in submission.start.programs)
@@ -94,19 +94,19 @@ def _try(
     marks: dict[str, float],
     audience: Audience | None,
 ) -> tuple[Recording | None, Message]:
-    """The recording of a run in virtual time, or why there is none."""
+    """Return the recording of a run in virtual time, or None and why there is none."""
     started = time.monotonic()
     scene = load_scene(plan.scene)
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with (
         run_context.open_context(plan.budget) as context,
         cores.reserve_core(ours.fileno()) as core_id,
-        evidence.open_evidence() as told,
+        closing(EvidencePage()) as account,
         live_feed(audience, plan, "virtual") as feed,
         ours,
         theirs,
     ):
-        fds = (ours.fileno(), told.page)
+        fds = (ours.fileno(), account.page)
         submission, student = context.start(
             submission,
             lambda private: command(private, scene.introduction, *fds),
@@ -121,9 +121,9 @@ def _try(
             with student.ended_at_exit(gently=False):
                 more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
                 server = fork_servers.server(fork_servers.SIMULATOR)
-                shared = (theirs.fileno(), told.page)
+                shared = (theirs.fileno(), account.page)
                 with start_simulator(
-                    MODULE, context, plan, shared, *more, server=server, feed=feed
+                    fork_servers.MODULE, context, plan, shared, *more, server=server, feed=feed
                 ) as simulator:
                     theirs.close()
                     message = _watch(simulator, student.pid, plan.budget)
@@ -131,9 +131,9 @@ def _try(
                         message["silence"] = "gone"  # for what it has filled just before
                     exit_code = student.wait(END_S) if message.get("silence") == "gone" else None
                     if message.get("silence") in COMPUTES:
-                        told.ask(student.pid)
+                        account.request_dump(student.pid)
                     elif message.get("silence") == "":
-                        told.hear_out(student.pid)  # the run is over, and it says what it knows
+                        account.await_last_write(student.pid)  # the run is over
             if student.was_lost:
                 raise GraderFailure(
                     msg("the process from which a submission's was forked has died")
@@ -150,7 +150,7 @@ def _try(
     how, flags = _judge(message, exit_code, patience)
     flags += map(Message.parse, message["flags"])
     computes = message["silence"] in COMPUTES
-    observations = told.observations(submission, message["reached_s"], computes=computes)
+    observations = account.observations(submission, message["reached_s"], computes=computes)
     recording = record(plan, trace, topics, ending(how, exit_code, tuple(flags)), observations)
     return recording, NOTHING
 
@@ -158,7 +158,7 @@ def _try(
 def command(
     submission: Submission, introduction: Introduction, link_fd: int, page: int
 ) -> list[str]:
-    """The command of the submission's process."""
+    """Return the command of the submission's process."""
     known = json.dumps([introduction.nodes, introduction.compares_stamps])
     words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]
     return [*fork_servers.command(fork_servers.STUDENT), *words]
@@ -183,7 +183,7 @@ def _watch(simulator: Simulator, student_pid: int, budget: CpuBudget) -> Simulat
 def _judge(
     ending: SimulatorMessage, exit_code: int | None, patience: Patience
 ) -> tuple[Outcome, list[Message]]:
-    """The outcome of the run, and remarks on it."""
+    """Return the outcome of the run, and remarks on it."""
     silence, waits, at_rest = ending["silence"], ending["waits"], ending["was_at_rest"]
     if exit_code is None and waits:
         flag = WAITS_FOR_EVER if waits == "for ever" else STUCK

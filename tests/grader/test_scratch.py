@@ -99,14 +99,14 @@ def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
 def test_a_lock_that_was_moved_away_is_not_held(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    take = scratch.take
+    lock_file = scratch.lock_file
 
-    def take_late(file):  # type: ignore[no-untyped-def]
+    def lock_late(file):  # type: ignore[no-untyped-def]
         Path(file.name).unlink()
-        return take(file)
+        return lock_file(file)
 
-    monkeypatch.setattr(scratch, "take", take_late)
-    assert scratch.take_lock("core-0") is None
+    monkeypatch.setattr(scratch, "lock_file", lock_late)
+    assert scratch.acquire_lock("core-0") is None
     with pytest.raises(GraderFailure, match="removes the locks"), scratch.make_folder():
         pass
 
@@ -186,11 +186,11 @@ def test_the_folder_goes_even_if_what_is_in_it_is_forbidden(place: Path) -> None
 def test_a_lock_has_one_holder_until_he_closes_it(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     with path.open("w") as first:
-        assert scratch.take(first)
+        assert scratch.lock_file(first)
         with path.open("w") as second:
-            assert not scratch.take(second)
+            assert not scratch.lock_file(second)
     with path.open("w") as third:
-        assert scratch.take(third)
+        assert scratch.lock_file(third)
 
 
 def test_a_folder_leaves_nothing(place: Path) -> None:
@@ -212,16 +212,16 @@ def test_a_lock_that_another_has_taken_for_a_leftover_is_not_used(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """He looked round between two steps of ours, and has removed it."""
-    taken: list[str] = []
-    take = scratch.take
+    locked: list[str] = []
+    lock_file = scratch.lock_file
 
-    def take_late(file):  # type: ignore[no-untyped-def]
-        taken.append(file.name)
-        if len(taken) == 1:
+    def lock_late(file):  # type: ignore[no-untyped-def]
+        locked.append(file.name)
+        if len(locked) == 1:
             Path(file.name).unlink()
-        return take(file)
+        return lock_file(file)
 
-    monkeypatch.setattr(scratch, "take", take_late)
+    monkeypatch.setattr(scratch, "lock_file", lock_late)
     with scratch.make_folder() as folder:
         assert folder.is_dir()
-        assert Path(taken[1]).stem == folder.name
+        assert Path(locked[1]).stem == folder.name

@@ -1,13 +1,13 @@
-"""Virtual time in a submission's process; knows no grading, and nothing of what is observed.
+"""Virtual time in a submission's process; knows no grading and no observing.
 
 | module | what it does |
 |---|---|
 | `scheduler` | which thread runs, and when time moves |
-| `threads` | locks and threads: where one hands on |
-| `system_calls` | `select`, asyncio, signals; other processes, which it cannot follow |
-| `surroundings` | `time` and `datetime`; random numbers and what else differs every time |
-| `rclpy_time` | puts rclpy into virtual time: wait sets, clocks, questions about the graph |
-| `executor` | its executors, faster |
+| `threads` | locks and threads that pass the baton on |
+| `system_calls` | `select`, asyncio, signals; refuses other processes, which it cannot follow |
+| `surroundings` | `time` and `datetime`; random numbers and whatever else differs every time |
+| `rclpy_time` | puts rclpy into virtual time: wait sets, clocks, queries of the graph |
+| `executor` | rclpy's executors, faster |
 | `link` | this end of the link to the simulator: asks for time, sends and receives |
 
 Both sides of the link share `grader.run.lockstep`.

@@ -3,7 +3,7 @@
 `Executor._wait_for_ready_callbacks`, written anew in rclpy's order: tasks, waitables, and node by
 node timers, subscriptions, guard conditions, clients, services. Where an entity may not run now
 because of its callback group, a wait set without it is made for this one wait, as rclpy does.
-Stands aside where rclpy's own function is not one of those that it was written after: that one
+It is not installed where rclpy's function is not one of those that it was written after: that
 then runs, slower, over our wait sets.
 """
 
@@ -33,15 +33,15 @@ from grader.run.lockstep.protocol import NEVER
 
 #: What an executor yields: a task, its entity, the entity's node.
 Work = tuple[Any, Any, Any]
-#: SHA-256 of the source of rclpy's function in the releases that this was tested with, and in
-#: which order each goes through the tasks in progress.
+#: SHA-256 of the source of rclpy's function in the tested releases -> the order in which that goes
+#: through the tasks in progress.
 KNOWN: dict[str, Callable[[list[Any]], Iterable[Any]]] = {
     # 7.1.4 to 7.1.8
     "f4ad71c9cd36740155e728956db585a6608e4df65f823cb1b2d6ce94992efb16": reversed,
     # 9.1.2
     "752e9ecbb147dcfa2db666b8312a72cc026c82c4245a35283ca0b7ba230c1a98": iter,
 }
-#: A node's kinds of entities, in rclpy's order, and what of an executor makes a task of each.
+#: A node's kinds of entities, in rclpy's order, and the executor's method for each.
 KINDS = (
     ("timers", "_take_timer"),
     ("subscriptions", "_take_subscription"),
@@ -56,7 +56,7 @@ _in_order: Callable[[list[Any]], Iterable[Any]]
 
 
 def install() -> None:
-    """Replace rclpy's function, if it and what it uses are known."""
+    """Replace rclpy's function, if it and all that it uses are known."""
     global _in_order
     order = known()
     if order is not None and not contract.broken(contract.EXECUTOR):
@@ -73,10 +73,10 @@ def known() -> Callable[[list[Any]], Iterable[Any]] | None:
 
 
 def allow_nested_spins() -> None:
-    """Have an executor that is told to spin within a spin do so, as rclpy's did until 7.1.8.
+    """Have an executor spin within a spin, as rclpy's did until 7.1.8.
 
     Since then it raises RuntimeError('Executor is already spinning'). The same submission is to get
-    the same verdict with each: most are found to be stuck then.
+    the same verdict with each: most get stuck there.
     """
 
     def enter_spin(self: Any) -> None:
@@ -87,28 +87,28 @@ def allow_nested_spins() -> None:
 
 
 def _begin_work(self: Any) -> None:
-    """As rclpy's, which takes a lock for it: here no two threads run at once."""
+    """As rclpy's, but without its lock: here no two threads run at once."""
     self._num_work_executing += 1
 
 
 def _end_work(self: Any, *_: object) -> None:
-    """As rclpy's; a thread that waits for the end of all work is woken."""
+    """As rclpy's; wakes a thread that waits for the end of all work."""
     self._num_work_executing -= 1
     if self._work_condition._waiters:
         with self._work_condition:
             self._work_condition.notify_all()
 
 
-# What is waited for ---------------------------------------------------------------------------
+# The entities ---------------------------------------------------------------------------------
 
 
 class EntitySet:
     """Entities of some nodes, in a wait set.
 
     Attributes:
-        by_handle: handle -> its entity, the entity's node, what of an executor makes a task of it.
-        guards, waitables: the others.
-        is_in_use: somebody is going through what was ready.
+        by_handle: handle -> its entity, the entity's node, the executor's method for it.
+        guards, waitables: the other entities.
+        is_in_use: whether an executor is going through what was ready.
     """
 
     def __init__(self, nodes: list[Any], context: Any, is_wanted: Callable[[Any], bool]) -> None:
@@ -123,7 +123,7 @@ class EntitySet:
             "clients": self.wait_set.add_client,
             "services": self.wait_set.add_service,
         }
-        for kind, take in KINDS:
+        for kind, method in KINDS:
             for node in nodes:
                 for entity in filter(is_wanted, getattr(node, kind)):
                     try:
@@ -134,7 +134,7 @@ class EntitySet:
                     if kind == "guards":
                         self.guards.append(entity)
                     else:
-                        self.by_handle[entity.handle] = entity, node, take
+                        self.by_handle[entity.handle] = entity, node, method
         self.waitables = [w for node in nodes for w in node.waitables if is_wanted(w)]
         self._has_only_events = all(type(w) is EventHandler for w in self.waitables)
         for waitable in self.waitables:
@@ -156,12 +156,12 @@ class EntitySet:
         return False
 
     def may_have_work(self) -> bool:
-        """Whether anything may be ready after a wait: an executor's own guard condition is none."""
-        return bool(self.wait_set.take_ready() or self.guards) or self.may_have_waitables()
+        """Whether anything may be ready after a wait, apart from the executor's guard condition."""
+        return bool(self.wait_set.ready or self.guards) or self.may_have_waitables()
 
 
 class AllEntities(EntitySet):
-    """All entities of some nodes; kept for as long as they are the same."""
+    """All entities of some nodes; kept as long as these stay the same."""
 
     def __init__(self, nodes: list[Any], context: Any) -> None:
         super().__init__(nodes, context, lambda _: True)
@@ -187,7 +187,7 @@ class AllEntities(EntitySet):
         return True
 
     def all_can_execute(self) -> bool:
-        """Whether `Executor.can_execute` would say so of every entity."""
+        """Whether `Executor.can_execute` is true of every entity."""
         if not self._is_plain:
             return False
         for group in self._groups:
@@ -200,11 +200,11 @@ class AllEntities(EntitySet):
 
 
 def _entities(executor: Any, nodes: list[Any]) -> EntitySet:
-    """Return what of these nodes can be executed now."""
+    """Return the entities of these nodes that can be executed now."""
     context = executor._context.handle
     kept: AllEntities | None = getattr(executor, "_entities_in_virtual_time", None)
     if kept is None or not kept.is_of(nodes):
-        for node in nodes:  # a class in place of a node is not ours to explain
+        for node in nodes:  # for a class in place of a node, raise what rclpy would
             pass_on(iter, pass_on(getattr, node, "subscriptions"))
         kept = executor._entities_in_virtual_time = AllEntities(nodes, context)
     if kept.all_can_execute() and not kept.is_in_use:
@@ -248,7 +248,7 @@ def _work(
                 yielded_work = True
                 yield work
             entities = None
-        # where there is no other thread, nobody has changed anything since the last wait
+        # with a single thread, nothing has changed since the last wait
         if entities is None or not waitsets.WAITER.is_alone:
             entities = _entities(executor, used)
         is_out = _wait(executor, entities, timeout_ns, end_ns)
@@ -305,7 +305,7 @@ def _wait(executor: Any, entities: EntitySet, timeout_ns: int, end_ns: int) -> b
 
 def _ready(executor: Any, entities: EntitySet, nodes: list[Any]) -> Iterator[Work]:
     """Yield what is ready, as tasks, in rclpy's order."""
-    ready = entities.wait_set.take_ready()
+    ready = entities.wait_set.ready
     make = executor._make_handler
     if entities.may_have_waitables():
         for node in nodes:
@@ -317,27 +317,27 @@ def _ready(executor: Any, entities: EntitySet, nodes: list[Any]) -> Iterator[Wor
         if not ready:
             return
         if len(ready) == 1:  # as below, where mostly nothing else is ready
-            entity, node, take = entities.by_handle[ready[0]]
-            if _is_ready(take, entity, ready) and _can_execute(entity.callback_group, entity):
-                yield make(entity, node, getattr(executor, take)), entity, node
+            entity, node, method = entities.by_handle[ready[0]]
+            if _is_ready(method, entity, ready) and _can_execute(entity.callback_group, entity):
+                yield make(entity, node, getattr(executor, method)), entity, node
             return
     for node in nodes:
-        for kind, take in KINDS:
+        for kind, method in KINDS:
             for entity in getattr(node, kind):
-                if _is_ready(take, entity, ready) and entity.callback_group.can_execute(entity):
-                    yield make(entity, node, getattr(executor, take)), entity, node
+                if _is_ready(method, entity, ready) and entity.callback_group.can_execute(entity):
+                    yield make(entity, node, getattr(executor, method)), entity, node
 
 
-def _is_ready(take: str, entity: Any, ready: list[Any]) -> bool:
-    if take == "_take_guard_condition":
+def _is_ready(method: str, entity: Any, ready: list[Any]) -> bool:
+    if method == "_take_guard_condition":
         return bool(entity._executor_triggered)
     if entity.handle not in ready:
         return False
-    return take != "_take_timer" or bool(entity.handle.is_timer_ready())
+    return method != "_take_timer" or bool(entity.handle.is_timer_ready())
 
 
 def _can_execute(group: Any, entity: Any) -> bool:
-    """As the group says, without a lock where we know what it would say."""
+    """Whether a group can execute an entity; without a lock where its answer is known."""
     if type(group) is MutuallyExclusiveCallbackGroup:
         return group._active_entity is None
     return bool(group.can_execute(entity))

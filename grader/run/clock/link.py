@@ -1,8 +1,8 @@
 """The student's end of the link to the simulator: messages, and time.
 
 Whatever the program sends goes out at once, and counts from the next request for time; whatever
-the simulator sends comes with its reply to that. Of the ticks to come the simulator says in advance
-what they will bring, if nothing is sent meanwhile; these pass without a word to it.
+the simulator sends comes with its reply to that. The reply also forecasts the next ticks, for the
+case that nothing is sent meanwhile; these pass without a request.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ from grader.run.lockstep.protocol import (
 from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer, policies
 
 UNBOUNDED = 0xFFFFFFFF
-#: What sending a message costs: 20 us. What counting the endpoints of a channel costs.
+#: The costs of sending a message, 20 us, and of counting the endpoints of a channel.
 SEND_UNITS = 4
 QUESTION_UNITS = 4
-#: How long we may go on without a word to the simulator, in real time [s]: it would think that the
+#: How long we may go on without a request, in real time [s]: the simulator would think that the
 #: program hangs.
 LONGEST_ALONE_S = 0.25
 #: How long DDS may take to find what is there, where the program asks for it, in real time [s]. A
@@ -62,7 +62,7 @@ DDS_PATIENCE_S = 60.0
 class SimulatorSockets:
     """The two sockets to the simulator, and the page that both processes have.
 
-    Where the simulator has gone, this process ends: nobody would hear what it still did.
+    When the simulator is gone, this process ends: nothing that it does could be recorded.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class SimulatorSockets:
         return packet
 
     def send(self, packet: Packet) -> None:
-        """Send a packet that the simulator waits for, or does not answer."""
+        """Send a packet."""
         try:
             for piece in pieces(encode(packet)):
                 self._connection.send(piece)
@@ -121,12 +121,12 @@ class SimulatorSockets:
                 real.leave(1)
         return []
 
-    def has_reached(self, tick: int) -> None:
-        """Note it where it is read when this process has ended without a word."""
+    def write_tick(self, tick: int) -> None:
+        """Write the tick where it is read after this process, even if that ends silently."""
         PROGRESS.pack_into(self._progress, 0, tick)
 
     def fail(self, packet: object, expected: str) -> NoReturn:
-        """Somebody else has read or written here, and only the submission can."""
+        """Refuse a wrong packet: the submission has read or written on the socket."""
         self._break(ProtocolError(f"{packet!r:.200} where {expected} was expected"))
 
     def _decode(self, data: bytes) -> Packet:
@@ -142,20 +142,20 @@ class SimulatorSockets:
 
 @dataclass
 class Agreed:
-    """What both sides know since the simulator's last reply, and what has been mailed since.
+    """The simulator's last reply, and whether anything was mailed since.
 
     Attributes:
-        tick: to which it has come by that reply; the program may be further by now.
-        foreseen: the tick up to which it has said in advance what comes.
-        parcels: what comes, by tick, and has not come yet.
-        said_s: when it replied, in real time [s].
-        has_mail: it was sent something since, which it does not know.
+        tick: the simulator's tick in that reply; the program may be further by now.
+        foreseen: the last tick of the forecast.
+        parcels: the messages of the forecast that have not been delivered, by tick.
+        replied_s: when the reply came, in real time [s].
+        has_mail: whether something was mailed since, which the forecast does not consider.
     """
 
     tick: int = 0
     foreseen: int = 0
     parcels: deque[Parcel] = field(default_factory=deque)
-    said_s: float = 0.0
+    replied_s: float = 0.0
     has_mail: bool = False
 
 
@@ -164,7 +164,7 @@ class SimulatorLink(EndpointRegistry):
 
     Attributes:
         tick: the last that has begun for the program.
-        graph_epoch: counts how often the endpoints were connected anew.
+        graph_epoch: how often the endpoints were connected anew.
         is_listening: whether a thread waits for what the simulator publishes.
         on_arrival: called after something may have arrived.
         on_standstill: called when no thread of the program has a deadline.
@@ -209,7 +209,7 @@ class SimulatorLink(EndpointRegistry):
 
     @guarded
     def advance(self, deadline_ns: int) -> None:
-        """Let time move to what happens next: our deadline, or something from the simulator."""
+        """Move time to the next event: our deadline, or something from the simulator."""
         scheduler = self._scheduler
         if deadline_ns < (self.tick + 1) * TICK_NS:
             scheduler.set_now(max(deadline_ns, scheduler.now_ns))
@@ -219,35 +219,35 @@ class SimulatorLink(EndpointRegistry):
             self.on_standstill()
         target = min(deadline_ns // TICK_NS, FOREVER)
         most = 1 if self.is_listening() else UNBOUNDED
-        if self._agreed.has_mail or not self._live_through_foreseen(target, most):
+        if self._agreed.has_mail or not self._use_forecast(target, most):
             self._exchange(target, most)
         scheduler.set_now(max(scheduler.now_ns, self.tick * TICK_NS))
         self.on_arrival()
 
-    def _live_through_foreseen(self, target: int, most: int) -> bool:
-        """Let ticks pass that the simulator has foreseen; return whether any has."""
+    def _use_forecast(self, target: int, most: int) -> bool:
+        """Let forecast ticks pass; return whether any has."""
         last = min(target, self.tick + most, self._agreed.foreseen)
-        if self.tick >= last or real.monotonic() > self._agreed.said_s + LONGEST_ALONE_S:
+        if self.tick >= last or real.monotonic() > self._agreed.replied_s + LONGEST_ALONE_S:
             return False
-        self._live_to(last)
+        self._move_to(last)
         return True
 
-    def _live_to(self, tick: int) -> None:
-        """Let time pass to a tick, with the messages up to it."""
+    def _move_to(self, tick: int) -> None:
+        """Move time to a tick, and deliver the messages up to it."""
         self.tick = tick
-        self._sockets.has_reached(tick)
+        self._sockets.write_tick(tick)
         parcels = self._agreed.parcels
         while parcels and parcels[0].tick <= tick:
             self._deliver(parcels.popleft())
 
     def synchronise(self) -> None:
-        """Have the simulator come to where we are, with all that we have sent, in no time."""
+        """Have the simulator catch up with our tick and our mail; no time passes."""
         self.connect()
         if self._agreed.has_mail or self.tick > self._agreed.tick:
             self._exchange(self.tick, 0)
 
     def _exchange(self, target: int, most: int) -> None:
-        """Ask for time, and take what comes with the reply."""
+        """Ask for time, and handle the reply."""
         self._sockets.send(Advance(target, most, self.tick, self._agreed.has_mail))
         table = None
         while not isinstance(packet := self._sockets.receive(), Reply):
@@ -258,7 +258,7 @@ class SimulatorLink(EndpointRegistry):
             self._connect_anew()
         parcels = deque(packet.parcels)
         self._agreed = Agreed(packet.tick, packet.foreseen, parcels, real.monotonic())
-        self._live_to(packet.tick)
+        self._move_to(packet.tick)
         if table is not None:
             for number in table.removed:
                 self.others.pop(number, None)
@@ -270,12 +270,12 @@ class SimulatorLink(EndpointRegistry):
     # Messages ---------------------------------------------------------------------------------
 
     def before_question(self) -> None:
-        """Connect, and charge for it: who asks for counterparts is to see all that there are."""
+        """Connect, and charge for it: a query for counterparts is to find all of them."""
         self.connect()
         self._scheduler.charge(QUESTION_UNITS)
 
     def publish(self, writer: Writer, data: bytes) -> None:
-        """To readers in this process at once, to the simulator with the next request for time."""
+        """Send to readers of this process at once, to the simulator by its mailbox."""
         super().publish(writer, data)
         for remote in writer.remote:
             self._mail(Parcel(remote.number, 0, writer.sent, self.tick, data))
@@ -334,7 +334,7 @@ class SimulatorLink(EndpointRegistry):
     # Connections ------------------------------------------------------------------------------
 
     def connect(self) -> None:
-        """Connect what belongs together, and tell the simulator what we read and publish."""
+        """Connect our endpoints with the simulator's, and send it our interests."""
         if self._interests is None:
             self._interests = Interests(())
             self._add(self._sockets.introduction())
@@ -348,14 +348,14 @@ class SimulatorLink(EndpointRegistry):
         interests = Interests(tuple(sorted(reads)), tuple(sorted(topics)))
         if interests != self._interests:
             self._interests = interests
-            if self.tick > self._agreed.tick:  # foreseen for the readers that there were
+            if self.tick > self._agreed.tick:  # forecast for the readers that there were
                 self._exchange(self.tick, 0)
             self._agreed.parcels.clear()
             self._agreed.foreseen = self.tick
             self._sockets.send(interests)
 
     def _add(self, table: Table) -> None:
-        """Note the simulator's endpoints that a table says are new."""
+        """Add the new endpoints of the simulator's table."""
         for entry in table.added:
             kind = Writer if entry.writes else Reader
             qos = policies(entry.reliability, entry.durability, entry.depth)
@@ -368,9 +368,9 @@ class SimulatorLink(EndpointRegistry):
         self.graph_epoch += 1
 
     def await_dds(self, what: str) -> None:
-        """Really wait a little until DDS has found what we know to be there.
+        """Wait a little, in real time, until DDS has found what we know to be there.
 
-        Where that is in vain, the run cannot be made here: DDS has lost something.
+        After `DDS_PATIENCE_S` the run ends, to be made again in real time: DDS has lost something.
         """
         now_s = real.monotonic()
         if self._dds_wait[:2] != (what, self.graph_epoch):
@@ -382,5 +382,5 @@ class SimulatorLink(EndpointRegistry):
         real.sleep(0.0005)
 
     def note(self, kind: Kind, remark: Message = NOTHING) -> None:
-        """Tell the simulator something about this process."""
+        """Send the simulator a note about this process."""
         self._sockets.send(Note(kind, remark))

@@ -29,13 +29,12 @@ from grader.run.lockstep.rclpy_clocks import RclpyClocks
 from grader.run.lockstep.registry import Writer
 from grader.run.lockstep.waitsets import Waiter, WaitSet
 
-#: What a wait costs, and what handing out work costs on top [units].
+#: The costs of a wait, and of the work that it finds on top [units].
 WAIT_UNITS = 2
 WORK_UNITS = 8
-#: What the first, second, ... of several waits in a row costs that must not wait and found
-#: nothing [ns].
+#: The costs of the first, second, ... of several polls in a row that find nothing [ns].
 EMPTY_NS = (*(250_000,) * 8, 2_000_000)
-#: Methods of a node's that ask about the graph.
+#: Methods of a node's that query the graph.
 QUESTIONS = (
     "count_clients",
     "count_publishers",
@@ -60,7 +59,7 @@ NodeName = tuple[str, str]
 
 def prepare() -> None:
     """Replace what needs neither the link nor the clocks; may come long before `install`."""
-    # first: it looks at what is replaced in `install`
+    # first: it checks what is replaced in `install`
     executor.install()
     executor.allow_nested_spins()
 
@@ -73,11 +72,11 @@ def install(
     compares_stamps: bool,
     on_deadlock: Callable[[], None],
 ) -> None:
-    """Replace what tells or waits for time in rclpy, after `prepare`.
+    """Replace rclpy's clocks and waits, after `prepare`.
 
     Args:
         nodes: the simulator's.
-        compares_stamps: whether a node's clock tells another time each time it is asked.
+        compares_stamps: whether a node's clock returns another time each time it is asked.
         on_deadlock: called once, when nothing can ever happen any more.
     """
 
@@ -85,7 +84,7 @@ def install(
         return scheduler.now_ns
 
     unpaid_ns = (lambda: scheduler.unpaid_ns) if compares_stamps else (lambda: 0)
-    clocks = rclpy_clocks.install(_rclpy, now_ns, scheduler.charge, unpaid_ns)
+    clocks = rclpy_clocks.install(now_ns, scheduler.charge, unpaid_ns)
     scheduler.clocks.append(clocks.set_now)
     scheduler.advance = link.advance
     _rclpy.ClockEvent = clock_event_class(scheduler)
@@ -116,7 +115,7 @@ class VirtualWaiter(Waiter):
         clocks: RclpyClocks,
         on_deadlock: Callable[[], None],
     ) -> None:
-        super().__init__(clocks.tell)
+        super().__init__(clocks.attach)
         self._scheduler = scheduler
         self._link = link
         self._on_deadlock: Callable[[], None] | None = on_deadlock
@@ -128,7 +127,7 @@ class VirtualWaiter(Waiter):
 
     @property
     def graph_epoch(self) -> int:
-        """Counts the changes of the graph; what belongs together is connected now."""
+        """The number of changes of the graph, with all endpoints connected."""
         self._link.connect()
         return self._link.graph_epoch
 
@@ -138,10 +137,10 @@ class VirtualWaiter(Waiter):
         return len(self._scheduler.runners) == 1
 
     def await_dds(self, what: str) -> None:
-        """Really wait a little for DDS."""
+        """Wait a little for DDS, in real time."""
         self._link.await_dds(what)
 
-    def look_first(self) -> None:
+    def before_wait(self) -> None:
         """Let others run first, if any can."""
         self._scheduler.charge(WAIT_UNITS)
         self._scheduler.pass_on()
@@ -152,7 +151,7 @@ class VirtualWaiter(Waiter):
         self._scheduler.charge(WORK_UNITS)
 
     def found_nothing(self) -> None:
-        """Charge for a wait in vain: a loop of them must not stop time."""
+        """Charge for a poll that found nothing: a loop of them must not stop time."""
         cost_ns = EMPTY_NS[min(self._empty, len(EMPTY_NS) - 1)]
         self._empty += 1
         self._scheduler.sleep(cost_ns)
@@ -168,16 +167,16 @@ class VirtualWaiter(Waiter):
             self._waiting.remove(entry)
 
     def deadline(self, timeout_ns: int) -> int:
-        """When a time-out from now ends; a negative one never."""
+        """Return when a time-out from now ends; a negative one never does."""
         return NEVER if timeout_ns < 0 else min(NEVER, self._scheduler.now_ns + timeout_ns)
 
     def poke(self, _: object) -> None:
-        """Wake all that wait: they are few."""
+        """Wake all waiting threads: they are few."""
         for _, runner in self._waiting:
             self._scheduler.wake(runner)
 
     def on_arrival(self) -> None:
-        """Wake those for whom something has come."""
+        """Wake the threads whose wait sets have something to read."""
         for wait_set, runner in self._waiting:
             for reader in wait_set.readers:
                 if reader.items:
@@ -193,7 +192,7 @@ class VirtualWaiter(Waiter):
         return False
 
     def on_standstill(self) -> None:
-        """All threads are blocked for good, unless something still comes from the simulator."""
+        """Report a deadlock, unless something may still come from the simulator."""
         is_hopeful = self.is_listening() or any(
             reader.awaited > 0 for wait_set, _ in self._waiting for reader in wait_set.readers
         )
@@ -239,7 +238,7 @@ def clock_event_class(scheduler: Scheduler) -> type:
 
 
 def _replace_questions(link: SimulatorLink, nodes: Sequence[NodeName]) -> None:
-    """Have a node's questions wait, in no virtual time, until DDS has found all that is there.
+    """Have a node's queries wait, in no virtual time, until DDS has found all that is there.
 
     Args:
         nodes: the simulator's.
@@ -294,7 +293,7 @@ def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[NodeName]) -> b
 
 
 def _guard_entities() -> None:
-    """A mistake of ours must not become the submission's, whatever it catches."""
+    """Guard our classes: a mistake of ours must not count as the submission's."""
     for kind in (
         *(endpoints.Publisher, endpoints.Subscription, endpoints.Client, endpoints.Service),
         *(endpoints.Registered, endpoints.Node),
@@ -306,7 +305,7 @@ def _guard_entities() -> None:
 
 
 def _order_nodes(node_class: Any) -> None:
-    """Have sets of nodes, as in executors, in the order of their making, not of their addresses."""
+    """Order sets of nodes, as in executors, by their creation instead of their addresses."""
     serials = itertools.count()
     original = node_class.__init__
 
@@ -320,7 +319,7 @@ def _order_nodes(node_class: Any) -> None:
 
 
 def _charge_for(owner: Any, name: str, scheduler: Scheduler) -> None:
-    """Loops that only ask this must not stop time."""
+    """Charge for a method: loops that only call it must not stop time."""
     ask = getattr(owner, name)
 
     @functools.wraps(ask)
@@ -332,7 +331,7 @@ def _charge_for(owner: Any, name: str, scheduler: Scheduler) -> None:
 
 
 def _replace_ok(scheduler: Scheduler) -> None:
-    """Charge for `Context.ok`, without rclpy's lock: executors ask three times a message."""
+    """Charge for `Context.ok`, without rclpy's lock: executors call it three times a message."""
 
     def ok(self: Any) -> bool:
         scheduler.charge()
@@ -346,7 +345,7 @@ def _replace_ok(scheduler: Scheduler) -> None:
 
 
 def _replace_events_executor() -> None:
-    """Events come from DDS's threads, when they like; the results are those of the other one."""
+    """Replace the events executor, whose events come from DDS's threads in any order."""
 
     class EventsExecutor(rclpy.executors.SingleThreadedExecutor):
         """As rclpy's, but it waits for what it serves."""

@@ -1,10 +1,10 @@
 """Which Python thread runs, and when virtual time moves.
 
-One thread holds the baton and runs; the others stand at their gates. The baton is handed on only
+One thread holds the baton and runs; the others wait at their gates. The baton is passed on only
 where a thread would block, always in the same order, so a program of many threads runs the same
-way every time. Time moves only when no thread can run: then the simulator is asked for what comes
-next. A program that never blocks would stop time, so asking for the time, publishing and polling
-cost a little of it.
+way every time. Time moves only when no thread can run: then the simulator is asked for the next
+event. A program that never blocks would stop time, so reading a clock, publishing and polling cost
+a little of it.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from grader.run.lockstep import real
 from grader.run.lockstep.faults import pass_on
 from grader.run.lockstep.protocol import NEVER
 
-#: What asking for the time or the like costs [units], and how many units make a pause.
+#: Reading a clock or the like costs a unit; so many units make a pause.
 UNITS_A_PAUSE = 200
 #: A pause [ns]. One unit stands for 5 us of a real machine.
 PAUSE_NS = 1_000_000
 UNIT_NS = PAUSE_NS // UNITS_A_PAUSE
 #: A program that never rests pays more and more, so that minutes of busy waiting or of floods end
-#: in seconds: (after so many units without rest, so much more).
+#: in seconds: (after so many units without rest, the factor).
 COARSER = ((20_000, 10), (100_000, 40))
 #: The least that a real sleep takes [ns]; a loop of tiny sleeps would otherwise never end.
 LEAST_SLEEP_NS = 50_000
-#: How often the main thread looks for signals while others run, in real time [s].
+#: How often the main thread checks for signals while others run, in real time [s].
 SIGNAL_S = 0.05
 
 
@@ -52,8 +52,7 @@ class Scheduler:
         self.now_ns = 0
         self.main = self.current = Runner(real.get_ident())
         self.runners = [self.main]
-        #: has something happen outside of this process: sets the time, at most to a deadline, and
-        #: wakes runners
+        #: has the simulator go on: sets the time, at most to a deadline, and wakes runners
         self.advance: Callable[[int], None]
         #: called with the new time whenever it moves
         self.clocks: list[Callable[[int], None]] = []
@@ -62,7 +61,7 @@ class Scheduler:
         #: called where a thread that we did not start wants to block
         self.on_unknown_thread: Callable[[], None] = _no_unknown_threads
         #: called in a thread that has waited, with how long [s]
-        self.on_waited: Callable[[float], None] = _nobody_cares
+        self.on_waited: Callable[[float], None] = lambda _: None
         #: main runner: signals wait until it is out of here
         self.inside = 0
         self.on_leaving: Callable[[], None] | None = None
@@ -137,7 +136,7 @@ class Scheduler:
     # Time -------------------------------------------------------------------------------------
 
     def sleep(self, duration_ns: int) -> None:
-        """Block for a while; not at all for no time, but that costs something too."""
+        """Block for a while; a sleep of no time does not block, but is charged."""
         if duration_ns <= 0:
             self.charge(20)
             self.pass_on()
@@ -147,7 +146,7 @@ class Scheduler:
             self.block(deadline_ns)
 
     def charge(self, units: int = 1) -> None:
-        """Make the running thread pay for what it did without blocking."""
+        """Charge the running thread for what it did without blocking."""
         self._units += units
         if self._units < UNITS_A_PAUSE:
             return
@@ -161,7 +160,7 @@ class Scheduler:
 
     @property
     def unpaid_ns(self) -> int:
-        """What the running thread has done since time moved last, for which no time has passed."""
+        """The cost of what the running thread has done since time last moved [ns]."""
         return self._units * UNIT_NS
 
     def set_now(self, now_ns: int) -> None:
@@ -195,7 +194,7 @@ class Scheduler:
             me.alarm = 0
 
     def _pass_time(self, me: Runner, deadline_ns: int) -> None:
-        """As alarms and `_switch` do it where there is one thread, which saves them."""
+        """Block the only thread: what alarms and `_switch` would do, without them."""
         self.inside += 1
         while not me.ready and self.now_ns < deadline_ns:
             if self.interrupted:
@@ -229,7 +228,7 @@ class Scheduler:
                 self.on_leaving()
 
     def _idle(self) -> None:
-        """Nobody can run: look outside, and if there is nothing either, let time move."""
+        """Poll for outside events when no thread can run; if there are none, move time."""
         if self.interrupted:
             self.interrupted = False
             self.wake(self.main)
@@ -242,9 +241,6 @@ class Scheduler:
         while alarms and alarms[0][2].alarm != alarms[0][1]:
             heapq.heappop(alarms)
         self.advance(alarms[0][0] if alarms else NEVER)
-
-
-def _nobody_cares(_: float) -> None: ...
 
 
 def _no_unknown_threads() -> None:

@@ -1,8 +1,8 @@
-"""What a program reads of its surroundings, made the same in each run: time, chance, who it is.
+"""Makes the surroundings of a program the same in each run: time, chance, its user.
 
-Time is virtual in `time`, `datetime` and what the kernel says of a process; rclpy's clocks are in
+Time is virtual in `time`, `datetime` and the kernel's usage of a process; rclpy's clocks are in
 `lockstep.rclpy_clocks`. Processor time is virtual, too: a program has computed for as long as it
-has run. So a loop that waits for it ends, and what it prints is the same in every run.
+has run. So a loop that waits for it ends, and prints the same in every run.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ from grader.run.lockstep.protocol import BOOT_NS, EPOCH_NS
 
 SCHEDULER: Scheduler
 _REAL_GETRUSAGE = resource.getrusage
-#: Between two runs the peak of memory differs by less [KB], mostly.
+#: The peak of memory is rounded to this [KB]: it mostly differs by less between two runs.
 _STEP_KB = 65_536
-#: As many as students' machines have; executors and pools size themselves by it.
+#: As many as students' machines have; executors and pools choose their size by it.
 PROCESSORS = 4
-#: Of whoever grades there may be any; a sandbox has another in each run.
+#: The user and group that a program sees; the real ones differ between graders and runs.
 USER = 1000
 #: A MAC address that is nobody's: the bit for "locally administered" is set.
 NODE = 0x02_00_00_00_00_01
 DEVICES = ("/dev/urandom", "/dev/random")
-#: So much of a device can be read [bytes]: a program that reads on finds its end.
+#: So much of a device can be read [bytes]: a program that reads more finds its end.
 DEVICE_BYTES = 65_536
 
 # Time -----------------------------------------------------------------------------------------
@@ -68,7 +68,7 @@ def replace_clocks(scheduler: Scheduler) -> None:
     time.ctime = lambda seconds=None: pass_on(real.ctime, _or_now(seconds))
     time.asctime = lambda when=None: pass_on(real.asctime, when or time.localtime())
     time.strftime = lambda form, when=None: pass_on(real.strftime, form, when or time.localtime())
-    # these have imported the names
+    # these modules have imported the names
     threading._time = queue.time = sched._time = time.monotonic  # type: ignore[attr-defined]
     _datetime.datetime = _VirtualDatetime  # type: ignore[misc]
     _datetime.date = _VirtualDate  # type: ignore[misc]
@@ -80,7 +80,7 @@ def _sleep(seconds: Any) -> None:
     try:
         duration_ns = int(seconds * 1e9)
     except (TypeError, ValueError, OverflowError):
-        pass_on(real.sleep, seconds)  # no number, no time: Python says so in its own words
+        pass_on(real.sleep, seconds)  # raises Python's error for what is no number
         raise
     if seconds < 0:
         as_python_does(ValueError("sleep length must be non-negative"))
@@ -118,7 +118,7 @@ def _times() -> os.times_result:
 
 
 def _getrusage(who: int, /) -> resource.struct_rusage:
-    """Return processor time as the other clocks have it, the peak of memory in steps, no more."""
+    """Return the virtual processor time and the rounded peak of memory; the rest is 0."""
     found = pass_on(_REAL_GETRUSAGE, who)
     used_s = 0.0 if who == resource.RUSAGE_CHILDREN else time.process_time()
     return resource.struct_rusage((used_s, 0.0, found.ru_maxrss // _STEP_KB * _STEP_KB, *[0] * 13))
@@ -179,9 +179,10 @@ for _class in (_VirtualDatetime, _VirtualDate):
 
 
 def seed_chance() -> Callable[[], object]:
-    """Seed every source of random numbers, fix the number of processors.
+    """Seed every source of random numbers, and fix the number of processors.
 
-    Returns a function that returns their state: equal states mean that nothing was drawn between.
+    Returns:
+        A function that returns their state: equal states mean that nothing was drawn between.
     """
     source = random.Random(0)
     seeds = itertools.count(1)
@@ -198,7 +199,7 @@ def seed_chance() -> Callable[[], object]:
         pass_on(real_seed, self, next(seeds) if a is None else a, version)
 
     class Random(_random.Random):
-        """As its base, whose seed is taken from the system in C."""
+        """As its base, which seeds itself from the system in C."""
 
         def __init__(self, *args: Any) -> None:
             self.seed(*args)
@@ -230,9 +231,9 @@ def seed_chance() -> Callable[[], object]:
 
 
 def replace_user_and_devices() -> None:
-    """Replace who the user is, and what devices of random numbers give.
+    """Replace the user, and the devices of random numbers.
 
-    After `seed_chance`, and after the process was confined, which needs both as they are.
+    After `seed_chance`, and after the process was confined, which needs the real ones.
     """
     os.getuid = os.geteuid = os.getgid = os.getegid = lambda: USER
     by_number = pwd.getpwuid

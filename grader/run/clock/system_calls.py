@@ -1,8 +1,8 @@
-"""What waits for the operating system, or asks it for more than virtual time can follow.
+"""Waits for the operating system by the scheduler; refuses what virtual time cannot follow.
 
-`select` and `selectors`, and so asyncio, wait for files, sockets and pipes by the scheduler. Of
-signals, handlers run when the main thread has the baton. Other processes and alarms are refused:
-that forbids a submission nothing, the run is broken off and made again in real time.
+`select` and `selectors`, and so asyncio, wait for files, sockets and pipes by the scheduler. Signal
+handlers run when the main thread has the baton. Other processes and alarms are refused: that
+forbids a submission nothing, the run is broken off and made again in real time.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from grader.run.lockstep.faults import guarded, pass_on
 from grader.run.lockstep.protocol import NEVER
 
 _STARTS = (msg("starts another program"), msg("starts another program ({program})"))
-#: What makes another process, Python's own audit events: what it does, and with a program's name.
+#: Python's audit events of another process -> what the program does, and that with a name.
 _OTHER_PROCESS = {
     "subprocess.Popen": _STARTS,
     "os.system": _STARTS,
@@ -35,12 +35,12 @@ _OTHER_PROCESS = {
     "os.forkpty": (msg("forks"), NOTHING),
     "pty.spawn": _STARTS,
 }
-#: Programs that end at once and tell nobody the time; ctypes.util and platform start some.
+#: Programs that end at once and have no use for time; ctypes.util and platform start some.
 _HARMLESS = {"cc", "clear", "gcc", "ld", "ldconfig", "objdump", "uname"}
 
 
 class Unsupported(Exception):
-    """Virtual time cannot follow; the text says what, to complete "the submission ..."."""
+    """Virtual time cannot follow; the text completes "the submission ..."."""
 
 
 # Files, sockets and pipes ---------------------------------------------------------------------
@@ -56,7 +56,7 @@ def replace_select(scheduler: Scheduler) -> None:
                 scheduler.wake(runner)
 
     def wait(ready: Callable[[], Any], timeout_s: float | None) -> Any:
-        """Return what `ready` returns once that is something, or the time is out."""
+        """Wait until `ready` returns something or the time is out; return its answer."""
         deadline_ns = NEVER
         if timeout_s is not None:
             deadline_ns = scheduler.now_ns + max(0, int(timeout_s * 1e9))
@@ -109,7 +109,7 @@ def replace_signals(scheduler: Scheduler, refuse: Callable[[Message], None]) -> 
     def deliver(number: int, frame: FrameType | None) -> None:
         handler = handlers[number]
         if scheduler.inside:
-            # The main thread stands at its gate while another one runs: wait for its turn.
+            # The main thread waits at its gate while another one runs: wait for its turn.
             waiting.append(lambda: handler(number, frame))
             scheduler.interrupted = True
         else:
@@ -146,7 +146,7 @@ def replace_signals(scheduler: Scheduler, refuse: Callable[[Message], None]) -> 
 
 
 def _await(has_come: Callable[[], bool], scheduler: Scheduler) -> None:
-    """Another thread has sent a signal: really wait until the main thread has noticed."""
+    """Wait, in real time, until the main thread has noticed a signal of another thread's."""
     deadline = real.monotonic() + 1.0
     while scheduler.inside and not has_come() and real.monotonic() < deadline:
         real.sleep(0.001)
@@ -156,9 +156,9 @@ def _await(has_come: Callable[[], bool], scheduler: Scheduler) -> None:
 
 
 def refuse_processes(refuse: Callable[[Message], None]) -> None:
-    """Call `refuse` with what the submission does when it makes another process.
+    """Call `refuse` when the submission makes another process, with what it does.
 
-    An audit hook cannot be taken away again, and hears what C code does through Python as well.
+    An audit hook cannot be removed again, and also gets what C code does through Python.
     """
     harmless = False  # between the start of a harmless program and its fork
 

@@ -1,6 +1,6 @@
-"""Locks and threads that hand the baton on instead of blocking.
+"""Locks and threads that pass the baton on instead of blocking.
 
-Everything of `threading`, `queue` and `concurrent.futures` is built on these few.
+All of `threading`, `queue` and `concurrent.futures` is built on these few.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Lock:
         self._waiting: deque[Runner] | None = None
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock; False if it cannot be had in time."""
+        """Acquire the lock; return False where that is not possible in time."""
         if not self._locked and timeout == -1:
             self._locked = True
             return True
@@ -62,7 +62,7 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Give the lock back."""
+        """Release the lock."""
         if not self._locked:
             as_python_does(RuntimeError("release unlocked lock"))
         self._locked = False
@@ -70,7 +70,7 @@ class Lock:
             SCHEDULER.wake(self._waiting.popleft())
 
     def locked(self) -> bool:
-        """Whether somebody has it."""
+        """Whether a thread holds it."""
         return self._locked
 
     def __enter__(self) -> bool:
@@ -95,14 +95,14 @@ class Lock:
 
 
 class RLock(threading._PyRLock):  # type: ignore[name-defined]
-    """As Python's own, with a short way where nobody else has it."""
+    """As Python's, with a short cut where no other thread holds it."""
 
     _block: Lock
     _owner: int | None
     _count: int
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock, once more if this thread has it; False if it cannot be had in time."""
+        """Acquire the lock, again if this thread holds it; return False where not in time."""
         me = get_ident()
         if self._owner == me:
             self._count += 1
@@ -124,7 +124,7 @@ class RLock(threading._PyRLock):  # type: ignore[name-defined]
         return self.acquire()
 
     def release(self) -> None:
-        """Give the lock back, if it was taken but once."""
+        """Release the lock, if it was acquired only once."""
         if self._owner != get_ident():
             as_python_does(RuntimeError("cannot release un-acquired lock"))
         self._count -= 1
@@ -142,14 +142,14 @@ class RLock(threading._PyRLock):  # type: ignore[name-defined]
 
 
 class ThreadHandle:
-    """As `_thread._ThreadHandle` of CPython 3.13: what a thread is joined by."""
+    """As `_thread._ThreadHandle` of CPython 3.13, which joins a thread."""
 
     def __init__(self, ident: int = 0) -> None:
         self.ident = ident
         self._alive = Lock()
 
     def begin(self) -> None:
-        """The thread starts."""
+        """Note that the thread starts."""
         self._alive.acquire()
 
     def is_done(self) -> bool:
@@ -167,7 +167,11 @@ class ThreadHandle:
 
 
 def install(scheduler: Scheduler) -> None:
-    """Replace the primitives in this interpreter. Raises Unsupported where it has others."""
+    """Replace the primitives in this interpreter.
+
+    Raises:
+        Unsupported: this Python has other ones.
+    """
     global SCHEDULER
     SCHEDULER = scheduler
     _thread.allocate_lock = Lock  # type: ignore[assignment]
@@ -190,7 +194,7 @@ def install(scheduler: Scheduler) -> None:
 
 
 def join_all() -> None:
-    """Wait for the threads that are no daemons, as the interpreter does at its end."""
+    """Wait for all threads but daemons, as the interpreter does at its end."""
     for call in reversed(_replaced(threading, "_threading_atexits")):
         call()
     for thread in threading.enumerate():
@@ -232,7 +236,7 @@ def _quietly(function: Callable[..., object], *args: Any, **kwargs: Any) -> None
 
 
 def _set_sentinel() -> Lock:
-    """CPython up to 3.12: a lock that is released when the current thread ends."""
+    """Return a lock that is released when the current thread ends; for CPython up to 3.12."""
     lock = Lock()
 
     def release() -> None:

@@ -42,7 +42,7 @@ class _Action(Registered):
     """Makes the endpoints of an action."""
 
     def prepare(self, node: Node, action_type: Any, name: str) -> None:
-        """Remember what every endpoint needs; before any other method."""
+        """Store what every endpoint needs; call this first."""
         impl = action_type.Impl
         self._node, self._name = node, name
         #: of each part, which is a service or a topic that others may use as such
@@ -55,17 +55,17 @@ class _Action(Registered):
         }
 
     def channel(self, kind: str, part: str) -> str:
-        """The channel of a part of the action; a part's name can be remapped like any other."""
+        """Return the channel of a part of the action; its name can be remapped like any other."""
         name = f"{self._name}/_action/{part}"
         is_service = kind != "topic"
         return f"{kind} {_rclpy.rclpy_resolve_name(self._node, name, False, is_service)}"
 
     def writer(self, kind: str, part: str, c_qos: Any) -> Writer:
-        """A writer."""
+        """Make a writer of a part of the action."""
         return Writer(self.channel(kind, part), ros_type(self._types[part]), profile(c_qos))
 
     def reader(self, kind: str, part: str, c_qos: Any) -> Reader:
-        """A reader."""
+        """Make a reader of a part of the action."""
         part_type = self._types[part]
         messages = {"topic": "", "request": "Request", "response": "Response"}[kind]
         message = getattr(part_type, messages) if messages else part_type
@@ -74,8 +74,8 @@ class _Action(Registered):
         )
 
 
-def _take(reader: Reader, identity: Callable[[Arrived], Any]) -> Any:
-    """The oldest message, behind what tells it from others; (None, None) if there is none."""
+def _pop(reader: Reader, identity: Callable[[Arrived], Any]) -> Any:
+    """Return the oldest message after its identity; (None, None) if there is none."""
     item = reader.pop()
     if item is None:
         return None, None
@@ -94,13 +94,13 @@ def _sends_request(service: str) -> Callable[[ActionClient, Any], int]:
     return send
 
 
-def _takes_response(service: str) -> Callable[[ActionClient, type], Any]:
-    """Return the method that gives the oldest response with its number, or (None, None)."""
-    return lambda self, _: _take(self.responses[service], lambda item: item.number)
+def _pops_response(service: str) -> Callable[[ActionClient, type], Any]:
+    """Return the method that pops the oldest response after its number, or (None, None)."""
+    return lambda self, _: _pop(self.responses[service], lambda item: item.number)
 
 
 class ActionClient(_Action, _rclpy.ActionClient):
-    """An action client that takes from readers."""
+    """An action client that reads from our readers."""
 
     def __init__(
         self, node: Node, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
@@ -120,7 +120,7 @@ class ActionClient(_Action, _rclpy.ActionClient):
         self.register(node, *self.requests.values(), *self.readers)
 
     send_goal_request, send_cancel_request, send_result_request = map(_sends_request, SERVICES)
-    take_goal_response, take_cancel_response, take_result_response = map(_takes_response, SERVICES)
+    take_goal_response, take_cancel_response, take_result_response = map(_pops_response, SERVICES)
 
     def is_action_server_available(self) -> bool:
         """As in rclpy."""
@@ -133,15 +133,15 @@ class ActionClient(_Action, _rclpy.ActionClient):
         )
 
     def take_feedback(self, _: type) -> Any:
-        """The oldest, or None."""
-        return _take(self.feedback, id)[1]
+        """Return the oldest feedback, or None."""
+        return _pop(self.feedback, id)[1]
 
     def take_status(self, _: type) -> Any:
-        """The oldest, or None."""
-        return _take(self.status, id)[1]
+        """Return the oldest status, or None."""
+        return _pop(self.status, id)[1]
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Have a wait set look at our readers."""
+        """Add our readers to a wait set."""
         wait_set.add_readers(self.readers)
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:
@@ -149,9 +149,9 @@ class ActionClient(_Action, _rclpy.ActionClient):
         return tuple(bool(reader.items) for reader in self.readers)
 
 
-def _takes_request(service: str) -> Callable[[ActionServer, type], Any]:
-    """Return the method that gives the oldest request behind its header, or (None, None)."""
-    return lambda self, _: _take(self.requests[service], request_id)
+def _pops_request(service: str) -> Callable[[ActionServer, type], Any]:
+    """Return the method that pops the oldest request after its identity, or (None, None)."""
+    return lambda self, _: _pop(self.requests[service], request_id)
 
 
 def _sends_response(service: str) -> Callable[[ActionServer, Any, Any], None]:
@@ -160,13 +160,13 @@ def _sends_response(service: str) -> Callable[[ActionServer, Any, Any], None]:
 
 
 class ActionServer(_Action, _rclpy.ActionServer):
-    """An action server that takes from readers."""
+    """An action server that reads from our readers."""
 
     def __init__(
         self, node: Node, clock: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
         feedback: Any, status: Any, result_timeout: float, *more: Any,
     ) -> None:  # fmt: skip
-        waitsets.WAITER.tell_time(clock)
+        waitsets.WAITER.attach_clock(clock)
         self._timeout_ns = int(result_timeout * 1e9)
         self._first_expiry_ns = NEVER
         self._goals: list[weakref.ref[ActionGoalHandle]] = []
@@ -183,7 +183,7 @@ class ActionServer(_Action, _rclpy.ActionServer):
         both = (*self.requests.values(), *self.responses.values())
         self.register(node, *both, self.feedback, self.status)
 
-    take_goal_request, take_cancel_request, take_result_request = map(_takes_request, SERVICES)
+    take_goal_request, take_cancel_request, take_result_request = map(_pops_request, SERVICES)
     send_goal_response, send_cancel_response, send_result_response = map(_sends_response, SERVICES)
 
     def publish_feedback(self, message: Any) -> None:
@@ -202,7 +202,7 @@ class ActionServer(_Action, _rclpy.ActionServer):
         endpoints.REGISTRY.publish(self.status, serialized(message))
 
     def add_goal(self, goal: ActionGoalHandle) -> None:
-        """A goal was accepted."""
+        """Keep an accepted goal, whose status is published until it expires."""
         self._goals.append(weakref.ref(goal, self._goals.remove))
 
     def notify_goal_done(self) -> None:
@@ -217,7 +217,7 @@ class ActionServer(_Action, _rclpy.ActionServer):
         return _ActionServer.expire_goals(self, most)
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Have a wait set look at our readers."""
+        """Add our readers to a wait set."""
         wait_set.add_readers([*self.requests.values()])
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:

@@ -1,12 +1,12 @@
-"""What virtual time takes for granted of rclpy's inside, and whether this rclpy grants it.
+"""What virtual time assumes of rclpy's internals, and the checks of these assumptions.
 
-None of this is rclpy's public interface, and any release may change it. So each assumption stands
-here by its name and is looked up before anything is replaced: an rclpy that breaks one is graded
-in real time, and the result says which. Looked up are attributes and the signatures that pybind11
-writes into docstrings; objects are made only where they need no DDS. That takes 4 ms of processor
-time; a node, without which there is no entity, takes ten times as much, and would say no more.
+None of this is rclpy's public interface, and any release may change it. So each assumption has a
+name here and is checked before anything is replaced: with an rclpy that breaks one, a run goes in
+real time, and the result says which. The checks read attributes and the signatures that pybind11
+writes into docstrings; they make objects only where these need no DDS. That costs 4 ms of processor
+time; a node, without which there is no entity, costs ten times as much, and would show no more.
 
-| group | who relies on it |
+| group | used by |
 |---|---|
 | `ENTITIES` | both sides: `endpoints`, `actions`, `waitsets`, `rclpy_clocks` |
 | `PROGRAM` | the submission's side: `clock.rclpy_time`, and `observe.stuck` by their names |
@@ -34,8 +34,8 @@ class Assumption(NamedTuple):
 
     Attributes:
         name: what it is about, "Executor._tasks".
-        check: says what is wrong, "Executor has no _tasks", or '' where it holds. Where it fails
-            with an exception, that is what is wrong.
+        check: returns what is wrong, "Executor has no _tasks", or '' where it holds. If it raises
+            an exception, that is what is wrong.
     """
 
     name: str
@@ -43,7 +43,10 @@ class Assumption(NamedTuple):
 
 
 def broken(*groups: Iterable[Assumption]) -> Message:
-    """What of these (of what both sides need) does not hold, if anything, in one line."""
+    """Return the first of these assumptions that does not hold, in one line; NOTHING if all hold.
+
+    Without groups: those that both sides need.
+    """
     for name, check in chain.from_iterable(groups or (ENTITIES,)):
         try:
             fault = check()
@@ -68,7 +71,7 @@ def _module(name: str) -> Any:
 
 
 def _has(module: str, owner: str, *names: str) -> list[Assumption]:
-    """A class, or with '' a module, has attributes."""
+    """Assume that a class, or with '' a module, has attributes."""
     return [Assumption(f"{owner}.{n}", partial(_has_no, module, owner, n)) for n in names]
 
 
@@ -81,7 +84,7 @@ def _has_no(module: str, owner: str, name: str) -> str:
 
 
 def _sets(module: str, owner: str, *names: str) -> list[Assumption]:
-    """A class gives its instances attributes when they are made."""
+    """Assume that `__init__` of a class sets attributes."""
     return [Assumption(f"{owner}.{n}", partial(_sets_no, module, owner, n)) for n in names]
 
 
@@ -90,12 +93,12 @@ def _sets_no(module: str, owner: str, name: str) -> str:
     return "" if name in init.__code__.co_names else f"{owner} has no {name}"
 
 
-def _takes(owner: str, **counts: int) -> list[Assumption]:
-    """Methods of a C++ class take so many arguments; a constructor's further ones are handed on."""
-    return [Assumption(f"{owner}.{n}", partial(_takes_other, owner, n, counts[n])) for n in counts]
+def _arity(owner: str, **counts: int) -> list[Assumption]:
+    """Assume the number of arguments of a C++ class's methods; a constructor may take more."""
+    return [Assumption(f"{owner}.{n}", partial(_arity_fault, owner, n, counts[n])) for n in counts]
 
 
-def _takes_other(owner: str, name: str, count: int) -> str:
+def _arity_fault(owner: str, name: str, count: int) -> str:
     kind = getattr(_module(CPP), owner, None)
     if kind is None:
         return f"there is no {owner}"
@@ -110,23 +113,23 @@ def _takes_other(owner: str, name: str, count: int) -> str:
 
 
 def _arguments(doc: str) -> tuple[int, int]:
-    """How many arguments, at most and at least, a function of pybind11 takes, without self."""
+    """Return how many arguments, at most and at least, a pybind11 function takes, without self."""
     signature = re.match(r"\w+\((.*)\)(?: -> .*)?$", doc.strip().partition("\n")[0])
     if signature is None:
         raise ValueError("no signature that we can read")
-    depth, arguments = 0, [""]
+    depth, parts = 0, [""]
     for sign in signature[1]:
         depth += (sign in "([{") - (sign in ")]}")
         if sign == "," and not depth:
-            arguments.append("")
+            parts.append("")
         else:
-            arguments[-1] += sign
-    own = [text.strip() for text in arguments if text.strip() and not text.startswith("self:")]
-    return len(own), sum(" = " not in text for text in own)
+            parts[-1] += sign
+    arguments = [text.strip() for text in parts if text.strip() and not text.startswith("self:")]
+    return len(arguments), sum(" = " not in text for text in arguments)
 
 
 def _quality_of_service() -> str:
-    """A C profile goes into Python: what a program asks for is known there."""
+    """Check that a C profile converts to Python's, where a program's request can be read."""
     from rclpy.qos import QoSProfile, qos_check_compatible
 
     fields = QoSProfile(depth=3).get_c_qos_profile().to_dict()
@@ -138,7 +141,7 @@ def _quality_of_service() -> str:
 
 
 def _request_headers() -> str:
-    """There can be ones of ours, which rclpy's Python hands on."""
+    """Check that headers can be subclassed; rclpy's Python passes those through."""
     cpp = _module(CPP)
     for name in ("rmw_service_info_t", "rmw_request_id_t"):
         kind: Any = type(name, (getattr(cpp, name),), {})
@@ -150,7 +153,7 @@ def _request_headers() -> str:
 
 
 def _overridden_clock() -> str:
-    """A ROS clock shows the time that it is told; all our clocks are such."""
+    """Check that a ROS clock shows an overridden time; all our clocks are ROS clocks."""
     cpp = _module(CPP)
     ros_time = int(cpp.ClockType.ROS_TIME)
     clock = cpp.Clock(ros_time)
@@ -161,53 +164,53 @@ def _overridden_clock() -> str:
 
 # What is assumed ------------------------------------------------------------------------------
 
-#: Of entities, wait sets and clocks in C++; what of Python hands them on.
+#: Of entities, wait sets and clocks in C++, and of the Python that passes them through.
 ENTITIES: tuple[Assumption, ...] = (
     # node, type, name, quality of service
-    *_takes("Publisher", __init__=4, publish=1, publish_raw=1, get_subscription_count=0),
-    *_takes("Publisher", get_topic_name=0, destroy_when_not_in_use=0),
-    *_takes("Subscription", __init__=4, take_message=2, get_publisher_count=0, get_topic_name=0),
-    *_takes("Subscription", destroy_when_not_in_use=0),
-    *_takes("Client", __init__=4, send_request=1, take_response=1, service_server_is_available=0),
-    *_takes("Client", destroy_when_not_in_use=0),
-    *_takes("Service", __init__=4, service_take_request=1, service_send_response=2),
-    *_takes("Service", destroy_when_not_in_use=0),
+    *_arity("Publisher", __init__=4, publish=1, publish_raw=1, get_subscription_count=0),
+    *_arity("Publisher", get_topic_name=0, destroy_when_not_in_use=0),
+    *_arity("Subscription", __init__=4, take_message=2, get_publisher_count=0, get_topic_name=0),
+    *_arity("Subscription", destroy_when_not_in_use=0),
+    *_arity("Client", __init__=4, send_request=1, take_response=1, service_server_is_available=0),
+    *_arity("Client", destroy_when_not_in_use=0),
+    *_arity("Service", __init__=4, service_take_request=1, service_send_response=2),
+    *_arity("Service", destroy_when_not_in_use=0),
     *_has(CPP, "Client", "service_name", "pointer"),
     *_has(CPP, "Service", "name", "pointer"),
     *_has(CPP, "Subscription", "pointer"),
     # name, namespace, context, and whatever follows
-    *_takes("Node", __init__=3),
-    *_takes("Context", ok=0),
-    *_takes("LifecycleStateMachine", __init__=2),
+    *_arity("Node", __init__=3),
+    *_arity("Context", ok=0),
+    *_arity("LifecycleStateMachine", __init__=2),
     *_has(CPP, "", "rclpy_serialize", "rclpy_deserialize"),
     Assumption("request headers", _request_headers),
-    *_takes("Node", get_count_clients=1, get_count_services=1),
-    *_takes("Node", get_count_publishers=1, get_count_subscribers=1),
+    *_arity("Node", get_count_clients=1, get_count_services=1),
+    *_arity("Node", get_count_publishers=1, get_count_subscribers=1),
     Assumption("quality of service", _quality_of_service),
     # node, type, name, quality of service of goal, result, cancel, feedback, status
-    *_takes("ActionClient", __init__=8, is_action_server_available=0, send_goal_request=1),
-    *_takes("ActionClient", send_cancel_request=1, send_result_request=1, take_goal_response=1),
-    *_takes("ActionClient", take_cancel_response=1, take_result_response=1, take_feedback=1),
-    *_takes("ActionClient", take_status=1, add_to_waitset=1, is_ready=1),
+    *_arity("ActionClient", __init__=8, is_action_server_available=0, send_goal_request=1),
+    *_arity("ActionClient", send_cancel_request=1, send_result_request=1, take_goal_response=1),
+    *_arity("ActionClient", take_cancel_response=1, take_result_response=1, take_feedback=1),
+    *_arity("ActionClient", take_status=1, add_to_waitset=1, is_ready=1),
     # node, clock, type, name, quality of service of the same five, time-out
-    *_takes("ActionServer", __init__=10, take_goal_request=1, take_cancel_request=1),
-    *_takes("ActionServer", take_result_request=1, send_goal_response=2, send_cancel_response=2),
-    *_takes("ActionServer", send_result_response=2, publish_feedback=1, publish_status=0),
-    *_takes("ActionServer", notify_goal_done=0, expire_goals=1, add_to_waitset=1, is_ready=1),
-    *_takes("ActionGoalHandle", __init__=2, get_status=0),
-    *_takes("WaitSet", __init__=7, clear_entities=0, wait=1, get_ready_entities=1, is_ready=2),
-    *_takes("WaitSet", add_subscription=1, add_client=1, add_service=1, add_guard_condition=1),
-    *_takes("WaitSet", add_timer=1, add_event=1),
-    *_takes("GuardCondition", __init__=1, trigger_guard_condition=0),
+    *_arity("ActionServer", __init__=10, take_goal_request=1, take_cancel_request=1),
+    *_arity("ActionServer", take_result_request=1, send_goal_response=2, send_cancel_response=2),
+    *_arity("ActionServer", send_result_response=2, publish_feedback=1, publish_status=0),
+    *_arity("ActionServer", notify_goal_done=0, expire_goals=1, add_to_waitset=1, is_ready=1),
+    *_arity("ActionGoalHandle", __init__=2, get_status=0),
+    *_arity("WaitSet", __init__=7, clear_entities=0, wait=1, get_ready_entities=1, is_ready=2),
+    *_arity("WaitSet", add_subscription=1, add_client=1, add_service=1, add_guard_condition=1),
+    *_arity("WaitSet", add_timer=1, add_event=1),
+    *_arity("GuardCondition", __init__=1, trigger_guard_condition=0),
     *_has(CPP, "GuardCondition", "pointer"),
     # clock, context, period, autostart
-    *_takes("Timer", __init__=4, reset_timer=0, cancel_timer=0, change_timer_period=1),
-    *_takes("Timer", is_timer_ready=0, time_until_next_call=0, destroy_when_not_in_use=0),
+    *_arity("Timer", __init__=4, reset_timer=0, cancel_timer=0, change_timer_period=1),
+    *_arity("Timer", is_timer_ready=0, time_until_next_call=0, destroy_when_not_in_use=0),
     *_has(CPP, "Timer", "pointer"),
     *_has(CPP, "EventHandle", "take_event"),
-    *_takes("Clock", __init__=1, get_now=0, get_ros_time_override_is_enabled=0),
-    *_takes("Clock", set_ros_time_override_is_enabled=1, set_ros_time_override=1),
-    *_takes("Clock", add_clock_callback=4, remove_clock_callback=1),
+    *_arity("Clock", __init__=1, get_now=0, get_ros_time_override_is_enabled=0),
+    *_arity("Clock", set_ros_time_override_is_enabled=1, set_ros_time_override=1),
+    *_arity("Clock", add_clock_callback=4, remove_clock_callback=1),
     *_has(CPP, "ClockType", "ROS_TIME", "STEADY_TIME", "SYSTEM_TIME"),
     Assumption("a clock's override", _overridden_clock),
     *_has(CPP, "", "RCLError", "rclpy_resolve_name", "rclpy_get_publisher_names_and_types_by_node"),
@@ -226,8 +229,8 @@ PROGRAM: tuple[Assumption, ...] = (
     *_has("rclpy.node", "Node", "__init__", "handle", "get_node_names_and_namespaces"),
     *_has("rclpy.node", "Node", "count_publishers", "count_subscribers"),
     # what `clock.rclpy_time` puts in its place
-    *_takes("ClockEvent", __init__=0, wait_until_steady=2, wait_until_system=2, wait_until_ros=2),
-    *_takes("ClockEvent", set=0, clear=0, is_set=0),
+    *_arity("ClockEvent", __init__=0, wait_until_steady=2, wait_until_system=2, wait_until_ros=2),
+    *_arity("ClockEvent", set=0, clear=0, is_set=0),
 )
 
 #: Of executors, nodes and callback groups.

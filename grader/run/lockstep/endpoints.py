@@ -41,18 +41,18 @@ def install(registry: EndpointRegistry) -> None:
 
 
 def profile(c_qos: Any) -> QoSProfile:
-    """Rclpy's Python form of a C profile."""
+    """Convert a C profile of rclpy's to its Python form."""
     return QoSProfile(**c_qos.to_dict())
 
 
 def ros_type(python_type: type) -> str:
-    """A message or service class's ROS name: "geometry_msgs/msg/Twist"."""
+    """Return the ROS name of a message or service class: "geometry_msgs/msg/Twist"."""
     package, kind, *_ = python_type.__module__.split(".")
     return f"{package}/{kind}/{python_type.__name__}"
 
 
 def serialized(message: Any) -> bytes:
-    """A message in CDR; what is wrong with it, rclpy says as it does when it publishes."""
+    """Serialise a message to CDR; a wrong one raises what rclpy's publish would."""
     kind = type(message)
     if kind._TYPE_SUPPORT is None:
         pass_on(kind.__import_type_support__)
@@ -61,10 +61,10 @@ def serialized(message: Any) -> bytes:
 
 
 def deserialized(data: bytes, kind: Any) -> Any:
-    """The message of a class that bytes in CDR mean.
+    """Deserialise a message of a class from CDR.
 
     Raises:
-        RMWError (of rclpy): they mean none.
+        RMWError (of rclpy): the bytes are no such message.
     """
     if kind._TYPE_SUPPORT is None:
         kind.__import_type_support__()
@@ -80,17 +80,17 @@ class Node(_rclpy.Node):
 
 
 class Registered:
-    """What our endpoint classes have in common.
+    """The base of our endpoint classes.
 
     Attributes:
-        is_valid: whether rclpy is up; where it is not, rclpy's own methods say so.
+        is_valid: whether rclpy is up; where it is not, rclpy's own methods raise the error.
     """
 
     endpoints: list[Endpoint]
     is_valid: Callable[[], bool]
 
     def register(self, node: Node, *endpoints: Endpoint) -> None:
-        """Have the registry know the endpoints for as long as this object lives."""
+        """Register the endpoints for as long as this object lives."""
         self.is_valid = node.is_valid
         self.endpoints = list(endpoints)
         for endpoint in endpoints:
@@ -98,7 +98,7 @@ class Registered:
         weakref.finalize(self, REGISTRY.remove, self.endpoints).atexit = False
 
     def connect(self, method: Callable[..., Any], *message: Any) -> None:
-        """Connect what a message is to reach; where rclpy is down, let its own method say so."""
+        """Connect the endpoints; where rclpy is down, call its method, which raises the error."""
         REGISTRY.connect()
         if not self.is_valid():
             pass_on(method, self, *message)
@@ -143,7 +143,7 @@ class Publisher(Registered, _rclpy.Publisher):
 
 
 class Subscription(Registered, _rclpy.Subscription):
-    """A subscription that takes from a reader."""
+    """A subscription that reads from our reader."""
 
     def __init__(self, node: Node, msg_type: type, topic: str, c_qos: Any, *more: Any) -> None:
         if more and more[0] is not None:  # a content filter, since rclpy 7.1.8
@@ -166,11 +166,11 @@ class Subscription(Registered, _rclpy.Subscription):
         pass_on(_Subscription.set_content_filter, self, *args)
 
     def _refuse_filter(self) -> None:
-        """We do not filter."""
+        """Refuse content filters: we do not filter."""
         REGISTRY.refuse(msg("subscribes with a content filter"))
 
     def take_message(self, _: type, raw: bool) -> Any:
-        """The oldest message in the reader with what is known of it, or None."""
+        """Return the oldest message in the reader with its info, or None."""
         while (item := self.reader.pop()) is not None:
             try:
                 message = item.data if raw else _deserialize(item.data, self.reader.message)
@@ -186,7 +186,7 @@ class Subscription(Registered, _rclpy.Subscription):
 
 
 class LifecycleStateMachine(Registered, _rclpy.LifecycleStateMachine):
-    """A lifecycle node's states; rclpy's C++ tells of them, and only the graph shows where."""
+    """A lifecycle node's states; rclpy's C++ publishes them, we only add the topic to the graph."""
 
     def __init__(self, node: Node, enable_communication_interface: bool) -> None:
         pass_on(_StateMachine.__init__, self, node, enable_communication_interface)
@@ -197,20 +197,20 @@ class LifecycleStateMachine(Registered, _rclpy.LifecycleStateMachine):
 
 
 class RequestId(_rclpy.rmw_request_id_t):
-    """What tells a request, or the response to it, from others; made by `request_id`."""
+    """The identity of a request and of its response; made by `request_id`."""
 
     sequence_number = 0  # rclpy's cannot be set
     request: Arrived
 
 
 class RequestHeader(_rclpy.rmw_service_info_t):
-    """What comes with a request or a response of a service; made by `header`."""
+    """The header of a request or a response of a service; made by `header`."""
 
     request_id: RequestId | None = None  # rclpy's cannot be set
 
 
 def request_id(item: Arrived) -> RequestId:
-    """The identity of what has arrived."""
+    """Return the identity of an arrived request or response."""
     # rclpy's classes have no constructor
     made = RequestId.__new__(RequestId)
     made.sequence_number, made.request = item.number, item
@@ -218,14 +218,14 @@ def request_id(item: Arrived) -> RequestId:
 
 
 def header(item: Arrived) -> RequestHeader:
-    """The header of what has arrived."""
+    """Return the header of an arrived request or response."""
     made = RequestHeader.__new__(RequestHeader)
     made.request_id = request_id(item)
     return made
 
 
 class Client(Registered, _rclpy.Client):
-    """A service client that takes from a reader."""
+    """A service client that reads from our reader."""
 
     def __init__(self, node: Node, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
         pass_on(_Client.__init__, self, node, srv_type, name, c_qos, *more)
@@ -247,7 +247,7 @@ class Client(Registered, _rclpy.Client):
         return REGISTRY.ask(self.writer, self.reader, serialized(request))
 
     def take_response(self, _: type) -> Any:
-        """The oldest response in the reader, or (None, None)."""
+        """Return the oldest response in the reader, or (None, None)."""
         item = self.reader.pop()
         if item is None:
             return None, None
@@ -255,7 +255,7 @@ class Client(Registered, _rclpy.Client):
 
 
 class Service(Registered, _rclpy.Service):
-    """A service that takes from a reader."""
+    """A service that reads from our reader."""
 
     def __init__(self, node: Node, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
         pass_on(_Service.__init__, self, node, srv_type, name, c_qos, *more)
@@ -265,7 +265,7 @@ class Service(Registered, _rclpy.Service):
         self.register(node, self.reader, self.writer)
 
     def service_take_request(self, _: type) -> Any:
-        """The oldest request in the reader, or (None, None)."""
+        """Return the oldest request in the reader, or (None, None)."""
         item = self.reader.pop()
         if item is None:
             return None, None
@@ -280,7 +280,7 @@ class Service(Registered, _rclpy.Service):
 
 
 def import_messages(packages: Iterable[str]) -> None:
-    """Import what there is of these packages' interfaces, and load their type supports."""
+    """Import the interfaces of these packages that are installed, and load their type supports."""
     for package in (*EVERY_NODE, *packages):
         for kind in KINDS:
             with suppress(ImportError):

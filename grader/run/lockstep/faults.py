@@ -1,10 +1,10 @@
-"""Whose an exception is: the program's, which called something wrongly, or our own.
+"""Decides whether an exception is the program's, which called something wrongly, or ours.
 
-The innermost frame of its traceback tells. A mistake of a program surfaces in its own code, in
-rclpy or in Python; one of ours in `grader/run`. Where a program's call goes through our code, the
+The innermost frame of its traceback decides. A program's mistake surfaces in its own code, in rclpy
+or in Python; one of ours in `grader/run`. Where a program's call goes through our code, the
 innermost frame would be ours all the same: rclpy's C++ has no frames, and what we have replaced in
 Python must raise what Python raises. Both go through functions of this module, and these are the
-only frames of ours that stand for the program: `pass_on` and `as_python_does`.
+only frames of ours that count as the program's: `pass_on` and `as_python_does`.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ _NOBODYS = (RecursionError, MemoryError)
 def _go_on(_: Message) -> None: ...
 
 
-#: Called with what `whose` says of an exception of ours; in a submission's process it does not
-#: return. The simulator's process has one place that sees all exceptions, and needs no call.
+#: Called with the answer of `whose` for an exception of ours; in a submission's process it does not
+#: return. The simulator's process handles all exceptions in one place, and needs no call.
 on_fault: Callable[[Message], None] = _go_on
 
 
@@ -49,7 +49,7 @@ _THE_PROGRAMS: frozenset[CodeType] = frozenset({pass_on.__code__, as_python_does
 
 
 def whose(error: BaseException) -> str:
-    """'' for an exception of the program's; for one of ours "TypeError in graph.py, line 12"."""
+    """Return '' for an exception of the program's, "TypeError in graph.py, line 12" for ours."""
     trace = error.__traceback__
     if trace is None or not isinstance(error, Exception) or isinstance(error, _NOBODYS):
         return ""
@@ -63,18 +63,18 @@ def whose(error: BaseException) -> str:
 
 
 def failed(what: str) -> Message:
-    """The sentence for a result's flags; `what` as from `whose`."""
+    """Return the sentence for a result's flags; `what` as from `whose`."""
     return msg("virtual time itself failed ({where})", where=what)
 
 
 def report(error: BaseException) -> None:
-    """Tell `on_fault`, if the exception is ours."""
+    """Call `on_fault` if the exception is ours."""
     if what := whose(error):
         on_fault(failed(what))
 
 
 def guarded(function: _Function) -> _Function:
-    """The same function, that reports a fault of ours before the program can catch it."""
+    """Wrap a function so that a fault of ours is reported before the program can catch it."""
 
     @functools.wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
@@ -100,14 +100,14 @@ def is_ours(filename: str) -> bool:
 
 
 def is_loader(filename: str) -> bool:
-    """Whether a file is of Python's, and loads programs."""
+    """Whether a file is one of Python's that load programs."""
     return filename.startswith(("<frozen runpy", "<frozen importlib")) or filename.endswith(
         ("/runpy.py", "/importlib/__init__.py")
     )
 
 
 def hide_our_frames(error: BaseException) -> None:
-    """Give an exception, and those that led to it, the tracebacks of a student's desk."""
+    """Remove our frames from the tracebacks of an exception and of those that led to it."""
     seen: list[BaseException] = []
     chain: list[BaseException | None] = [error]
     while chain:

@@ -1,19 +1,19 @@
-"""The link between a submission's process and the simulator: what each side says, as bytes.
+"""The protocol between a submission's process and the simulator: packets, encoded as bytes.
 
 The student's process drives, over a SOCK_SEQPACKET socket pair:
 
 | from | packet | meaning |
 |---|---|---|
 | simulator | `Table` | these endpoints of mine are new, these are gone; first of all packets |
-| student | `Interests` | this is what I read and publish |
+| student | `Interests` | I read and publish this |
 | student | `Advance` | run until this tick, but not more than so many ticks |
 | simulator | `Reply` | this tick is over; here are messages, some of ticks to come |
 | student | `Note` | something about the student's process; not answered |
 
-With the first table the simulator hands out the end of a second socket pair, on which `Mail` goes
-to the simulator. The tick that it has reached the student's side writes at the start of a page that
-both have from the grader (`PROGRESS`). The simulator looks at both when it is asked to advance, and
-when the student's process ends or stalls without a word: what that has sent before counts.
+With the first table the simulator sends the end of a second socket pair, on which `Mail` goes to
+the simulator. The student's side writes the tick that it has reached at the start of a page that
+both have from the grader (`PROGRESS`). The simulator reads both when it is asked to advance, and
+when the student's process ends or stalls silently: what was sent before counts.
 
 Messages travel here and not by DDS, in the bytes that DDS would have carried (CDR): DDS delivers
 when it likes, and a message that it has delivered late would change the run.
@@ -47,7 +47,7 @@ BOOT_NS = 1000 * 10**9
 #: No deadline [ns since the start of the run].
 NEVER = 1 << 62
 
-#: The most that is handed to the system at once: a socket takes no longer packet as a whole.
+#: The most that is sent at once: a socket accepts no longer packet as a whole.
 PIECE_BYTES = 150_000
 #: The longest packet from the simulator: a picture of the window takes 0.75 MB, and some may come
 #: at once.
@@ -56,7 +56,7 @@ LIMIT_BYTES = 64_000_000
 MORE, LAST = b"+", b"-"
 
 #: The tick that the student's side has reached, at the start of a page that both see: it is known
-#: there when that side ends without a word. So much of the page is for it: what can be mapped.
+#: there when that side ends silently. Its part of the page is the least that can be mapped.
 PROGRESS, PROGRESS_BYTES = Struct("<Q"), mmap.PAGESIZE
 
 _HEAD = Struct("<cQIQ?")
@@ -64,7 +64,7 @@ _PARCEL = Struct("<IIQQI")
 _CHANNEL = re.compile(r"[a-z]+ /[\w/]{0,300}", re.ASCII)
 _TOPIC = re.compile(r"/[\w/]{0,300}", re.ASCII)
 _TYPE = re.compile(r"\w{1,100}/\w{1,10}/\w{1,200}", re.ASCII)
-#: So much is taken of each text of a remark [characters].
+#: The most that is kept of each text of a remark [characters].
 _LONGEST_REMARK = 1000
 
 
@@ -72,14 +72,14 @@ class ProtocolError(Exception):
     """A packet that neither side of ours sends."""
 
 
-#: Messages, requests and responses that a submission may send in a run, whoever hears them: five a
-#: millisecond would be so many in 20 s; and their bytes. That it says so itself is believed: it has
-#: other limits.
+#: The most messages, requests and responses that a submission may send in a run, heard or not: five
+#: a millisecond for 20 s; and their bytes. Its process counts them, and is believed: other limits
+#: hold besides.
 MOST_SENT, MOST_SENT_BYTES = 100_000, 2_000_000_000
 
 
 class State(IntEnum):
-    """What a `Reply` says about the run."""
+    """The state of the run in a `Reply`."""
 
     RUNNING = 0
     OVER = 1
@@ -90,19 +90,19 @@ class Kind(IntEnum):
 
     STUCK = 1  # its threads wait for something that can no longer happen, in a callback
     WAITING = 2  # its threads wait for something that will not come, as a program may at its end
-    UNSUPPORTED = 3  # it did what virtual time cannot follow: `text` says what
-    FAILED = 4  # virtual time does not work here; `text` says why, as a clause
+    UNSUPPORTED = 3  # it did what virtual time cannot follow, named in `remark`
+    FAILED = 4  # virtual time does not work here; `remark` is the reason, as a clause
     FLOODING = 5  # it has sent more than `MOST_SENT`, or `MOST_SENT_BYTES`
 
 
 class Parcel(NamedTuple):
-    """A message on its way.
+    """A message on the link.
 
     Attributes:
-        endpoint: the simulator's end of its way, by its number in the tables.
-        client: which of the student's clients asked for it, or asks; 0 for a topic.
-        number: of a request, by which its response is known; on a topic, which of its messages.
-        tick: in which it was sent.
+        endpoint: the number of the simulator's endpoint in the tables.
+        client: the number of the student's client that asks or is answered; 0 for a topic.
+        number: the sequence number of the request; on a topic, of the message.
+        tick: the tick in which it was sent.
         data: the message in CDR, as DDS would carry it.
     """
 
@@ -133,7 +133,7 @@ class EndpointInfo:
 class Table:
     """Endpoints that appeared and disappeared since the last table.
 
-    What is gone may still have sent something that comes with the next `Reply`.
+    A removed one may still have sent something that comes with the next `Reply`.
     """
 
     added: tuple[EndpointInfo, ...]
@@ -154,7 +154,7 @@ class Advance:
 
     Attributes:
         reached: the tick up to which the student's side has used what was foreseen.
-        has_mailed: there is mail since the last one.
+        has_mailed: whether mail was sent since the last one.
     """
 
     target: int
@@ -188,7 +188,7 @@ class Mail:
 
 @dataclass(frozen=True)
 class Note:
-    """Something about the student's process, with what there is to say of it."""
+    """A fact about the student's process, with a remark on it."""
 
     kind: Kind
     remark: Message = NOTHING
@@ -198,7 +198,7 @@ Packet = Table | Interests | Advance | Reply | Mail | Note
 
 
 def encode(packet: Packet) -> bytes:
-    """A packet's bytes."""
+    """Encode a packet."""
     match packet:
         case Advance(target, most, reached, has_mailed):
             return _HEAD.pack(b"A", target, most, reached, has_mailed)
@@ -216,10 +216,10 @@ def encode(packet: Packet) -> bytes:
 
 
 def decode(data: bytes) -> Packet:
-    """The packet that bytes mean.
+    """Decode a packet.
 
     Raises:
-        ProtocolError: they mean none.
+        ProtocolError: the bytes are no packet.
     """
     try:
         match data[:1]:
@@ -288,11 +288,11 @@ def _interests(data: Any) -> Interests:
     return Interests(tuple(reads), tuple((topic, kind) for topic, kind in publishes))
 
 
-# Through a socket: whole packets, however long they are --------------------------------------
+# Packets of any length over a socket ---------------------------------------------------------
 
 
 def pieces(data: bytes) -> Iterator[bytes]:
-    """What is to be sent, one after the other, so that a `PacketReader` reads the packet."""
+    """Split a packet into the pieces that are sent one by one, for a `PacketReader`."""
     if len(data) <= PIECE_BYTES:
         yield data
         return
@@ -302,7 +302,7 @@ def pieces(data: bytes) -> Iterator[bytes]:
 
 
 class PacketReader:
-    """Puts pieces together again."""
+    """Reads packets from a socket, and joins the pieces of long ones."""
 
     def __init__(self, link: socket.socket, limit_bytes: int = LIMIT_BYTES) -> None:
         self._link = link
@@ -311,7 +311,7 @@ class PacketReader:
         self._length = 0
 
     def read(self) -> bytes | None:
-        """Receive once: a packet, or b"" when the other side has gone; None: there is more of it.
+        """Receive once: a packet, b"" when the other side has gone, None for part of a packet.
 
         Raises:
             OSError: the other side has gone.

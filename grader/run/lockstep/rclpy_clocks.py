@@ -6,56 +6,56 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
 from grader.run.lockstep.protocol import BOOT_NS, EPOCH_NS
 
 
 def install(
-    rclpy: Any,
     now_ns: Callable[[], int],
     charge: Callable[[], None],
     unpaid_ns: Callable[[], int] = lambda: 0,
 ) -> RclpyClocks:
-    """Replace rclpy's clocks; whoever owns the time calls `RclpyClocks.set_now` when it moves.
+    """Replace rclpy's clocks; call `RclpyClocks.set_now` whenever the time moves.
 
     Args:
         charge: called when a clock is asked for the time.
-        unpaid_ns: how much later than `now_ns` a clock says it is when it is asked.
+        unpaid_ns: added to the time that a clock returns when it is asked.
     """
     clocks = RclpyClocks(now_ns)
-    rclpy.Clock = _clock_class(rclpy, clocks, charge, unpaid_ns)
+    _rclpy.Clock = _clock_class(clocks, charge, unpaid_ns)
     return clocks
 
 
 class RclpyClocks:
-    """rclpy's clocks in this process. Only those that timers attach on are told the time."""
+    """rclpy's clocks in this process. Only the attached ones, which have timers, are updated."""
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self.now_ns = now_ns
-        self._followers: list[weakref.ref[Any]] = []
+        self._attached: list[weakref.ref[Any]] = []
 
-    def tell(self, clock: Any) -> None:
-        """From now on this clock is told the time."""
-        if not clock.is_told:
-            clock.is_told = True
-            self._followers.append(weakref.ref(clock, self._followers.remove))
-            clock.tell(self.now_ns())
+    def attach(self, clock: Any) -> None:
+        """Update this clock from now on."""
+        if not clock.is_attached:
+            clock.is_attached = True
+            self._attached.append(weakref.ref(clock, self._attached.remove))
+            clock.set_now(self.now_ns())
 
     def set_now(self, now_ns: int) -> None:
-        """The time has moved."""
-        for reference in self._followers:
+        """Move the attached clocks to this time."""
+        for reference in self._attached:
             clock = reference()
             if clock is not None:
-                clock.tell(now_ns)
+                clock.set_now(now_ns)
 
 
 def _clock_class(
-    rclpy: Any,
     clocks: RclpyClocks,
     charge: Callable[[], None],
     unpaid_ns: Callable[[], int],
 ) -> type:
-    base = rclpy.Clock
-    kinds, point = rclpy.ClockType, rclpy.rcl_time_point_t
+    base = _rclpy.Clock
+    kinds, point = _rclpy.ClockType, _rclpy.rcl_time_point_t
 
     class VirtualClock(base):  # type: ignore[misc, valid-type]
         """A clock of any type: underneath, a ROS clock whose time is set by us."""
@@ -65,12 +65,12 @@ def _clock_class(
             base.set_ros_time_override_is_enabled(self, True)
             self.kind = kinds(int(kind))
             self.offset_ns = BOOT_NS if self.kind == kinds.STEADY_TIME else EPOCH_NS
-            self.is_told = False
+            self.is_attached = False
             # use_sim_time: then the time is what comes on /clock
             self.is_overridden = False
             self.override_ns = 0
 
-        def tell(self, now_ns: int) -> None:
+        def set_now(self, now_ns: int) -> None:
             if not self.is_overridden:
                 self._set(self.offset_ns + now_ns)
 

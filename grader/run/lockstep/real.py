@@ -1,6 +1,6 @@
-"""The real clock and thread primitives, taken before anything of them is replaced.
+"""The real clock and thread primitives, kept from before they are replaced.
 
-Import this first, and `time` for anything else never.
+Import this first; never use `time` for the real clock.
 """
 
 import _thread

@@ -1,4 +1,4 @@
-"""What this process sends and receives: its readers and writers, and what has arrived in them.
+"""The readers and writers of this process, and the messages that have arrived in them.
 
 rclpy makes its entities in DDS as ever, but no message goes that way: DDS delivers when it likes.
 A message goes, in the bytes that DDS would carry, to the readers of this process at once, and over
@@ -37,8 +37,8 @@ class Arrived:
         data: in CDR.
         time_ns: when it was sent, on the clock of the run.
         number: of a request, or which of a topic's messages it is.
-        client: who has asked: the reader for responses in this process, or the number by which the
-            other process knows one of its clients; None for a topic.
+        client: the client of a request: its reader for responses in this process, or the number
+            by which the other process knows it; None for a topic.
     """
 
     data: bytes
@@ -87,7 +87,7 @@ class Endpoint:
 
 @dataclass(eq=False)
 class Reader(Endpoint):
-    """A reader; `items` have arrived and not been taken by the program.
+    """A reader; `items` have arrived and were not yet read by the program.
 
     Attributes:
         message: the class of its messages.
@@ -140,7 +140,7 @@ class EndpointRegistry:
     """
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
-        """`now_ns` tells the time that messages are stamped with."""
+        """`now_ns` returns the time that messages are stamped with."""
         self.writers: list[Writer] = []
         self.readers: list[Reader] = []
         self.others: dict[int, Endpoint] = {}
@@ -156,7 +156,7 @@ class EndpointRegistry:
     # Which there are --------------------------------------------------------------------------
 
     def add(self, endpoint: Endpoint) -> None:
-        """A reader or writer was made."""
+        """Register a new reader or writer."""
         self.changed = self._is_unpaired = True
         if isinstance(endpoint, Writer):
             self.writers.append(endpoint)
@@ -164,7 +164,7 @@ class EndpointRegistry:
             self.readers.append(endpoint)
 
     def remove(self, endpoints: Iterable[Endpoint]) -> None:
-        """Readers and writers are gone; removing one twice does no harm."""
+        """Remove readers and writers; removing one twice does no harm."""
         for endpoint in endpoints:
             of_its_kind: list[Any] = self.writers if isinstance(endpoint, Writer) else self.readers
             if endpoint in of_its_kind:
@@ -192,7 +192,7 @@ class EndpointRegistry:
             reader.hears = reader in heard and reader.kind == "topic"
 
     def count_meetings(self) -> None:
-        """Count which endpoints of a topic meet, and have met for the first time."""
+        """Count the matched endpoints of each topic, and those matched for the first time."""
         others = self.others.values()
         for endpoint in (*self.writers, *self.readers, *others):
             endpoint.matched = 0
@@ -214,34 +214,34 @@ class EndpointRegistry:
         self.pair()
 
     def before_question(self) -> None:
-        """The program is about to ask for its counterparts."""
+        """Called before the program asks for its counterparts."""
         self.pair()
 
     def count_readers(self, writer: Writer) -> int:
-        """How many readers hear a writer."""
+        """Return how many readers hear a writer."""
         return len(writer.local) + len(writer.remote)
 
     def count_writers(self, reader: Reader) -> int:
-        """How many writers a reader hears."""
+        """Return how many writers a reader hears."""
         writers = (*self.writers, *_of_kind(Writer, self.others))
         return sum(reader in writer.local for writer in writers)
 
     # Messages ---------------------------------------------------------------------------------
 
     def publish(self, writer: Writer, data: bytes) -> None:
-        """Send a message to all who read the topic, after `connect`."""
+        """Send a message to all readers of the topic, after `connect`."""
         writer.sent += 1
         self.deliver(writer, Arrived(data, self.now_ns(), writer.sent))
 
     def deliver(self, writer: Writer, arrived: Arrived) -> None:
-        """Have a writer's message arrive in this process."""
+        """Deliver a writer's message to the readers of this process."""
         if writer.is_lasting:
             writer.history.append(arrived)
         for reader in writer.local:
             reader.items.append(arrived)
 
     def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
-        """Send a client's request, after `connect`; returns its number.
+        """Send a client's request, after `connect`; return its number.
 
         The response comes into `client`.
         """
@@ -280,7 +280,7 @@ def suits(writer: Endpoint, reader: Endpoint) -> bool:
 
 
 def policies(reliability: int, durability: int, depth: int) -> QoSProfile:
-    """The quality of service of a simulator's endpoint, from what a table says about it."""
+    """Return the quality of service of a simulator's endpoint, from its entry in a table."""
     return QoSProfile(
         depth=depth,
         reliability=QoSReliabilityPolicy(reliability),

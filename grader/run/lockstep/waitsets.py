@@ -1,4 +1,4 @@
-"""rclpy's wait sets, timers, guards, events: they look into our readers, and wait in virtual time.
+"""rclpy's wait sets, timers, guards, events: they read our readers, and wait in virtual time.
 
 Used by both sides of the link; the simulator never waits.
 """
@@ -18,15 +18,15 @@ _WaitSet, _Timer, _EventHandle = _rclpy.WaitSet, _rclpy.Timer, _rclpy.EventHandl
 
 
 class Waiter:
-    """How a process waits. As it stands its wait sets only look: the simulator never waits."""
+    """How a process waits. This base class never waits: the simulator's wait sets only poll."""
 
-    def __init__(self, tell_time: Callable[[Any], None]) -> None:
-        """`tell_time` is called with a clock that a timer hangs on."""
-        self.tell_time = tell_time
+    def __init__(self, attach_clock: Callable[[Any], None]) -> None:
+        """`attach_clock` is called with the clock of each timer."""
+        self.attach_clock = attach_clock
 
     @property
     def graph_epoch(self) -> int:
-        """Counts what changes in the graph: afterwards DDS may have events for us."""
+        """The number of changes of the graph: after one, DDS may have events for us."""
         return -1
 
     @property
@@ -35,27 +35,27 @@ class Waiter:
         return True
 
     def await_dds(self, what: str) -> None:
-        """Really wait a little for DDS; where that is in vain, the run cannot be made."""
+        """Wait a little for DDS, in real time; end the run where that is in vain."""
 
-    def look_first(self) -> None:
-        """A wait set is about to look whether something is ready."""
+    def before_wait(self) -> None:
+        """Called before a wait set checks whether something is ready."""
 
     def found_work(self) -> None:
-        """A wait set has found something to do."""
+        """Called when a wait set has found something to do."""
 
     def found_nothing(self) -> None:
-        """A wait set that must not wait has found nothing."""
+        """Called when a wait set that must not wait has found nothing."""
 
     def wait_for(self, wait_set: WaitSet, deadline_ns: int) -> None:
         """Wait until something may be ready."""
         raise AssertionError("the simulator never waits for its node")
 
     def deadline(self, timeout_ns: int) -> int:
-        """When a time-out from now ends."""
+        """Return when a time-out from now ends."""
         return 0
 
     def poke(self, cause: object) -> None:
-        """Something that a wait set may hold has changed."""
+        """Called when something that a wait set may hold has changed."""
 
 
 WAITER: Waiter
@@ -81,9 +81,9 @@ class GuardCondition(_rclpy.GuardCondition):
 
 
 class Timer(_rclpy.Timer):
-    """A timer whose changes are noticed by those who wait for it."""
+    """A timer whose changes wake those who wait for it."""
 
-    #: somebody wants it destroyed
+    #: it is to be destroyed
     is_gone = False
 
     def destroy_when_not_in_use(self) -> None:
@@ -92,7 +92,7 @@ class Timer(_rclpy.Timer):
         _Timer.destroy_when_not_in_use(self)
 
     def __init__(self, clock: Any, *args: Any) -> None:
-        WAITER.tell_time(clock)  # first: from this time the period counts
+        WAITER.attach_clock(clock)  # first: from this time the period counts
         pass_on(_Timer.__init__, self, clock, *args)
 
     def reset_timer(self) -> None:
@@ -123,22 +123,22 @@ class MatchedStatus(_rclpy.rmw_matched_status_t):
 class EventHandle(_rclpy.EventHandle):
     """An event of DDS: counterparts have come or gone, or their quality of service does not fit.
 
-    We know them as soon as they are there, and tell of those that come and go. Of what does not fit
-    DDS tells more than we know: whoever looks waits until it does. Other events tell of real time
-    or of real networks, and never come.
+    We know counterparts as soon as they are there, and report those that come and go. About what
+    does not fit DDS knows more than we do, so a wait set waits until DDS has reported it. Other
+    events are about real time or real networks, and never come.
     """
 
-    #: somebody wants it destroyed
+    #: it is to be destroyed
     is_gone = False
 
     def __init__(self, parent: Any, kind: Any) -> None:
         pass_on(_EventHandle.__init__, self, parent, kind)
         self._endpoint: Endpoint = parent.endpoints[0]
         self._counts_matches = kind.name.endswith("_MATCHED")
-        #: DDS must tell of it
+        #: only DDS can report it
         self.is_unfit = bool(kind.name.endswith("_INCOMPATIBLE_QOS"))
-        #: how many there had been and were when the program was told
-        self._told = (0, 0)
+        #: how many there had been and were at the last report to the program
+        self._reported = (0, 0)
 
     def destroy_when_not_in_use(self) -> None:
         """As in rclpy; a wait set may still hold it."""
@@ -146,12 +146,12 @@ class EventHandle(_rclpy.EventHandle):
         _EventHandle.destroy_when_not_in_use(self)
 
     def is_due(self) -> bool:
-        """Whether there is something to tell; DDS may still have to find it."""
+        """Whether there is something to report; DDS may still have to find it."""
         if self.is_gone:
             return False
         if self.is_unfit:
-            return self._endpoint.unfit > self._told[0]
-        return self._counts_matches and self._matches() != self._told
+            return self._endpoint.unfit > self._reported[0]
+        return self._counts_matches and self._matches() != self._reported
 
     def _matches(self) -> tuple[int, int]:
         return self._endpoint.matches, self._endpoint.matched
@@ -161,13 +161,13 @@ class EventHandle(_rclpy.EventHandle):
         if not self._counts_matches:
             status = pass_on(_EventHandle.take_event, self)
             if self.is_unfit and status is not None:
-                self._told = (status.total_count, 0)
+                self._reported = (status.total_count, 0)
             return status
         status = MatchedStatus.__new__(MatchedStatus)
-        before, self._told = self._told, self._matches()
-        status.total_count, status.current_count = self._told
-        status.total_count_change = self._told[0] - before[0]
-        status.current_count_change = self._told[1] - before[1]
+        before, self._reported = self._reported, self._matches()
+        status.total_count, status.current_count = self._reported
+        status.total_count_change = self._reported[0] - before[0]
+        status.current_count_change = self._reported[1] - before[1]
         return status
 
 
@@ -175,8 +175,9 @@ class WaitSet:
     """As `_rclpy.WaitSet`, in Python.
 
     Attributes:
-        end_ns: when the time is out for whoever waits; a time-out like a timer that is ready then.
-        is_out: whether it was after `wait`.
+        end_ns: when the waiting executor's time is out; this works like a timer.
+        is_out: whether the time was out after `wait`.
+        ready: the handles of all that was ready after `wait`, but guard conditions and events.
         ready_guards: the guard conditions that were triggered.
     """
 
@@ -195,7 +196,7 @@ class WaitSet:
         self._events: list[EventHandle] = []
         self._readers: list[tuple[Any, Reader]] = []
         self._kinds: dict[Any, str] = {}
-        self._ready: list[Any] = []
+        self.ready: list[Any] = []
         self._ready_events: list[bool] = []
         self._quiet_epoch = -1
         self._has_work = False
@@ -237,12 +238,12 @@ class WaitSet:
         return len(self._events) - 1
 
     def add_readers(self, readers: Sequence[Reader]) -> None:
-        """Look at these as well: an action's."""
+        """Add the readers of an action."""
         self.readers.extend(readers)
 
     def wait(self, timeout_ns: int) -> None:
         """Wait until something is ready or the time is out (negative: never)."""
-        WAITER.look_first()
+        WAITER.before_wait()
         deadline_ns = WAITER.deadline(timeout_ns)
         while not self._collect():
             if timeout_ns == 0:
@@ -254,19 +255,15 @@ class WaitSet:
         if self._has_work:
             WAITER.found_work()
         elif timeout_ns == 0:
-            # What comes meanwhile is for the next look. A guard condition is no work: each
+            # What comes meanwhile is for the next poll. A guard condition is no work: each
             # rclpy.spin_once triggers one, and a loop of them would never cost anything.
             WAITER.found_nothing()
 
     def get_ready_entities(self, kind: str) -> list[int]:
-        """The addresses of what was ready after `wait`."""
+        """Return the addresses of what was ready after `wait`."""
         if kind == "guard_condition":
             return [guard.pointer for guard in self.ready_guards]
-        return [handle.pointer for handle in self._ready if self._kinds[handle] == kind]
-
-    def take_ready(self) -> list[Any]:
-        """The handles of all that was ready after `wait`, but guard conditions and events."""
-        return self._ready
+        return [handle.pointer for handle in self.ready if self._kinds[handle] == kind]
 
     def is_ready(self, kind: str, index: int) -> bool:
         """Whether an event was ready after `wait`; rclpy asks by index for nothing else."""
@@ -277,7 +274,7 @@ class WaitSet:
         return any(self._ready_events)
 
     def _collect(self) -> bool:
-        ready = self._ready = []
+        ready = self.ready = []
         for handle, reader in self._readers:
             if reader.items:
                 ready.append(handle)
@@ -301,7 +298,7 @@ class WaitSet:
         return self._has_work or bool(guards)
 
     def _ask_for_events(self) -> list[bool]:
-        """Which events there are to tell of."""
+        """Return for each event whether it is due; empty where none is."""
         epoch = WAITER.graph_epoch
         if self._quiet_epoch == epoch:
             return []
@@ -315,7 +312,7 @@ class WaitSet:
         return due
 
     def _has_dds(self, events: list[EventHandle]) -> bool:
-        """Whether DDS has all of these to tell."""
+        """Whether DDS reports all of these."""
         if not events:
             return True
         real = _WaitSet(0, 0, 0, 0, 0, len(events), self._context)
@@ -325,7 +322,7 @@ class WaitSet:
         return all(real.is_ready("event", place) for place in places)
 
     def _next_timer(self) -> int:
-        """When the first timer is due."""
+        """Return when the first timer is due."""
         first_ns = self.end_ns
         now_ns = WAITER.deadline(0)
         for timer in self.timers:

@@ -1,10 +1,10 @@
 """The account that a submission's process keeps of itself, in a page that the grader has as well.
 
-The page is a memfd of fixed size that the grader has made and sealed. At its start stands how far
-virtual time has got (`grader.run.lockstep.protocol`). The next two parts are written in turns: a
-number, the length and the checksum of what follows, JSON. A reader takes the newest that is whole,
-so a process may be killed at any moment. Into the last part Python's faulthandler writes where the
-threads are. Anybody may have written: `grader.run.evidence` checks what stands there.
+The page is a memfd of fixed size that the grader has made and sealed. It begins with the tick that
+virtual time has reached (`grader.run.lockstep.protocol`). The next two parts are written in turns:
+a number, the length and the checksum of what follows, JSON. A reader uses the newest whole one, so
+a process may be killed at any moment. Into the last part Python's faulthandler writes where the
+threads are. The submission may have written any of it: `grader.run.evidence` checks it.
 """
 
 from __future__ import annotations
@@ -30,18 +30,17 @@ MOST_BYTES = HALF_BYTES - _HEAD.size
 #: Where the two halves begin, and the dump.
 HALVES, DUMP = (PROGRESS_BYTES, PROGRESS_BYTES + HALF_BYTES), PROGRESS_BYTES + 2 * HALF_BYTES
 _SEALS = fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_SEAL
-#: Where there is no room for all of it these are left out, in this order; the ends come last.
+#: Where there is no room these are left out, in this order; the ends come last.
 CUT = ("slow", "timers", "caught", "waits")
-#: At this signal a process dumps where its threads are: none that a program has a use for, and
-#: none that Python's own handlers have to be run for. It is answered also where a program computes
-#: without end, or waits in C.
+#: At this signal a process dumps where its threads are: one that no program uses, and that needs
+#: no handler in Python. It works also where a program computes without end, or waits in C.
 DUMP_SIGNAL = signal.SIGRTMIN + 9
 
 # In the grader's process ----------------------------------------------------------------------
 
 
 def make() -> int:
-    """Return an open page, in which a dump would begin in its place."""
+    """Return an open page, positioned where a dump begins."""
     page = os.memfd_create("account", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
     os.ftruncate(page, DUMP + DUMP_BYTES)
     fcntl.fcntl(page, fcntl.F_ADD_SEALS, _SEALS)
@@ -73,7 +72,7 @@ class ProcessAccount:
     """The account of this process, kept up to date."""
 
     def __init__(self, page: int, summary: Callable[[], dict[str, Any]]) -> None:
-        """Keep what `summary` returns in the page of this descriptor; -1: nobody reads."""
+        """Keep what `summary` returns in the page of this descriptor; -1: nowhere."""
         self._page, self._process = page, os.getpid()
         self._summary = summary
         self._identity = _identity(page)
@@ -84,7 +83,7 @@ class ProcessAccount:
             os.set_inheritable(page, False)
 
     def dump_when_asked(self) -> None:
-        """Dump where all threads are, at the signal and where the process dies by a fault in C."""
+        """Have all threads dumped at the signal, and where the process dies by a fault in C."""
         if self._page < 0:
             return
         with suppress(OSError, RuntimeError, ValueError):
@@ -93,13 +92,13 @@ class ProcessAccount:
             faulthandler.enable(self._page)
 
     def changed(self) -> None:
-        """Write it, ever less often the more often something in it changes."""
+        """Write it after a change, ever less often the more changes there are."""
         self._changes += 1
         if self._changes >= self._next:
             self.write()
 
     def write(self, *, is_last: bool = False) -> None:
-        """Write it now: something is new in it, or this process may be ended before the next."""
+        """Write it now: it has a new entry, or this process may be ended before the next change."""
         self._next = self._changes * 5 // 4 + 1
         if self._is_another() or not self._lock.acquire(timeout=1.0 if is_last else 0):
             return
@@ -134,7 +133,7 @@ def _checksum(number: int, data: bytes) -> int:
 
 
 def _fitting(summary: dict[str, Any]) -> bytes:
-    """Return all of it that there is room for."""
+    """Return a summary as JSON, as much of it as there is room for."""
     for name in CUT:
         if len(data := _bytes(summary)) <= MOST_BYTES:
             return data
@@ -148,9 +147,9 @@ def _bytes(summary: dict[str, Any]) -> bytes:
     return json.dumps(summary).encode("ascii")
 
 
-def quietly(look: Callable[..., Any], *args: Any) -> Any:
-    """Return what a function returns; an error of it is not the program's concern."""
+def quietly(function: Callable[..., Any], *args: Any) -> Any:
+    """Call a function; return None where it fails, so that the program never sees its error."""
     try:
-        return look(*args)
+        return function(*args)
     except Exception:
         return None

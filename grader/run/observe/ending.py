@@ -1,4 +1,4 @@
-"""How a submission's process has ended, or where it goes no further."""
+"""Observes how a submission's process has ended, or where it is stuck."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from grader.run.observe.files import LONGEST, Frame, Row, SubmissionFiles, text
 
 
 class EndWitness:
-    """The part of a summary that is about the end; of several ends the first counts.
+    """The part of a summary about the end; of several ends the first counts.
 
     Attributes:
-        row: as it stands in the account; see `grader.recording.observations.Observations`.
+        row: its entries in the account; see `grader.recording.observations.Observations`.
     """
 
     def __init__(
@@ -30,10 +30,10 @@ class EndWitness:
         #: where something that cannot be called was first given for a callback
         self._uncallable: Row | None = None
 
-    # Threads that go no further ---------------------------------------------------------------
+    # Stuck threads ----------------------------------------------------------------------------
 
     def deadlocked(self, threads: Sequence[int], main: int) -> bool:
-        """All threads are blocked for good; return whether one is stuck, which is then printed."""
+        """Note that all threads are blocked for good; print a stuck one, return whether one is."""
         stacks = [self._stack(thread) for thread in threads]
         found = stuck.deadlock(stacks)
         if found is not None:
@@ -46,7 +46,7 @@ class EndWitness:
         return found is not None
 
     def over(self, main: int) -> None:
-        """The run is over, and the program would have gone on; `main`: its main thread."""
+        """Note the end of the run; the program would have gone on. `main`: its main thread."""
         if not self._has_ended:
             found = quietly(lambda: stuck.standing(self._stack(main)))
             if found is not None:
@@ -58,30 +58,30 @@ class EndWitness:
 
     # Exceptions -------------------------------------------------------------------------------
 
-    def was_given(self, callback: Any) -> None:
-        """A timer or a future is to call this."""
+    def note_callback(self, callback: Any) -> None:
+        """Note the callback of a timer or a future."""
         if self._uncallable is None and not callable(callback):
             self._uncallable = self._files.place(sys._getframe())
 
     def thread_raised(self, error: BaseException) -> None:
-        """An exception has ended a thread: the program goes on, but not what that thread spun."""
+        """Note an exception that has ended a spinning thread; the program goes on without it."""
         if any(frame.library == "rclpy/executors.py" for frame in self._files.trace(error)):
             self._note("raised", error_row(error, self._place(error), self._now_s()))
 
     def raised(self, error: BaseException) -> None:
-        """An exception has ended the program, before our frames are taken out of its traceback."""
+        """Note an exception that has ended the program, with our frames still in its traceback."""
         if not isinstance(error, SystemExit) or error.code:
             self._end("raised", error_row(error, self._place(error), self._now_s()))
 
     def returned(self, code: int) -> None:
-        """The program has come to its end by itself."""
+        """Note that the program has ended by itself."""
         if code == 0:
             self._end("returned_s", self._now_s())
         else:
             self._end("raised", error_row(SystemExit(code), None, self._now_s()))
 
     def _place(self, error: BaseException) -> Row | None:
-        """Return the line of the submission's that an exception comes from."""
+        """Return the submission's line that an exception comes from."""
         last = stuck.last_line(self._files.trace(error))
         place = self._files.row_of_frame(last) if last else None
         if isinstance(error, SyntaxError) and place is None:
@@ -107,7 +107,7 @@ class EndWitness:
         return self._files.row_of(code, code.co_firstlineno) if is_it else None
 
     def _end(self, what: str, value: object) -> None:
-        """Note how it has ended, if that is not known yet; the account is the last one."""
+        """Note how it has ended, if that is not known yet, and write the last account."""
         if not self._has_ended:
             self._has_ended = True
             self._note(what, value)
@@ -120,7 +120,7 @@ class EndWitness:
 
 
 def error_row(error: BaseException, place: Row | None, now_s: float) -> Row:
-    """Return an exception, see `grader.recording.observations.Raised`."""
+    """Return the row of an exception, see `grader.recording.observations.Raised`."""
     what = str(error.code)[:LONGEST] if isinstance(error, SystemExit) else text(error)
     kind = type(error).__name__[:LONGEST]
     return {"type": kind, "text": what, "time_s": now_s, "place": place}

@@ -1,7 +1,7 @@
-"""The submission's own files: which of their lines has led somewhere.
+"""The submission's files, and their lines in a stack or a traceback.
 
-Lines are given as JSON has them, see `grader.recording.observations.SourceLine`. Used on both
-sides; in the submission's process nothing here waits, raises, or takes time of the run.
+Lines are rows of JSON, see `grader.recording.observations.SourceLine`. Used on both sides; in the
+submission's process nothing here waits, raises, or costs virtual time.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from typing import Any
 
 #: So much of a name, a line or a text is kept [characters].
 LONGEST = 300
-#: A larger file is no source that somebody reads [bytes].
+#: A larger file is not read as source [bytes].
 MOST_SOURCE_BYTES = 1_000_000
-#: What is installed into a submission's own folder is not the student's; nor what lies beside it.
+#: What is installed into a submission's folder is not the student's; nor what lies beside it.
 NOT_STUDENTS = ("/site-packages/", "/dist-packages/", "/../")
 
 Row = dict[str, Any]
@@ -45,7 +45,7 @@ class Frame:
 
     @property
     def library(self) -> str:
-        """The file with its folder: of two of the same name in one library these are the same."""
+        """The file with its folder, which tells files of one name in a library apart."""
         return "/".join(self.file.rsplit("/", 2)[-2:])
 
 
@@ -67,7 +67,7 @@ class SubmissionFiles:
         return bool(self.name(file))
 
     def lines(self, file: str) -> list[str]:
-        """Return the lines of one of its files; none of any other."""
+        """Return the lines of one of the submission's files; none of any other."""
         if not self.has(file):
             return []
         if file not in self._lines:
@@ -82,7 +82,7 @@ class SubmissionFiles:
     # Lines ------------------------------------------------------------------------------------
 
     def row(self, file: str, line: int, function: str = "") -> Row:
-        """Return a line of one of its files, by its number."""
+        """Return a line of one of the submission's files, by its number."""
         lines = self.lines(file)
         return {
             "file": self.name(file)[:LONGEST],
@@ -92,21 +92,21 @@ class SubmissionFiles:
         }
 
     def row_of_frame(self, frame: Frame) -> Row:
-        """Return the line that a frame of its is at."""
+        """Return the line of a frame of the submission's."""
         return self.row(frame.file, frame.line, frame.function)
 
     def row_of(self, code: CodeType, line: int) -> Row:
-        """Return a line of some code of its."""
+        """Return a line of some code of the submission's."""
         return self.row(code.co_filename, line, _function(code))
 
     def innermost(self, frame: FrameType | None) -> FrameType | None:
-        """Return the innermost frame of its that has led to a frame."""
+        """Return the innermost frame of the submission's, from this one outwards."""
         while frame is not None and not self.has(frame.f_code.co_filename):
             frame = frame.f_back
         return frame
 
     def place(self, frame: FrameType | None) -> Row | None:
-        """Return the line of its that has led to a frame."""
+        """Return the line of the innermost frame of the submission's."""
         frame = self.innermost(frame)
         return None if frame is None else self.row_of(frame.f_code, frame.f_lineno)
 
@@ -117,11 +117,11 @@ class SubmissionFiles:
         return Frame(file, line, function, self.lines(file) if self.has(file) else None)
 
     def stack(self, frame: FrameType | None) -> list[Frame]:
-        """Return where a thread is, innermost first."""
+        """Return the frames of a thread, innermost first."""
         return self._frames(walk_stack(frame)) if frame is not None else []
 
     def trace(self, error: BaseException) -> list[Frame]:
-        """Return where an exception has come from, innermost first."""
+        """Return the frames of an exception's traceback, innermost first."""
         return self._frames(walk_tb(error.__traceback__))[::-1]
 
     def _frames(self, walked: Iterable[tuple[FrameType, int]]) -> list[Frame]:
@@ -141,7 +141,7 @@ def _read(path: Path) -> list[str]:
 
 
 def text(error: BaseException) -> str:
-    """Return what an exception says, as far as it is kept."""
+    """Return the text of an exception, cut to what is kept."""
     try:
         return str(error)[:LONGEST]
     except Exception:

@@ -1,7 +1,7 @@
-"""Has rclpy's objects call a witness: its methods work as they did, and the witness hears of it.
+"""Has rclpy's objects call a witness; apart from that, their methods work as before.
 
-In real time rclpy is asked, too, whether anybody has the other end of something. ROS finds that out
-in its own time, so it is asked again until somebody has.
+In real time rclpy is also asked whether an endpoint has a counterpart. ROS finds that out after a
+while, so it is asked again until there is one.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from grader.run.lockstep import faults
 from grader.run.observe.account import quietly
 from grader.run.observe.witness import UsedEnd, Witness
 
-#: How rclpy tells whether there is another end: of each kind of end.
+#: How rclpy is asked whether there is a counterpart, for each kind of endpoint.
 ASKS: dict[str, Callable[[Any], bool]] = {
     "publisher": lambda publisher: publisher.get_subscription_count() > 0,
     "subscription": lambda subscription: subscription.get_publisher_count() > 0,
@@ -28,7 +28,7 @@ ASKS: dict[str, Callable[[Any], bool]] = {
 }
 #: How often it is asked [s].
 PERIOD_S = 0.5
-#: Not the one that says how long it has waited.
+#: The original, which does not call the witness.
 _SLEEP = time.sleep
 
 
@@ -58,11 +58,11 @@ def install_actions(witness: Witness) -> None:
 
 
 def _where_known(install: Callable[[Witness], None], witness: Witness) -> None:
-    """An rclpy that is made otherwise is left alone; half of what happens would be worse."""
+    """Install hooks, or nothing where rclpy has other internals: half of it would be worse."""
     try:
         install(witness)
     except (AttributeError, ImportError):
-        witness.is_blind()
+        witness.discard()
 
 
 def _install(witness: Witness) -> None:
@@ -88,12 +88,12 @@ def _install(witness: Witness) -> None:
     _after(
         client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type)
     )
-    _after(timer, "__init__", lambda it, _: witness.ending.was_given(it.callback))
+    _after(timer, "__init__", lambda it, _: witness.ending.note_callback(it.callback))
     _after(timer, "__init__", lambda it, _: witness.made_timer(it))
     _after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
     _after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
     _around_wait(witness, client, "wait_for_service", lambda it, _: it, lambda _, there: there)
-    # what virtual time has put round it would take time
+    # virtual time's wrapper would cost time
     is_done = inspect.unwrap(future.done)
     _around_wait(
         witness,
@@ -121,7 +121,7 @@ def _install_actions(witness: Witness) -> None:
 
 
 def _after(owner: Any, name: str, call: Callable[[Any, Any], None]) -> None:
-    """Have something called after each call of a method, with its object and what it returned."""
+    """Have a function called after each call of a method, with its object and what it returned."""
     method = getattr(owner, name)
 
     @functools.wraps(method)
@@ -134,7 +134,7 @@ def _after(owner: Any, name: str, call: Callable[[Any, Any], None]) -> None:
 
 
 def _requested(witness: Witness, client: Any, answer: Any) -> None:
-    """A request was sent; whoever waits for this answer waits for the service."""
+    """Note a sent request; a wait for its answer counts as a wait for the service."""
     witness.used(client, is_sent=True)
     answer._witnessed = client._witnessed
 
@@ -146,11 +146,11 @@ def _around_wait(
     awaited: Callable[[Any, tuple[Any, ...]], Any],
     has_come: Callable[[Any, Any], bool],
 ) -> None:
-    """Have the witness know for how long a method waits.
+    """Have the witness measure how long a method waits.
 
     Args:
-        awaited: of its object and arguments, what is waited for.
-        has_come: of that and what the method returns, whether it has waited with success.
+        awaited: returns what is waited for, from the method's object and arguments.
+        has_come: returns whether the wait was successful, from that and what the method returned.
     """
     method = getattr(owner, name)
 
@@ -160,26 +160,26 @@ def _around_wait(
         end: UsedEnd | None = getattr(what, "_witnessed", None)
         if end is None:
             return method(self, *args, **kwargs)
-        wait = quietly(witness.begins_to_wait, end)
+        wait = quietly(witness.begin_wait, end)
         returned = method(self, *args, **kwargs)
-        quietly(lambda: witness.ends_to_wait(wait, has_come=bool(has_come(what, returned))))
+        quietly(lambda: witness.end_wait(wait, has_come=bool(has_come(what, returned))))
         return returned
 
     setattr(owner, name, waiting)
 
 
 def _around_callbacks(witness: Witness, task: Any) -> None:
-    """Have the witness know when the tasks that an executor runs begin and end."""
+    """Report to the witness when the tasks that an executor runs begin and end."""
     run = task.__call__
 
     @functools.wraps(run)
     def call(self: Any) -> Any:
-        if not witness.begins_callback():
+        if not witness.begin_callback():
             return run(self)
         try:
             return run(self)
         finally:
-            quietly(witness.ends_callback, getattr(self, "_exception", None))
+            quietly(witness.end_callback, getattr(self, "_exception", None))
 
     task.__call__ = call
 
@@ -189,19 +189,19 @@ def _before_done_callbacks(witness: Witness, future: Any) -> None:
 
     @functools.wraps(add)
     def added(self: Any, callback: Any) -> Any:
-        quietly(witness.ending.was_given, callback)
+        quietly(witness.ending.note_callback, callback)
         return add(self, callback)
 
     future.add_done_callback = added
 
 
 def _around_executor(witness: Witness, executor: Any) -> None:
-    """Have the witness know what subscriptions hear, and when an executor is first spun."""
-    take, wait = executor._take_subscription, executor.wait_for_ready_callbacks
+    """Report to the witness what subscriptions receive, and when an executor first spins."""
+    receive, wait = executor._take_subscription, executor.wait_for_ready_callbacks
 
-    @functools.wraps(take)
-    def taken(self: Any, subscription: Any) -> Any:
-        found = take(self, subscription)
+    @functools.wraps(receive)
+    def received(self: Any, subscription: Any) -> Any:
+        found = receive(self, subscription)
         if found is not None:
             quietly(witness.used, subscription)
         return found
@@ -212,12 +212,12 @@ def _around_executor(witness: Witness, executor: Any) -> None:
         quietly(witness.spins)
         return wait(self, *args, **kwargs)
 
-    executor._take_subscription = taken
+    executor._take_subscription = received
     executor.wait_for_ready_callbacks = first_wait
 
 
 def _after_single_messages(witness: Witness, module: Any) -> None:
-    """Have `wait_for_message` say what it hears: it takes its message past all executors."""
+    """Report what `wait_for_message` receives: its message goes past all executors."""
     wait = module.wait_for_message
 
     @functools.wraps(wait)  # it is shown by its name where a program is stuck in it
@@ -234,7 +234,7 @@ def _after_single_messages(witness: Witness, module: Any) -> None:
 
 
 def install_in_real_time(witness: Witness) -> None:
-    """Have rclpy's objects call, and its waits say how long they were; ask it from now on."""
+    """Have rclpy's objects call, and its waits report their length; poll it from now on."""
     import rclpy.clock
     import rclpy.timer
 
@@ -245,7 +245,7 @@ def install_in_real_time(witness: Witness) -> None:
 
 
 def install_in_events_executor(witness: Witness, module: Any) -> None:
-    """Have the executor in C++ call, which calls nothing of Python's but callbacks."""
+    """Have the executor in C++ call when it is made: it calls nothing of Python's but callbacks."""
     make = module.EventsExecutor
 
     def events_executor(*args: Any, **kwargs: Any) -> Any:
@@ -256,7 +256,7 @@ def install_in_events_executor(witness: Witness, module: Any) -> None:
 
 
 def timed(witness: Witness, wait: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the same function, which has the witness know for how long it has waited."""
+    """Wrap a function that waits so that it reports to the witness how long it has waited."""
 
     @functools.wraps(wait)
     def waiting(*args: Any, **kwargs: Any) -> Any:
@@ -269,7 +269,7 @@ def timed(witness: Witness, wait: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def is_met(kind: str, entity: Any) -> Callable[[], bool]:
-    """Return what asks rclpy of an end; the entity itself is not to live longer for it."""
+    """Return a function that asks rclpy for a counterpart; it holds no reference to the entity."""
     alive = weakref.ref(entity)
 
     def ask() -> bool:

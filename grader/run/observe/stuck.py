@@ -1,6 +1,6 @@
-"""Where a program goes no further: a deadlock, a loop, an `__init__` that never ends.
+"""Finds where a program is stuck: in a deadlock, a loop, an `__init__` that never ends.
 
-Told from the frames of its threads alone, innermost first, which come from the process itself or
+Found from the frames of its threads alone, innermost first, which come from the process itself or
 from a dump of Python's faulthandler. Nothing is parsed: a file can be made so that Python's parser
 does not survive it.
 """
@@ -47,12 +47,12 @@ another thread, or use rclpy.spin_until_future_complete()."""
 
 @dataclass(frozen=True)
 class Stuck:
-    """Where a thread goes no further.
+    """Where a thread is stuck.
 
     Attributes:
         kind: as in `grader.recording.observations.Standstill`.
-        frame: the submission's, which says the line.
-        call: the function that it has called there, as 'Client.call'; '' for none.
+        frame: the submission's frame, which has the line.
+        call: the function that is called there, as 'Client.call'; '' for none.
     """
 
     kind: str
@@ -60,7 +60,7 @@ class Stuck:
     call: str = ""
 
     def row(self, files: SubmissionFiles, time_s: float) -> Row:
-        """Return it as it stands in an account, at a time on the clock of the run [s]."""
+        """Return its row of an account, at a time on the clock of the run [s]."""
         place = files.row_of_frame(self.frame)
         return {"kind": self.kind, "time_s": time_s, "call": self.call, "place": place}
 
@@ -69,9 +69,10 @@ class Stuck:
 
 
 def deadlock(threads: Sequence[Thread]) -> tuple[str, Thread] | None:
-    """Return which of some threads that all are blocked for good is stuck, after how it is.
+    """Find the stuck thread among threads that all are blocked for good.
 
-    Returns: None where they only wait, as a program may that has done its work.
+    Returns:
+        'callback' or 'call', and the thread; None where they only wait, as after the work is done.
     """
     for thread in threads:
         if any(map(_runs_callback, thread)):
@@ -87,7 +88,7 @@ def is_spinning(thread: Thread) -> bool:
 
 
 def explain(kind: str, thread: Thread, time_s: float) -> str:
-    """Return the words for the author of a submission in which a thread is stuck."""
+    """Return the message that is printed for the author of a submission with a stuck thread."""
     shown = [
         traceback.FrameSummary(frame.file, frame.line, frame.name or "<module>")
         for frame in reversed(thread)
@@ -99,7 +100,7 @@ def explain(kind: str, thread: Thread, time_s: float) -> str:
 
 
 def called(kind: str, thread: Thread) -> Stuck | None:
-    """Return where a thread that waits was called from; None where no line is the submission's."""
+    """Return the submission's line in which a thread waits; None where there is none."""
     at = _students(thread)
     if at < 0:
         return None
@@ -123,7 +124,7 @@ def waiting(threads: Sequence[Thread]) -> Stuck | None:
     return None
 
 
-# Threads that go on ---------------------------------------------------------------------------
+# Threads that run -----------------------------------------------------------------------------
 
 
 def computing(threads: Sequence[Thread]) -> Stuck | None:
@@ -158,10 +159,10 @@ def standing(thread: Thread) -> Stuck | None:
 
 
 def _head(frames: Thread) -> Frame | None:
-    """Return the beginning of the loop in which a thread is; None for no loop.
+    """Return the first line of the loop in which a thread is; None for no loop.
 
-    Where in it the thread is, is chance; where it begins, is not. Of several it is the innermost
-    that has no condition, else the outermost.
+    The line in the loop is chance, its beginning is not. Of several loops it is the innermost that
+    has no condition, else the outermost.
     """
     heads: list[tuple[str, Frame]] = []
     for frame in frames:
@@ -196,7 +197,7 @@ def loops_around(lines: Sequence[str], number: int) -> list[int]:
 
 
 def _students(thread: Thread) -> int:
-    """Return which frame is the innermost of the submission's; -1: none."""
+    """Return the index of the innermost frame of the submission's; -1: none."""
     return next((at for at, frame in enumerate(thread) if frame.lines is not None), -1)
 
 
@@ -219,5 +220,5 @@ def _spins(frame: Frame) -> bool:
 
 
 def _called_by(frame: Frame) -> str:
-    """Return what a program calls a function by, which is what its author has written."""
+    """Return a function's name as the author has written it."""
     return WAITS.get((frame.library, frame.name), frame.function)[:LONGEST]

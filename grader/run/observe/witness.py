@@ -1,7 +1,7 @@
-"""What a submission's process has been seen to do: the summary that its account holds.
+"""Summarises what a submission's process does, for its account.
 
-Virtual and real time have the same; `hooks` has rclpy's objects call it. It waits for nothing and
-takes no time of the run, and an error of its own is never the program's.
+Virtual and real time share it; `hooks` has rclpy's objects call it. It waits for nothing, costs no
+virtual time, and its errors never reach the program.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from grader.run.observe.account import ProcessAccount, quietly
 from grader.run.observe.ending import EndWitness, error_row
 from grader.run.observe.files import LONGEST, Row, SubmissionFiles
 
-#: So many entries of a kind are kept: as `grader.recording.observations` takes them.
+#: The most entries of a kind, as `grader.recording.observations` accepts them.
 MOST = 100
-#: Exceptions that leave callbacks: so many.
+#: The most exceptions that leave callbacks.
 MOST_CAUGHT = 20
-#: So many lines that one end sends from, and changes between them, are kept.
+#: The most lines that one end sends from, and changes between them.
 MOST_LINES, MOST_CHANGES = 8, 150
-#: A wait that was not in vain is kept if it takes longer [s].
+#: A successful wait is kept if it takes longer [s].
 LONG_S = 1.0
-#: Time that a callback may let pass, as publishing does [s]: a tick.
+#: The time that a callback may let pass, as publishing does [s]: a tick.
 SHORT_S = 0.016
-#: How a program is ended, and what a loop ends with.
+#: Exceptions that end a program or a loop as intended.
 NO_ERRORS = ("ExternalShutdownException", "StopIteration")
 #: Modules of rclpy whose ends every node has, without its author's doing.
 _EVERY_NODE = frozenset(
@@ -39,7 +39,7 @@ _EVERY_NODE = frozenset(
         *("type_description_service", "lifecycle.node", "action.server"),
     )
 )
-#: Functions of rclpy's through which a program makes an end.
+#: Functions of rclpy's with which a program makes an end.
 _MAKERS = (
     "create_timer",
     "create_publisher",
@@ -57,9 +57,9 @@ class UsedEnd:
     """An end that the submission has made.
 
     Attributes:
-        row: as it stands in the account; see `grader.recording.observations.End`.
-        ask: whether somebody has the other end.
-        lines: from where it has sent -> which of the row's lines.
+        row: its entry in the account; see `grader.recording.observations.End`.
+        ask: returns whether it has a counterpart.
+        lines: the line that has sent -> its index among the row's lines.
     """
 
     row: Row
@@ -68,10 +68,9 @@ class UsedEnd:
     _is_full: bool = False
 
     def sent_from(self, frame: FrameType | None, files: SubmissionFiles) -> None:
-        """Count what was sent from where this frame is, in order.
+        """Count what was sent from this frame's line, in order.
 
-        None, or too many of them: nothing is counted from here on, so that what was counted stays
-        the first that was sent.
+        After None, or too many lines, nothing more is counted: the counted ones stay the first.
         """
         if self._is_full or frame is None:
             self._is_full = True
@@ -92,11 +91,11 @@ class UsedEnd:
 
 @dataclass
 class OpenWait:
-    """A wait for a service, its answer, an action server; perhaps made up of several in vain.
+    """A wait for a service, its answer, an action server; failed waits in a row count as one.
 
     Attributes:
-        lasted_s: how long it had taken when it was over last [s].
-        is_worth_it: it was long, or one of them in vain.
+        lasted_s: how long it had lasted when it was last over [s].
+        is_worth_it: whether it was long, or failed once.
     """
 
     name: str
@@ -108,7 +107,7 @@ class OpenWait:
     is_worth_it: bool = False
 
     def row(self, now_s: float) -> Row | None:
-        """Return it as it stands in the account; None for one that is not worth it."""
+        """Return its entry in the account; None for one that is not worth it."""
         lasts = self.goes_on and now_s - self.since_s > LONG_S
         if not lasts and not self.is_worth_it:
             return None
@@ -119,10 +118,10 @@ class OpenWait:
 
 
 class Witness:
-    """What has been seen of one submission's process.
+    """Observes one submission's process.
 
     Attributes:
-        ending: how it has ended.
+        ending: observes how it ends.
     """
 
     def __init__(
@@ -135,10 +134,10 @@ class Witness:
         """Keep the account of a submission.
 
         Args:
-            page: where its account is kept; -1: nobody reads it.
+            page: the page of its account; -1 for none.
             root: its folder.
             now_s: the time since the start of this process on the clock of the run [s].
-            is_met: of a kind of end and rclpy's object for it, returns what tells `UsedEnd.ask`.
+            is_met: makes `UsedEnd.ask` from a kind of end and rclpy's object for it.
         """
         self._files = SubmissionFiles(root)
         self._now_s = now_s
@@ -146,15 +145,15 @@ class Witness:
         self._is_blind = False
         self._ends: list[UsedEnd] = []
         self._waits: list[OpenWait] = []
-        #: those that go on, or were in vain: by what is waited for
+        #: those that go on, or failed: by what is waited for
         self._open_waits: dict[tuple[str, str], OpenWait] = {}
-        #: lines that were seen again and again, by what tells one from another
+        #: lines that occur again and again, by their keys
         self._slow: dict[object, Row] = {}
         self._timers: dict[object, Row] = {}
         self._caught: dict[object, Row] = {}
         #: when an executor was first spun
         self._spun_s: float | None = None
-        #: the callback that runs in a thread: for how long each of its lines has waited [s]
+        #: thread of a running callback -> for how long each of its lines has waited [s]
         self._running: dict[int, dict[Where, float]] = {}
         self._account = ProcessAccount(page, self._summary)
         self.ending = EndWitness(self._files, self._account, now_s)
@@ -179,18 +178,18 @@ class Witness:
         }
 
     def write(self) -> None:
-        """Write the account: others may have come since."""
+        """Write the account: counterparts may have come since."""
         self._account.write()
 
-    def is_blind(self) -> None:
-        """Nothing that was seen may be believed: not all of it is."""
+    def discard(self) -> None:
+        """Note that the observations are incomplete, so that none of them counts."""
         self._is_blind = True
         self._account.write()
 
     # What it uses -----------------------------------------------------------------------------
 
     def made(self, kind: str, entity: Any, name: str, interface: type) -> None:
-        """The program, or a library of its, has made an end."""
+        """Note an end that the program, or a library of its, has made."""
         frame = _maker(sys._getframe())
         if frame is None or len(self._ends) >= MOST:
             return
@@ -204,7 +203,7 @@ class Witness:
         self._account.write()
 
     def made_timer(self, timer: Any) -> None:
-        """The program has made a timer."""
+        """Note a timer that the program has made."""
         frame = _maker(sys._getframe())
         place = self._files.place(frame)
         if frame is not None and place is not None:
@@ -214,7 +213,7 @@ class Witness:
                 row["period_s"] = period_s
 
     def used(self, entity: Any, *, is_sent: bool = False) -> None:
-        """A message was sent or received, or a request sent."""
+        """Count a message that was sent or received, or a request that was sent."""
         end: UsedEnd | None = getattr(entity, "_witnessed", None)
         if end is None:
             return
@@ -227,7 +226,7 @@ class Witness:
         self._account.changed()
 
     def heard(self, topic: str) -> None:
-        """A message has come to the last subscription to a topic, which is no more."""
+        """Count a message of the last subscription to a topic, which was destroyed since."""
         for end in reversed(self._ends):
             if end.row["name"] == topic:
                 end.row["used"] += 1
@@ -235,15 +234,15 @@ class Witness:
                 return
 
     def spins(self) -> None:
-        """An executor is spun; the first time counts."""
+        """Note when an executor first spins."""
         if self._spun_s is None:
             self._spun_s = self._now_s()
             self._account.write()
 
     # What it waits for ------------------------------------------------------------------------
 
-    def begins_to_wait(self, end: UsedEnd) -> OpenWait:
-        """A wait begins, or goes on after one in vain for the same."""
+    def begin_wait(self, end: UsedEnd) -> OpenWait:
+        """Begin a wait, or go on with a failed one for the same."""
         key = end.row["name"], end.row["type"]
         wait = self._open_waits.get(key)
         if wait is None:
@@ -253,8 +252,8 @@ class Witness:
         wait.goes_on = True
         return wait
 
-    def ends_to_wait(self, wait: OpenWait, *, has_come: bool) -> None:
-        """What was waited for has come, or nobody waits any longer."""
+    def end_wait(self, wait: OpenWait, *, has_come: bool) -> None:
+        """End a wait: what was waited for has come, or the program gives up."""
         wait.goes_on, wait.lasted_s = False, self._now_s() - wait.since_s
         if has_come:
             self._open_waits.pop((wait.name, wait.type), None)
@@ -268,15 +267,15 @@ class Witness:
 
     # What its callbacks do --------------------------------------------------------------------
 
-    def begins_callback(self) -> bool:
-        """A callback begins in this thread; whether it is not within another."""
+    def begin_callback(self) -> bool:
+        """Begin a callback in this thread; return whether it is not within another."""
         is_first = get_ident() not in self._running
         if is_first:
             self._running[get_ident()] = {}
         return is_first
 
-    def ends_callback(self, error: BaseException | None) -> None:
-        """It has ended, by an exception or by itself."""
+    def end_callback(self, error: BaseException | None) -> None:
+        """End the callback of this thread, by an exception or by itself."""
         lines = self._running.pop(get_ident())
         total_s = sum(lines.values())
         if total_s > SHORT_S:
@@ -292,7 +291,7 @@ class Witness:
                 self._count(self._caught, (row["type"], last.file, last.line), row, MOST_CAUGHT)
 
     def waited(self, lasted_s: float) -> None:
-        """Time has passed while this thread waited [s]."""
+        """Count a wait of this thread [s]."""
         lines = self._running.get(get_ident())
         frame = self._files.innermost(sys._getframe()) if lines is not None else None
         if lines is not None and frame is not None:
@@ -315,7 +314,7 @@ class Witness:
 
 
 def _maker(frame: FrameType | None) -> FrameType | None:
-    """Return who has made an end; None where every node has it."""
+    """Return the frame that has made an end; None where every node has that end."""
     while frame is not None:
         module = str(frame.f_globals.get("__name__", ""))
         if not faults.is_ours(frame.f_code.co_filename) and not (

@@ -7,24 +7,24 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-#: Where the kernel shows what control groups allow, and in which of them this process is.
-_CGROUPS, _OWN_GROUPS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
+#: Where the kernel shows the quotas of control groups, and to which this process belongs.
+_CGROUPS, _MEMBERSHIP = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
 
 
 def available() -> list[int]:
-    """The cores that this process may use."""
+    """Return the cores that this process may use."""
     return sorted(os.sched_getaffinity(0))
 
 
 def share() -> float:
-    """How many cores this process may keep busy; a container may have a part of one."""
+    """Return how many cores this process may keep busy; a container may have a part of one."""
     return min([float(len(available())), *_quotas()])
 
 
 def _quotas() -> Iterator[float]:
     """Yield the quotas of this process's control groups, of version 2 and of 1 [cores]."""
     with suppress(OSError, ValueError, ZeroDivisionError):
-        group = _CGROUPS.joinpath(*_own_group().split("/"))
+        group = _CGROUPS.joinpath(*_control_group().split("/"))
         for folder in (group, *group.parents):
             if folder.is_relative_to(_CGROUPS) and (folder / "cpu.max").exists():
                 quota, period = (folder / "cpu.max").read_text().split()
@@ -39,9 +39,9 @@ def _quotas() -> Iterator[float]:
             yield quota_us / period_us
 
 
-def _own_group() -> str:
-    """The group of version 2 that this process is in, as a path below the root that it sees."""
-    lines = _OWN_GROUPS.read_text().splitlines()
+def _control_group() -> str:
+    """Return this process's group of version 2, as a path below the root that it sees."""
+    lines = _MEMBERSHIP.read_text().splitlines()
     return next((line.removeprefix("0::") for line in lines if line.startswith("0::")), "")
 
 
@@ -58,7 +58,7 @@ def reserve_core(run: int) -> Iterator[int]:
     possible = available()
     with ExitStack() as held:
         for core in possible:
-            if lock := scratch.take_lock(f"core-{core}"):
+            if lock := scratch.acquire_lock(f"core-{core}"):
                 held.enter_context(lock)
                 break
         else:

@@ -1,9 +1,9 @@
 """The grader's side of a fork server: asks it for processes, with a pidfd and a report each.
 
-The server itself is `.fork_server_main`. One that has loaded what runs need is a short cut, and
-nothing depends on it: where it cannot start, has died or refuses, `ServerLost` is raised, and the
-process comes from a server that has nothing loaded, forks once and executes the command
-(`cold_server`). Only where it dies over an order, whose process may have begun, the run is void.
+The server itself is `.fork_server_main`. A server that has loaded what runs need is a short cut,
+and nothing depends on it: where it cannot start, has died or refuses, `ServerLost` is raised, and
+the process comes from a server that has loaded nothing, forks once and executes the command
+(`cold_server`). Only where it dies during an order, whose process may run by then, the run is void.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from grader.run.processes import FORK_SERVER, fork_server_main
 from grader.run.processes.fork_server_main import ForkOrder, ProcessCommand
 from grader.run.processes.refusal import Refusal
 
-#: How long it may take to import everything, or to fork [s]; only a machine in distress does.
+#: How long it may take to import everything, or to fork [s]; only an overloaded machine does.
 PATIENCE_S = 30.0
 
 
@@ -41,11 +41,11 @@ class ServerLost(Exception):
 
 
 class ProcessReport:
-    """What a process's server and its supervisor report of it; see `.fork_server_main`.
+    """The report on a process by its server and its supervisor; see `.fork_server_main`.
 
     Attributes:
         facts: what was reported so far.
-        is_complete: nothing more comes.
+        is_complete: whether nothing more comes.
     """
 
     def __init__(self, descriptor: int) -> None:
@@ -56,7 +56,7 @@ class ProcessReport:
         self._poll.register(descriptor, select.POLLIN)
 
     def await_fact(self, name: str, timeout_s: float) -> bool:
-        """Wait for a fact of this name, or until nothing more comes; whether that is so."""
+        """Wait for a fact of this name; return False if neither it nor the end came in time."""
         deadline = time.monotonic() + timeout_s
         while not (self._descriptor < 0 or self.is_complete or self.facts.keys() & {name, "over"}):
             if not self._poll.poll(max(0, round(1000 * (deadline - time.monotonic())))):
@@ -69,20 +69,20 @@ class ProcessReport:
         return True
 
     def close(self) -> None:
-        """Listen no more."""
+        """Close the pipe."""
         if self._descriptor >= 0:
             os.close(self._descriptor)
         self._descriptor = -1
 
 
 class Child(NamedTuple):
-    """What a server has forked.
+    """A forked process.
 
     Attributes:
         pid: its process id, which is also that of its group.
-        pidfd: of the same process; -1 where the system has none.
-        report: what becomes of it.
-        output: the reading end of what it prints on both outputs.
+        pidfd: a descriptor of it; -1 where the system has none.
+        report: the report on it.
+        output: the reading end of the pipe of both its outputs.
     """
 
     pid: int
@@ -101,10 +101,10 @@ class ForkServer:
         *more: str,
         executes: bool = False,
     ) -> None:
-        """Start it; that it is ready is waited for where it is first asked.
+        """Start it; the first request waits until it is ready.
 
         Args:
-            command: a program that calls `.fork_server_main.serve` with what is added to it.
+            command: a program that calls `.fork_server_main.serve` with the added arguments.
             env: its environment variables; its children get their own.
             more: arguments that follow those of `serve`.
             executes: whether its children execute their command.
@@ -136,7 +136,7 @@ class ForkServer:
         return self._process.pid
 
     def preloaded(self) -> frozenset[str]:
-        """Top-level modules that a child has loaded, and a start from nothing would not have.
+        """Return the top-level modules that a child has loaded, but a cold start would not have.
 
         Raises:
             ServerLost: it did not start.
@@ -145,14 +145,14 @@ class ForkServer:
             return self._await_ready()
 
     def fork(self, command: ProcessCommand, *, supervised: bool = False) -> Child:
-        """Have the server make a process, as if this command had been started.
+        """Fork a process, as if this command had been started.
 
         Args:
             supervised: whether a supervisor stands above it; see `.supervisor`.
 
         Raises:
-            ServerLost: it gave none.
-            GraderFailure: nobody knows whether it did.
+            ServerLost: the server made none.
+            GraderFailure: it is unknown whether it did.
             OSError: the grader has no descriptors left.
         """
         command = command._replace(env=dict(command.env), cwd=str(command.cwd or Path.cwd()))
@@ -173,7 +173,7 @@ class ForkServer:
         return Child(pid, pidfd, ProcessReport(report), output)
 
     def retire(self) -> None:
-        """Let it end when its children have; those may go on, and who waits for it is answered."""
+        """Let it end after its children, which go on; pending requests are answered."""
         with self._lock:
             self.is_lost = True
             with suppress(OSError):  # it has died, or is lost already
@@ -189,8 +189,8 @@ class ForkServer:
         self._process.stdout.close()
 
     def forget(self) -> None:
-        """Let go of it in a fork of the grader: it is another's."""
-        self._lock = threading.Lock()  # a thread of the other's may have held it
+        """Drop it in a fork of the grader: it belongs to the parent."""
+        self._lock = threading.Lock()  # a thread of the parent's may have held it
         self._hang_up()
         self._process.returncode = 0
 
@@ -205,7 +205,7 @@ class ForkServer:
         if self.is_lost:
             raise ServerLost(Refusal(0, "", "it is gone"))
         if self._preloaded is None:
-            data, _ = self._hear()
+            data, _ = self._receive()
             self._preloaded = frozenset(json.loads(data))
         return self._preloaded
 
@@ -216,7 +216,7 @@ class ForkServer:
         with self._exchanging():
             socket.send_fds(self._socket, [b"order"], fds)
         try:
-            data, got = self._hear()
+            data, got = self._receive()
         except ServerLost as lost:
             raise GraderFailure(
                 "what a process was to be forked from has died: {lost}", lost=str(lost)
@@ -228,7 +228,7 @@ class ForkServer:
             raise ServerLost(Refusal.from_line(str(answer["refused"])))
         return int(answer["pid"]), got[0] if got else -1
 
-    def _hear(self) -> tuple[bytes, list[int]]:
+    def _receive(self) -> tuple[bytes, list[int]]:
         """Receive an answer, and the descriptors that come with it."""
         with self._exchanging():
             answer, got, _, _ = socket.recv_fds(self._socket, fork_server_main.LIMIT_BYTES, 1)
@@ -238,29 +238,29 @@ class ForkServer:
 
     @contextmanager
     def _exchanging(self) -> Iterator[None]:
-        """End the server if anything comes between: the two have lost step."""
+        """End the server if an exchange fails: its answers would no longer match the requests."""
         try:
             yield
         except BaseException as error:
             self._hang_up()
-            self._process.kill()  # with a child that nobody has heard of
+            self._process.kill()  # with a child that may be unknown here
             if isinstance(error, OSError):
                 raise ServerLost(Refusal.of(error)) from None
             raise
 
     def _hang_up(self) -> None:
-        """Not while another thread waits for an answer, which would never come."""
+        """Close the socket; not while another thread waits for an answer: it would never come."""
         self.is_lost = True
         self._socket.close()
 
 
 def cold_server(env: Mapping[str, str]) -> ForkServer:
-    """A server that has loaded nothing, whose children execute their command."""
+    """Start a server that has loaded nothing, whose children execute their command."""
     return ForkServer([sys.executable, "-I", "-S", fork_server_main.__file__], env, executes=True)
 
 
 def _pipe(ours: ExitStack, theirs: ExitStack) -> tuple[int, int]:
-    """Both ends of a pipe: the reading one is ours."""
+    """Make a pipe; the reading end is ours."""
     reading, writing = os.pipe()
     ours.callback(os.close, reading)
     theirs.callback(os.close, writing)

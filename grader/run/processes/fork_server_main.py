@@ -5,19 +5,19 @@
 The grader's side of this is `.fork_server`. Started as above it has imported nothing beforehand,
 and its children execute their command; one of `grader.run.fork_servers` has imported what runs
 need, and its children go on by themselves, as if the command had been executed. It has one thread
-and two of ROS's that sleep. It is asked over a socket (SOCK_SEQPACKET) with descriptors, the first
-of which holds a `ForkOrder`, and answers with a process id and, where the system has such, a pidfd.
-It goes with the grader, whose end closes the socket, and its children go with it. Where the grader
-only orders no more, it ends when the last of its children has.
+and two of ROS's that sleep. A request comes over a socket (SOCK_SEQPACKET) with descriptors, the
+first of which holds a `ForkOrder`; the answer is a process id and, where the system has such, a
+pidfd. It ends with the grader, whose end closes the socket, and its children end with it. If the
+grader only stops ordering, it ends when the last of its children has.
 
-What becomes of a process stands in its report, a pipe to the grader, as lines of JSON, each an
-object of one of these: `refused`, why it did not become what was ordered (`refusal`); `over`, its
-exit code, negative for a signal; of one that a supervisor stands above, whose `over` that is,
-before that `pid`, the process id of the command itself, and `exit`, how that has ended. A report
-that closes without an `over` is that of a process whose server has died.
+Each process has a report, a pipe to the grader with lines of JSON. Each line is an object of one
+key: `refused`, why it did not become what was ordered (`refusal`); `over`, its exit code, negative
+for a signal. Below a supervisor, whose exit code `over` is then, come first `pid`, the process id
+of the command itself, and `exit`, its exit code. A report that closes without an `over` is that of
+a process whose server has died.
 
-`become` is what a child does before anything of its own; what only a submission's process is to be
-confined by comes after its supervisor has forked, in `.supervisor.confine`.
+`become` is what every child does first; a submission's process is confined after its supervisor has
+forked, in `.supervisor.confine`.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class ProcessCommand(NamedTuple):
         env: its environment variables.
         cwd: its current folder; None for the grader's.
         fds: descriptors that it inherits, under the same numbers.
-        namespaces: which it is in: kind, a key of `NAMESPACES`, -> descriptor, in the order in
+        namespaces: its namespaces: kind, a key of `NAMESPACES`, -> descriptor, in the order in
             which they are entered.
         confinement: how it is confined; see `grader.run.sandbox.confinement`.
     """
@@ -77,16 +77,16 @@ class ProcessCommand(NamedTuple):
 
 
 class ForkOrder(NamedTuple):
-    """What a child is to become.
+    """An order for a child.
 
-    After the order's own come, in this order, the descriptors of its output, of its report, of its
-    command's namespaces, and those that it is to have.
+    The descriptor of the order is followed, in this order, by those of its output, of its report,
+    of its command's namespaces, and those that it inherits.
 
     Attributes:
         command: what it executes, or goes on as.
         server_env: the environment variables that were given to the server. What Python's start has
-            made of them there (ROS's wheels set a library path, for one) it would have made in the
-            child as well.
+            changed in them there (ROS's wheels set a library path, for one) it would have changed
+            in the child as well.
         limits: the grader's limits of resources, which may have changed since the server started:
             resource, soft and hard limit.
         executes: whether it executes its command; if not, it goes on in what the server has loaded.
@@ -104,7 +104,7 @@ class ForkOrder(NamedTuple):
 
 
 def serve(number: str, preloaded: Iterable[str]) -> list[str]:
-    """Fork for each order that comes. The server never returns: it ends in here.
+    """Fork for each order. The server itself never returns from here.
 
     Args:
         number: of the socket.
@@ -112,11 +112,11 @@ def serve(number: str, preloaded: Iterable[str]) -> list[str]:
             `grader.run.fork_servers.shadows`.
 
     Returns:
-        In each child that goes on in what the server has loaded: the command that it has become.
+        The command; in each child that goes on with what the server has loaded.
     """
     grader = socket.socket(fileno=int(number))
-    linux.control(linux.PR_SET_DUMPABLE, 0)  # nobody else looks into it
-    # what is there stays: no child looks through it, or writes to its pages
+    linux.control(linux.PR_SET_DUMPABLE, 0)  # nobody else reads its memory
+    # what is loaded stays: no child searches it for garbage, which would write to its pages
     gc.collect()
     gc.freeze()
     ended = _wake_at_ends()
@@ -145,7 +145,7 @@ def serve(number: str, preloaded: Iterable[str]) -> list[str]:
                     os.close(report)
                 else:
                     reports[child] = report
-                    _hand_over(grader, child)
+                    _answer_with_child(grader, child)
             else:
                 is_retired = True
                 poll.modify(grader, 0)
@@ -170,7 +170,7 @@ def _report_ends(reports: dict[int, int]) -> None:
 
 
 def _receive_order(grader: socket.socket) -> list[int]:
-    """Return the descriptors of an order; none where the grader orders no more."""
+    """Receive the descriptors of an order; none where the grader orders no more."""
     try:
         return socket.recv_fds(grader, LIMIT_BYTES, MOST_FDS)[1]
     except ConnectionError:
@@ -178,7 +178,7 @@ def _receive_order(grader: socket.socket) -> list[int]:
 
 
 def _fork(grader: socket.socket) -> int | None:
-    """Fork this process; None where the system refuses it, which is then the answer."""
+    """Fork this process; where the system refuses that, answer so and return None."""
     try:
         with warnings.catch_warnings():
             # CPython 3.12 warns of forks beside other threads: ROS's two sleep, and hold nothing
@@ -189,8 +189,8 @@ def _fork(grader: socket.socket) -> int | None:
         return None
 
 
-def _hand_over(grader: socket.socket, child: int) -> None:
-    """Answer an order with a child; end that one where the answer does not arrive."""
+def _answer_with_child(grader: socket.socket, child: int) -> None:
+    """Answer an order with a child; end that where the answer does not arrive."""
     try:
         pidfd = [os.pidfd_open(child)]
     except OSError:  # some containers refuse them
@@ -213,7 +213,7 @@ def _answer(grader: socket.socket, **fact: object) -> None:
 
 
 def _be_child(server: int, report: int, ordered: int, *fds: int) -> list[str]:
-    """Become what is ordered and go on as that; whatever keeps it from that is reported.
+    """Become what was ordered, or report why that failed.
 
     Returns:
         The command, where it is not executed.
@@ -248,16 +248,15 @@ def _be_child(server: int, report: int, ordered: int, *fds: int) -> list[str]:
 def become(order: ForkOrder, fds: Sequence[int], server: int, report: int) -> None:
     """Turn a forked child into the process that was ordered, as a start of its command would.
 
-    The one place for all that is done to a run's process as a whole, its supervisor included:
-    session, descriptors, namespaces, limits, environment, current folder. Nothing of the server's
-    stays within reach: whatever is not passed is closed.
+    Sets up a run's process as a whole, its supervisor included: session, descriptors, namespaces,
+    limits, environment, current folder. All other descriptors of the server are closed.
 
     Args:
-        fds: what came with the order: its output, its namespaces, and what is passed.
+        fds: the descriptors of the order: its output, its namespaces, and those that it inherits.
         report: a descriptor that is kept beside those.
 
     Raises:
-        OSError, ValueError, KeyError: something of it is refused.
+        OSError, ValueError, KeyError: the system refuses something, or the order is wrong.
     """
     os.setsid()
     output, *rest = (_out_of_the_way(fd, order) for fd in fds)
@@ -281,7 +280,7 @@ def become(order: ForkOrder, fds: Sequence[int], server: int, report: int) -> No
 
 
 def _out_of_the_way(fd: int, order: ForkOrder) -> int:
-    """Move a descriptor to a number that no passed one is to have."""
+    """Move a descriptor to a number that no inherited one is to have."""
     return fcntl.fcntl(fd, fcntl.F_DUPFD, max([2, *order.command.fds]) + 1)
 
 
@@ -306,7 +305,7 @@ def _replace_environment(order: ForkOrder) -> None:
 
 
 def _show_mark(mark: str) -> None:
-    """Write the mark into /proc/PID/environ, which shows what a program was started with."""
+    """Write the mark into /proc/PID/environ, which shows the variables at a program's start."""
     start, end = linux.process_stat(os.getpid()).env
     at = ctypes.string_at(start, end - start).index(f"{MARK}={NO_MARK}".encode())
     ctypes.memmove(start + at, f"{MARK}={mark}".encode(), len(MARK) + 1 + len(mark))

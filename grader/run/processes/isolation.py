@@ -1,9 +1,8 @@
-"""A network for one run alone, so that no run on this machine ever hears another.
+"""Isolates a run's network, so that no run on this machine ever receives from another.
 
-Best is a network namespace that holds nothing but a loopback device: root may make one, others
-inside a user namespace, where the system allows that. Else the run reserves a ROS domain. In both
-cases all goes by UDP over loopback: the shared memory of a process that is killed would stay.
-
+Best is a network namespace with nothing but a loopback device: root may make one, others inside a
+user namespace, where the system allows that. Else the run reserves a ROS domain. In both cases all
+traffic is UDP over loopback: the shared memory of a process that is killed would stay.
 """
 
 from __future__ import annotations
@@ -50,12 +49,12 @@ ONLY_LOOPBACK = """<?xml version="1.0" encoding="UTF-8"?>
 
 @dataclass(frozen=True)
 class Isolation:
-    """What keeps a run to itself.
+    """The isolation of a run's network.
 
     Attributes:
         name: for the result: "private network", "ROS domain 87".
         env: environment variables of both processes.
-        namespaces: what they have to enter: kind -> descriptor.
+        namespaces: the namespaces that both have to enter: kind -> descriptor.
     """
 
     name: str
@@ -106,7 +105,7 @@ def reserve_domain() -> Iterator[int]:
         GraderFailure: all of them are taken, or there is no place for locks.
     """
     for domain in random.sample(DOMAINS, len(DOMAINS)):
-        if lock := scratch.take_lock(f"domain-{domain}"):
+        if lock := scratch.acquire_lock(f"domain-{domain}"):
             with lock:
                 yield domain
             return
@@ -120,10 +119,10 @@ _refused: set[Callable[[], Namespaces]] = set()
 
 
 def private_network() -> Namespaces | None:
-    """A network namespace with a loopback device; None where there can be none.
+    """Make a network namespace with a loopback device; None where there can be none.
 
     Raises:
-        NotNow: what kept it from being made may pass; it was tried `refusal.TRIES` times.
+        NotNow: it failed `refusal.TRIES` times, for a reason that may pass.
     """
     last: Refusal | None = None
     for way in (_as_root, _as_user):
@@ -163,7 +162,7 @@ def _as_root() -> Namespaces:
         except OSError as error:
             found.append(error)
 
-    # A namespace belongs to a thread: this one moves out, and the rest of us stay where we are.
+    # A namespace belongs to a thread: this one leaves, and the others stay.
     thread = threading.Thread(target=make)
     thread.start()
     thread.join()
@@ -190,7 +189,7 @@ def _as_user() -> Namespaces:
 
 
 def _made_as_user() -> Iterator[bytes]:
-    """Make both in a copy of this process, answer its number or why not, and keep them."""
+    """Make both in a copy of this process, yield its process id or why not, and keep them."""
     try:
         proc = os.open("/proc/self", os.O_PATH)
         linux.unshare_user(0, proc, linux.CLONE_NEWNET)

@@ -1,6 +1,6 @@
-"""The level at which a submission's process can be confined here: tried once per grader process.
+"""Finds the best level at which submissions can be confined here: once per grader process.
 
-What may pass (see `.refusal`) is tried again, lowers no level, and is not remembered.
+A refusal that may pass (see `.refusal`) is tried again, lowers no level, and is not cached.
 
 `namespaces`: a root of its own, and processes, network, shared memory of its own; a user of its own
 without any capability; a filter of system calls; limits.
@@ -8,8 +8,8 @@ without any capability; a filter of system calls; limits.
 limits; for root a user of its own, where that can read what it needs.
 `limits`: limits and process groups, and no program gets more rights.
 
-What is tried is what is done later: a process is confined, as a submission's is, and has to be able
-to start Python, to read rclpy and to write a file. Elsewhere than on Linux there is no level.
+A trial does what runs do later: a process is confined as a submission's is, and must be able to
+start Python, to read rclpy and to write a file. Elsewhere than on Linux there is no level.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ from grader.run.sandbox.confinement import LANDLOCK, LIMITS, MAPPED, NAMESPACES,
 
 #: The best comes first.
 LEVELS = (NAMESPACES, LANDLOCK, LIMITS)
-#: Users of a moment: a range of systemd's for such, in which nobody has an account.
+#: Users without an account: a range that systemd has for transient ones.
 USERS = range(61184, 65520)
-#: What a submission's process must be able to do; it ends with a line of `Refusal`.
+#: What a submission's process must be able to do; it prints a line of `Refusal` otherwise.
 TRIAL = """
 import importlib.machinery, sys
 try:
@@ -88,7 +88,7 @@ class Level:
     Attributes:
         level: of `LEVELS`; '' for none.
         user: how the user is changed; see `grader.run.sandbox.confinement`.
-        refused: what was tried before in vain: level -> why.
+        refused: the better levels that were refused: level -> why.
     """
 
     level: str
@@ -96,25 +96,25 @@ class Level:
     refused: Mapping[str, Text] = field(default_factory=dict)
 
     def name(self) -> str:
-        """For the result; '' for none."""
+        """Return the name for the result; '' for none."""
         if self.level == LANDLOCK:
             user = ", own user" if self.user == SEPARATE else ""
             return f"{LANDLOCK} (ABI {landlock.abi()}{user})"
         return self.level
 
     def is_at_least(self, level: str) -> bool:
-        """Whether it keeps what another level promises."""
+        """Whether it is this level or a better one."""
         return self.level in LEVELS[: LEVELS.index(level) + 1]
 
 
 @dataclass(frozen=True)
 class Confinement:
-    """What is prepared for one process of a submission.
+    """The confinement of one process of a submission.
 
     Attributes:
         order: for `grader.run.sandbox.confinement`; None for none.
-        env: what its environment variables have to say of it.
-        copy: where it finds the submission, which it may write into.
+        env: environment variables that depend on it.
+        copy: the path of the submission, which the process may write into.
     """
 
     order: Mapping[str, Any] | None
@@ -123,10 +123,10 @@ class Confinement:
 
 
 def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> Confinement:
-    """What confines a submission's process in a run, with the copy that this run may write into.
+    """Prepare a submission's confinement in a run, with the copy that this run may write into.
 
-    At `namespaces` the process makes that copy itself, in memory, where it sees nothing else of
-    this path. Elsewhere it lies in the folder of the run.
+    At `namespaces` the process makes that copy itself, in memory, under the same path. Elsewhere it
+    lies in the folder of the run.
 
     Args:
         submission: all of it, without symbolic links in its path; it is only read.
@@ -171,29 +171,29 @@ def _is_reachable(path: Path) -> bool:
 
 
 _lock = threading.Lock()
-#: (that of `only`, whether with a network of one's own) -> what there is
+#: (the level of `only`, whether with a network of its own) -> the level found
 _found: dict[tuple[str, bool], Level] = {}
-#: what `require` and `only` were asked for
+#: the levels of `require` and `only`
 _least = _only = ""
 
 
 def best(isolated: Isolation, level: str = "") -> Level:
-    """The best that there is here.
+    """Return the best level that there is here.
 
     Args:
-        isolated: what keeps the run apart; if that is a network, there is more.
-        level: this one, no less and no more; '': that of `only`, if any.
+        isolated: the run's isolation; with a network of its own, better levels are possible.
+        level: exactly this one; '': that of `only`, if any.
 
     Raises:
-        GraderFailure: that is less than what was required.
+        GraderFailure: it is less than what was required.
         NotOffered: there is no such level.
-        NotNow: what there is cannot be found out at present.
+        NotNow: the level cannot be found at present.
     """
     level = level or _only
     tried = level, bool(isolated.namespaces)
     with _lock:
         if tried not in _found:
-            _found[tried] = _look(isolated, level)
+            _found[tried] = _find_level(isolated, level)
         found = _found[tried]
     if level and found.level != level:
         raise NotOffered(
@@ -209,13 +209,13 @@ def best(isolated: Isolation, level: str = "") -> Level:
 
 
 def only(level: str) -> None:
-    """Have every run from now on confined at one level, no less and no more; '': at the best."""
+    """Confine every run from now on at exactly this level; '': at the best."""
     global _only
     _only = level
 
 
 def here(level: str = "") -> Level:
-    """What a run would have here; see `best`.
+    """Return the level that a run would have here; see `best`.
 
     Raises:
         GraderFailure, NotOffered, NotNow: see `best`.
@@ -225,10 +225,11 @@ def here(level: str = "") -> Level:
 
 
 def require(level: str) -> None:
-    """See to it that there is such a level here, and that every run from now on has it.
+    """Require at least this level, here and for every run from now on.
 
     Raises:
-        UsageError: there is not; the text says what there is, what is missing, and how to get it.
+        UsageError: it is not available; the text names the best level, what is missing, and how to
+            get it.
     """
     global _least
     there = here()
@@ -249,7 +250,7 @@ def require(level: str) -> None:
     _least = level
 
 
-def _look(isolated: Isolation, wanted: str) -> Level:
+def _find_level(isolated: Isolation, wanted: str) -> Level:
     refused: dict[str, Text] = {}
     for level in _candidates():
         if wanted in ("", level.level):
@@ -269,17 +270,17 @@ def _look(isolated: Isolation, wanted: str) -> Level:
 
 
 def _is_answer(refusal: Refusal) -> bool:
-    """Whether a trial came to its end, each time, without something that it needs."""
+    """Whether the trial itself ended, each time, because something that it needs was missing."""
     return refusal.number == errno.ENOENT and refusal.step == TRIAL_STEP
 
 
 def offered(isolated: Isolation) -> list[Level]:
-    """All that there is here, the best first; for tests and benchmarks."""
+    """Return all levels that there are here, the best first; for tests and benchmarks."""
     return [level for level in _candidates() if _try(level, isolated) is None]
 
 
 def _candidates() -> Iterator[Level]:
-    """Yield all that may be here, the best first."""
+    """Yield all possible levels, the best first."""
     separate = [SEPARATE] if os.geteuid() == 0 else []
     yield from (Level(NAMESPACES, user) for user in (*separate, MAPPED))
     yield from (Level(LANDLOCK, user) for user in (*separate, SAME))
@@ -287,7 +288,7 @@ def _candidates() -> Iterator[Level]:
 
 
 def _try(level: Level, isolated: Isolation) -> Refusal | None:
-    """Confine a process at this level; what was refused, None for nothing."""
+    """Confine a process at this level; return what was refused, None for nothing."""
     if level.level == LANDLOCK and not landlock.abi():
         why = msg("this kernel has no Landlock, or a container refuses it")
         return Refusal(errno.ENOSYS, "", why)
@@ -328,7 +329,7 @@ def _start(confinement: Confinement, folder: Path, namespaces: Mapping[str, int]
     if ended is None:
         return Refusal(errno.ETIMEDOUT, "", msg("a trial took {s:g} s", s=PATIENCE_S))
     silent = Refusal(0, "", msg("a trial ended with {code}", code=ended))
-    told = Refusal.from_line(lines[-1]) if lines else silent
-    if ended > 0 and told.number in (0, errno.ENOENT):  # Python itself says so
-        return Refusal(errno.ENOENT, TRIAL_STEP, str(told.why))
-    return told
+    refusal = Refusal.from_line(lines[-1]) if lines else silent
+    if ended > 0 and refusal.number in (0, errno.ENOENT):  # from Python itself
+        return Refusal(errno.ENOENT, TRIAL_STEP, str(refusal.why))
+    return refusal

@@ -1,8 +1,9 @@
 """The limits guard: ends a submission whose processes together use too much.
 
 The kernel's limits (`grader.run.limits.rlimits`) hold for each process alone, and control groups,
-which count whole families, are given to a grader almost nowhere: not in containers, not to users.
-So a thread of the grader measures, five times a second, and ends the family that uses too much.
+which count whole families, are available to a grader almost nowhere: not in containers, not to
+users. So a thread of the grader measures, five times a second, and ends a family that uses too
+much.
 Between two measurements, of a millisecond each, a core can fill a few hundred MiB at most.
 """
 
@@ -22,10 +23,10 @@ from grader.run.limits import LIMITS, MIB, CpuBudget, RunLimits, size
 
 #: How often usage is measured [s].
 EVERY_S = 0.2
-#: Memory that has gone since the last close measurement, wherever to, and makes the next one due.
+#: So much memory of the machine used since the last close measurement makes the next one due.
 HURRY_BYTES = 256 * MIB
-#: So near to the limit of processes the kernel has refused one: some are not a submission's own,
-#: and some have ended since.
+#: This near to the limit of processes the kernel has refused one: some belong to the grader, and
+#: some have ended since.
 NEAR = 12
 
 
@@ -36,7 +37,7 @@ class FamilyUsage(NamedTuple):
         memory_bytes: the pages of each, with those of files and those that several share.
         tasks: its processes and threads.
         files: their open descriptors; 0 before Linux 6.2, which does not count them.
-        ticks: the processor time that they have taken, and those that they have waited for [ticks].
+        ticks: their processor time, and that of the children that they have waited for [ticks].
     """
 
     memory_bytes: int
@@ -49,7 +50,7 @@ class LimitsGuard:
     """Watches the descendants of a process until it is stopped.
 
     Attributes:
-        remark: of which there was too much, for the result; nothing if of nothing.
+        remark: what they used too much of, for the result; NOTHING for none.
     """
 
     def __init__(
@@ -60,10 +61,10 @@ class LimitsGuard:
         budget: CpuBudget | None = None,
         printed_bytes: Callable[[], int] = lambda: 0,
     ) -> None:
-        """Begin; `end` is called, in a thread of ours, when they are to be ended.
+        """Start watching; `end` is called, in a separate thread, when they are to be ended.
 
         Args:
-            budget: of their grading, from which they spend.
+            budget: of their grading.
             printed_bytes: returns how much they have printed.
         """
         self.remark = NOTHING
@@ -71,20 +72,20 @@ class LimitsGuard:
         self._printed_bytes = printed_bytes
         self._budget, self._seen_ticks = budget or CpuBudget(), 0
         self._has_ended = False
-        self._next_close_look, self._available = 0.0, 0
+        self._next_close_measurement, self._available = 0.0, 0
         self._is_over = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
-        """Measure no more; what has been found stays."""
+        """Stop measuring."""
         self._is_over.set()
         self._thread.join()
 
-    def look_last(self) -> bool:
-        """Measure once more, and no more; whether they are ended, now or before."""
+    def measure_last(self) -> bool:
+        """Measure once more, and stop; return whether they are ended, now or before."""
         self.stop()
-        self._next_close_look = 0.0
+        self._next_close_measurement = 0.0
         if not self._has_ended and self._is_too_much():
             self._end_all()
         return self._has_ended
@@ -140,29 +141,30 @@ class LimitsGuard:
         return False
 
     def _is_too_much_memory(self) -> bool:
-        """Measure closely: without pages of files, and with what is shared counted once.
+        """Measure closely: without pages of files, and with shared pages counted once.
 
-        That takes a millisecond a process: a tenth of our time, and at once where memory goes.
+        A measurement takes a millisecond a process. It gets a tenth of our time, and is made at
+        once where the machine's memory shrinks.
         """
         began, available = time.monotonic(), _available_bytes()
-        if began < self._next_close_look and available > self._available - HURRY_BYTES:
+        if began < self._next_close_measurement and available > self._available - HURRY_BYTES:
             return False
         memory = self._family.private_memory_bytes()
-        self._next_close_look = began + 10 * (time.monotonic() - began)
+        self._next_close_measurement = began + 10 * (time.monotonic() - began)
         self._available = available
         return memory > self._limits.family_bytes
 
 
 class Family:
-    """All descendants of a process, found again and again."""
+    """The descendants of a process, found anew for each measurement."""
 
     def __init__(self, ancestor: int) -> None:
         self._ancestor = ancestor
-        #: Processes that were there and are none of them; they will not become any.
+        #: Processes that are not in the family, and never will be.
         self._others: set[int] = set()
 
     def usage(self) -> FamilyUsage:
-        """What they use now, without the ancestor, by figures that are had quickly."""
+        """Measure their usage quickly, without the ancestor."""
         members = self._members()
         memory = sum(member.memory_bytes for member in members.values())
         tasks = sum(member.tasks for member in members.values())
@@ -170,7 +172,7 @@ class Family:
         return FamilyUsage(memory, tasks, sum(map(_open_files, members)), ticks)
 
     def private_memory_bytes(self) -> int:
-        """Their memory that is no file's; pages that several share count once [bytes]."""
+        """Measure their memory without files'; pages that several share count once [bytes]."""
         return sum(_private_memory_bytes(pid, stat) for pid, stat in self._members().items())
 
     def _members(self) -> dict[int, ProcessStat]:
@@ -181,14 +183,14 @@ class Family:
         }
         ancestor = {self._ancestor}
         members = {pid: found[pid] for pid in linux.below(ancestor, found)}
-        # one whose parent has ended meanwhile has another by now: it is found the next time
+        # one whose parent has just ended has a new one, and is found the next time
         rest = {pid: found[pid] for pid in found.keys() - members.keys() - ancestor}
         self._others |= linux.below(self._others | {0}, rest)
         return members
 
 
 def _open_files(pid: int) -> int:
-    """How many descriptors a process has open; 0 where that cannot be known."""
+    """Count the open descriptors of a process; 0 where the system does not show them."""
     try:
         return os.stat(f"/proc/{pid}/fd").st_size  # noqa: PTH116
     except OSError:
@@ -196,7 +198,7 @@ def _open_files(pid: int) -> int:
 
 
 def _private_memory_bytes(pid: int, stat: ProcessStat) -> int:
-    """A process's share of memory that is no file's [bytes]; all it has where that is hidden."""
+    """Return a process's share of memory without files' [bytes]; all of it where that is hidden."""
     try:
         with open(f"/proc/{pid}/smaps_rollup", "rb", buffering=0) as file:  # noqa: PTH123
             lines = file.readall().splitlines()
@@ -208,7 +210,7 @@ def _private_memory_bytes(pid: int, stat: ProcessStat) -> int:
 
 
 def _available_bytes() -> int:
-    """The memory that the machine could still give; 0 if it does not say."""
+    """Return the machine's available memory [bytes]; 0 where it is unknown."""
     with suppress(OSError, IndexError, ValueError), open("/proc/meminfo", "rb") as file:  # noqa: PTH123
         return int(file.read().partition(b"MemAvailable:")[2].split()[0]) * 1024
     return 0

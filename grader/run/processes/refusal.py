@@ -1,8 +1,7 @@
-"""What a system refuses that a level needs: for good, or for now.
+"""Refusals by the system of what a level needs: for good, or for now.
 
-What is refused for good is not asked for again. Anything else (no descriptor is free, no memory, a
-trial that takes too long) may pass: it is tried again, a few times, and then reported. It never
-lowers a level.
+A final refusal is not tried again. Any other (no descriptor is free, no memory, a trial that takes
+too long) may pass: it is tried again, a few times, and then reported. It never lowers a level.
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from typing import TYPE_CHECKING, NamedTuple, Self, TypeVar
 if TYPE_CHECKING:  # no dataclass, no re: a supervisor starts in milliseconds
     from grader.message import Message
 
-#: The numbers of errors that a system does not take back.
+#: The numbers of errors that are final.
 FINAL = frozenset(
     getattr(errno, name) for name in ("EPERM", "EACCES", "ENOSYS", "EINVAL", "EOPNOTSUPP", "EUSERS")
 )
-#: Between two tries [s]: there is one try more.
+#: The pauses between tries [s].
 PAUSES_S = (0.1, 0.5)
 TRIES = len(PAUSES_S) + 1
-#: How many namespaces of a kind there may be.
+#: The file with the most namespaces of a kind that there may be.
 MOST = "/proc/sys/user/max_{kind}_namespaces"
 
 Made = TypeVar("Made")
@@ -35,8 +34,8 @@ class Refusal(NamedTuple):
 
     Attributes:
         number: the system's number of the error; 0 for none.
-        step: what was to be done: "unshare (net)", a path, a function: "confinement._become".
-        words: why, for people; a message where there is no step.
+        step: the refused step: "unshare (net)", a path, a function: "confinement._become".
+        words: the reason, for people; a message where there is no step.
     """
 
     number: int
@@ -45,7 +44,7 @@ class Refusal(NamedTuple):
 
     @classmethod
     def of(cls, error: BaseException) -> Self:
-        """Make one of an error; if that names no file, the step is the function it comes from."""
+        """Make one from an error; its file is the step, or else the function that raised it."""
         place = error.__traceback__
         while place is not None and place.tb_next is not None:
             place = place.tb_next
@@ -71,12 +70,12 @@ class Refusal(NamedTuple):
 
     @property
     def why(self) -> str | Message:
-        """For people, in one line."""
+        """The step and the reason, for people, in one line."""
         return f"{self.step}: {self.words}" if self.step else self.words
 
     @property
     def is_final(self) -> bool:
-        """Whether it would be refused again: there is none, it is forbidden, or none may be had."""
+        """Whether a retry is useless: the system lacks it, or forbids it."""
         if self.number == errno.ENOSPC and self.step.startswith("unshare"):
             kinds = self.step.removeprefix("unshare (").removesuffix(")").split(", ")
             return any(_most(kind) == 0 for kind in kinds)
@@ -84,7 +83,7 @@ class Refusal(NamedTuple):
 
 
 def insist(attempt: Callable[[], Made | Refusal]) -> Made | Refusal:
-    """Return what an attempt makes; try `TRIES` times at most, until it is refused for good."""
+    """Return what an attempt makes; try up to `TRIES` times, until a refusal is final."""
     for pause_s in PAUSES_S:
         answer = attempt()
         if not isinstance(answer, Refusal) or answer.is_final:

@@ -1,8 +1,8 @@
 """Started processes: reads their output, waits for their ends, and leaves nothing of them behind.
 
-`StartedProcess` is one of our own programs, which leaves nothing behind when it comes to its end;
-`SubmissionProcess` is a stranger's, below a supervisor that holds all its descendants, and watched
-by a limits guard.
+`StartedProcess` is one of our programs, which leaves nothing behind when it ends by itself;
+`SubmissionProcess` is a submission's, below a supervisor that holds all its descendants, and
+watched by a limits guard.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from grader.run.processes.limits_guard import LimitsGuard
 from grader.run.processes.refusal import Refusal
 from grader.run.sandbox.confinement import SEPARATE
 
-#: What asks the grader to end: Ctrl-C, `timeout` or `docker stop`, a closed terminal.
+#: Signals that ask the grader to end: Ctrl-C, `timeout` or `docker stop`, a closed terminal.
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-#: How long a process may take to heed a signal [s].
+#: How long a process may take to end after a signal [s].
 PATIENCE_S = 2.0
 
 _running: set[StartedProcess] = set()
@@ -40,16 +40,16 @@ _is_ending = threading.Event()
 def adopt_orphans() -> None:
     """Become the parent of grandchildren whose parent ends, so that none of them outlives us.
 
-    For a process that is the grader and nothing else; who calls us as a library is left as he is.
+    Only for a process that is the grader and nothing else: a caller of the library is not changed.
     """
     linux.control(linux.PR_SET_CHILD_SUBREAPER, 1)
 
 
 def end_on_signals() -> None:
-    """Let any signal of `ENDING` end all runs in good order, and then the main thread.
+    """Have any signal of `ENDING` end all runs in good order, and then the main thread.
 
-    It raises KeyboardInterrupt there. Runs in other threads see their processes die, and cannot
-    start others; when they are through, nothing is left behind.
+    The main thread gets a KeyboardInterrupt. Runs in other threads see their processes die, and
+    cannot start others; when they have returned, nothing is left behind.
     """
 
     def end(number: int, frame: FrameType | None) -> None:
@@ -61,17 +61,17 @@ def end_on_signals() -> None:
         raise KeyboardInterrupt
 
     for number in ENDING:
-        # what the caller has had ignored (nohup) stays so
+        # a signal that the caller ignores (nohup) stays ignored
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, end)
 
 
 def await_ends(processes: Iterable[psutil.Process], timeout_s: float) -> list[psutil.Process]:
-    """Wait for the ends of processes that are not our children; those that still run then.
+    """Wait for the ends of processes that are not our children; return those that still run.
 
     The process that has adopted one may be slow to reap it, as the first process of a container
-    often is; and the first of a namespace sleeps until all others have been reaped. So one that has
-    no memory any more has ended.
+    often is; and the first of a namespace sleeps until all others have been reaped. So a process
+    without memory counts as ended.
     """
     deadline = time.monotonic() + timeout_s
     while (left := [each for each in processes if _runs(each)]) and time.monotonic() < deadline:
@@ -86,7 +86,7 @@ def _runs(process: psutil.Process) -> bool:
 
 
 class NotConfined(NotNow):
-    """A process could not be confined or started, which was to be had before."""
+    """A process could not be confined or started, though that was possible before."""
 
     def __init__(self, refusal: Refusal) -> None:
         super().__init__(
@@ -168,17 +168,17 @@ class StartedProcess:
 
     @property
     def was_lost(self) -> bool:
-        """Whether it ended only because a process of ours did."""
+        """Whether it ended only because its fork server did."""
         is_silent = self._report.is_complete and "over" not in self._report.facts
         return is_silent and self._cold_server is None
 
     @property
     def printed_bytes(self) -> int:
-        """How much it has printed."""
+        """How much it has printed [bytes]."""
         return len(self._head) + self._dropped + len(self._tail)
 
     def output(self) -> str:
-        """What it has printed: all of it, or its start and end with a note between."""
+        """Return what it has printed: all of it, or its start and end with a note between."""
         self._reader.join(1.0)  # ends with the process, unless a grandchild keeps the pipe
         middle = f"\n[... {self._dropped} bytes left out ...]\n" if self._dropped else ""
         return (
@@ -186,7 +186,7 @@ class StartedProcess:
         )
 
     def kill(self) -> None:
-        """End it now, and do not wait."""
+        """End it now, without waiting."""
         self._signal(signal.SIGKILL)
 
     @contextmanager
@@ -198,7 +198,7 @@ class StartedProcess:
             self.end(gently=gently)
 
     def end(self, *, gently: bool = True) -> None:
-        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
+        """Ask it to end as Ctrl-C would, then kill it, with its descendants."""
         is_through = self._await_end(0.0) == 0
         self._signal_group(*(signal.SIGINT, signal.SIGTERM) if gently else (), signal.SIGKILL)
         if not is_through:
@@ -214,7 +214,7 @@ class StartedProcess:
                 self._await_end(PATIENCE_S)
 
     def _forget(self) -> None:
-        """Let go of what it holds; it has ended, so the end of the grader need not see to it."""
+        """Release its descriptors; it has ended, so the grader's end need not handle it."""
         _running.discard(self)
         self._report.close()
         if self._child.pidfd >= 0:
@@ -224,7 +224,7 @@ class StartedProcess:
             self._cold_server.close()
 
     def _signal(self, number: signal.Signals) -> None:
-        """A signal to it, or to its supervisor."""
+        """Send a signal to it, or to its supervisor."""
         with suppress(OSError):  # it has ended
             if self._child.pidfd >= 0:
                 signal.pidfd_send_signal(self._child.pidfd, number)
@@ -232,7 +232,7 @@ class StartedProcess:
                 os.kill(self._child.pid, number)
 
     def _sweep(self) -> None:
-        """End what it has started, wherever that has gone: known by its environment."""
+        """Kill its descendants wherever they are, found by their environment or user."""
         family = [each for each in psutil.process_iter() if self._owns(each)]
         for each in family:
             with suppress(psutil.Error):
@@ -276,7 +276,7 @@ class SubmissionProcess(StartedProcess):
         """Start it; see `StartedProcess`.
 
         Args:
-            budget: what it and its descendants spend of, and that ends them; None for none.
+            budget: of the grading, which ends it and its descendants; None for none.
         """
         self._guard: LimitsGuard | None = None
         self._excess = NOTHING
@@ -286,12 +286,12 @@ class SubmissionProcess(StartedProcess):
         )
 
     def ends_for_excess(self) -> bool:
-        """Measure its usage once more; whether it is ended for too much, now or before."""
-        return self._guard is not None and self._guard.look_last()
+        """Measure its usage once more; return whether it is ended for too much, now or before."""
+        return self._guard is not None and self._guard.measure_last()
 
     @property
     def excess(self) -> Message:
-        """For the result, of what it and its descendants used too much; '' if of nothing."""
+        """The remark for the result on what it and its descendants used too much of, or NOTHING."""
         return self._guard.remark if self._guard else self._excess
 
     @property
@@ -311,15 +311,15 @@ class SubmissionProcess(StartedProcess):
     def _await_end(self, timeout_s: float) -> int | None:
         if not self._report.await_fact("exit", timeout_s):
             return None
-        # its supervisor ends without a word of it only if somebody has killed one of them
+        # its supervisor ends without reporting it only if one of them was killed
         return int(self._report.facts.get("exit", -signal.SIGKILL))
 
     def kill(self) -> None:
-        """End it and its family now, and do not wait."""
+        """End it and its family now, without waiting."""
         self._signal(signal.SIGTERM)
 
     def end(self, *, gently: bool = True) -> None:
-        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
+        """Ask it to end as Ctrl-C would, then kill it, with its descendants."""
         if gently:
             self._signal_group(signal.SIGINT, signal.SIGTERM)
         if self._guard:
@@ -328,7 +328,7 @@ class SubmissionProcess(StartedProcess):
             self._excess, self._guard = self._guard.remark, None
         self.kill()
         self._report.await_fact("over", PATIENCE_S)
-        if self._report.facts.get("over") != 0:  # somebody has stopped or killed the supervisor
+        if self._report.facts.get("over") != 0:  # the supervisor was stopped or killed
             self._signal(signal.SIGKILL)
             self._report.await_fact("over", PATIENCE_S)
             self._sweep()

@@ -1,9 +1,9 @@
 """The supervisor above a submission's process: holds its descendants, and reports how it ended.
 
-The report is that of `fork_server_main`. The descendants may go on until the supervisor gets
-SIGTERM, or its fork server dies. Where the system allows it the command gets a process namespace of
-its own, so that it can neither see nor kill the simulator; else the supervisor adopts what its
-family leaves behind. Two processes or three come of one:
+The report is that of `fork_server_main`. The descendants may run until the supervisor gets SIGTERM,
+or its fork server dies. Where the system allows it the command gets a process namespace of its own,
+so that it can neither see nor kill the simulator; else the supervisor adopts its orphans. Two or
+three processes are forked:
 
     fork server -> supervisor -> first process of the namespace, if there is one
                               -> the submission's
@@ -21,14 +21,14 @@ from typing import Any, NoReturn
 from grader import linux
 from grader.run.sandbox import confinement
 
-#: Signals that are meant for the command, and reach us only because we are in its group.
+#: Signals for the command, which reach the supervisor only because it is in the same group.
 NOT_OURS = [signal.SIGINT, signal.SIGHUP, signal.SIGQUIT]
-#: Of a shared memory of its own: as much as `grader.run.limits.SCRATCH` has.
+#: The options of its shared memory: as much as `grader.run.limits.SCRATCH` has.
 SHARED_MEMORY = "size=64m,mode=1777"
 
 
 def report_fact(report: int, **fact: object) -> None:
-    """Write a line to a report, whose reader may have gone."""
+    """Write a line to a report, whose reader may be gone."""
     with suppress(BrokenPipeError):
         os.write(report, json.dumps(fact).encode() + b"\n")
 
@@ -36,13 +36,12 @@ def report_fact(report: int, **fact: object) -> None:
 def confine(order: Mapping[str, Any] | None, refused: OSError | None) -> None:
     """Confine a submission's process, and nothing else of its run.
 
-    The one place for a sandbox, however the process came to be: it is called in it, after its
-    supervisor has forked and before anything of the submission's runs. Descriptors, network,
-    environment and current folder are settled by then; what is done here survives an exec.
+    Called in that process, after its supervisor has forked and before any code of the submission
+    runs. Descriptors, network, environment and current folder are set by then; the confinement
+    survives an exec.
 
     Args:
-        order: see `grader.run.sandbox.confinement`; None: nothing is confined but what is seen of
-            processes.
+        order: see `grader.run.sandbox.confinement`; None: only other processes are hidden.
         refused: why there is no process namespace for it; None where there is one.
 
     Raises:
@@ -52,7 +51,7 @@ def confine(order: Mapping[str, Any] | None, refused: OSError | None) -> None:
     if level == confinement.NAMESPACES and refused is not None:
         raise refused
     if refused is None and level != confinement.NAMESPACES:
-        _see_only_own_processes()
+        _hide_other_processes()
     if order is not None:
         confinement.confine(order)
 
@@ -60,7 +59,7 @@ def confine(order: Mapping[str, Any] | None, refused: OSError | None) -> None:
 def fork_below(parent: int, report: int) -> OSError | None:
     """Become a supervisor, and fork the process that it stands above.
 
-    The supervisor never returns: it ends in here, when the grader has had enough.
+    The supervisor never returns: it ends in here, at the grader's signal.
 
     Args:
         parent: the process id of the fork server.
@@ -87,14 +86,14 @@ def fork_below(parent: int, report: int) -> OSError | None:
     child = os.fork()
     if child:
         _supervise(child, first, report)
-    # what it sends to its group does not reach the supervisor, wherever that is
+    # a signal to its group does not reach the supervisor
     os.setsid()
     linux.signal_at_parents_death(signal.SIGKILL)
     return refused
 
 
 def _supervise(child: int, first: int, report: int) -> NoReturn:
-    linux.control(linux.PR_SET_DUMPABLE, 0)  # no other process of this user looks into us
+    linux.control(linux.PR_SET_DUMPABLE, 0)  # no other process of this user reads our memory
     # The command's sockets are closed when it closes them, not when we do.
     linux.close_descriptors((0, 1, 2, report))
     report_fact(report, pid=child)
@@ -113,13 +112,13 @@ def _supervise(child: int, first: int, report: int) -> NoReturn:
 def end_descendants() -> None:
     """Kill every descendant of this process, however it has hidden from its parent.
 
-    A look at /proc misses a process that is born, or changes parents, in the middle of it. But one
-    whose parent has gone becomes our child: none are left when we have no child any more.
+    A scan of /proc misses a process that is forked, or changes parents, meanwhile. But an orphan
+    becomes our child: none are left when we have no child any more.
     """
     while True:
         for pid in linux.descendants(os.getpid()):
             with suppress(ProcessLookupError):
-                # its group at once: who forks and ends all the time is never there to be killed
+                # its group at once: one that forks and ends all the time is never found alive
                 if (group := os.getpgid(pid)) != os.getpgrp():
                     os.killpg(group, signal.SIGKILL)
                 os.kill(pid, signal.SIGKILL)
@@ -131,7 +130,7 @@ def end_descendants() -> None:
 
 
 def _be_first_process() -> NoReturn:
-    """Adopt and forget the orphans of a process namespace, to the end."""
+    """Be the first process of a namespace: adopt its orphans, and reap them."""
     signal.pthread_sigmask(signal.SIG_SETMASK, [])
     linux.signal_at_parents_death(signal.SIGKILL)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits, so the kernel reaps
@@ -141,10 +140,10 @@ def _be_first_process() -> NoReturn:
         signal.pause()
 
 
-def _see_only_own_processes() -> None:
-    """Show the processes of our namespace in /proc; what it leaves in shared memory goes with it.
+def _hide_other_processes() -> None:
+    """Show only this namespace's processes in /proc, and give it a separate shared memory.
 
-    Where this is refused, the others are seen, but still out of reach of signals.
+    Where this is refused, the others are visible, but still out of reach of signals.
     """
     with suppress(OSError):
         linux.unshare(linux.CLONE_NEWNS)

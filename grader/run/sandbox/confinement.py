@@ -1,6 +1,6 @@
-"""Confines the process that calls it, as the grader has ordered; there is no way back.
+"""Confines the calling process, as the grader has ordered; there is no way back.
 
-An order is a dictionary of what JSON can say, made by `grader.run.processes.levels`:
+An order is a dictionary that fits JSON, made by `grader.run.processes.levels`:
 
 | key | what |
 |---|---|
@@ -12,8 +12,8 @@ An order is a dictionary of what JSON can say, made by `grader.run.processes.lev
 | `read`, `write`, `listed` | for `.landlock` |
 | `is_apart` | whether the run has a network of its own |
 
-Not bubblewrap, but a few lines of ours: that is a program that stands between, so that the process
-whose processor time counts would be another, and it cannot go on as a fork server's child does.
+It is not bubblewrap: that program stands between, so that another process's processor time would
+count, and it executes a program where a fork server's child just goes on.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from grader.run.sandbox import filesystem, landlock, seccomp
 
 NAMESPACES, LANDLOCK, LIMITS = "namespaces", "landlock", "limits"
 SEPARATE, MAPPED, SAME = "separate", "mapped", "same"
-#: More than there are.
+#: More than the kernel has.
 CAPABILITIES = range(64)
-#: Root is nobody special, no capability survives or is raised; all of it locked.
+#: Root has no special rights, no capability survives or is raised; all of it locked.
 SECURE = 0xEF
 
 
 def confine(order: Mapping[str, Any]) -> None:
-    """Carry out an order, all of it.
+    """Carry out an order completely.
 
     Raises:
         OSError: the system refuses something; then this process must not go on.
@@ -45,7 +45,7 @@ def confine(order: Mapping[str, Any]) -> None:
         linux.forbid_new_privileges()
         return
     uid, user = order["uid"], order["user"]
-    # there the new user is made known, and what is shown in the new root cannot be written to
+    # the new user is mapped there, and the new root's /proc cannot be written to
     proc = os.open("/proc/self", os.O_PATH | os.O_CLOEXEC)
     if order["level"] == NAMESPACES:
         filesystem.enter(order["steps"])
@@ -61,7 +61,7 @@ def confine(order: Mapping[str, Any]) -> None:
         _become(uid)
     linux.set_capabilities(0)
     linux.forbid_new_privileges()
-    # a process that has changed its user is closed to itself as well, and has forgotten its parent
+    # a change of the user makes the process unreadable to itself, and resets the parent's signal
     linux.control(linux.PR_SET_DUMPABLE, 1)
     linux.signal_at_parents_death(signal.SIGKILL)
     _limit(order)
@@ -74,9 +74,9 @@ def _limit(order: Mapping[str, Any]) -> None:
 
 
 def _forgo_capabilities() -> None:
-    """Give up what programs that are started could get; before the user is changed.
+    """Give up the capabilities that started programs could get; before the user is changed.
 
-    Where it is refused (a container's root without CAP_SETPCAP), `no_new_privs` says the same.
+    Where it is refused (a container's root without CAP_SETPCAP), `no_new_privs` does the same.
     """
     for number in CAPABILITIES:
         linux.control(linux.PR_CAPBSET_DROP, number)
@@ -85,7 +85,7 @@ def _forgo_capabilities() -> None:
 
 
 def _become(uid: int) -> None:
-    """Go on as a user and a group of their own, without other groups."""
+    """Change to a separate user and group, without other groups."""
     os.setgroups([])
     os.setresgid(uid, uid, uid)
     os.setresuid(uid, uid, uid)

@@ -1,21 +1,21 @@
-"""Builds the file system that a submission's process sees: what it is shown, and nothing else.
+"""Builds the file system that a submission's process sees, and nothing else.
 
-Built in the process itself, from what `.view` has planned in the grader: a list of steps, each a
-list of a word, a path and perhaps something more.
+The process itself builds it, by the steps that `.view` has planned in the grader; each is a list of
+a word, a path and perhaps something more.
 
-| step | what comes there |
+| step | what it makes |
 |---|---|
 | `folder` | an empty folder |
 | `file` | a small file with this text |
 | `link` | a symbolic link to this place |
-| `bind` | the folder, file or device that is there outside, with all that is mounted in it |
+| `bind` | the folder, file or device at the same path outside, with all that is mounted in it |
 | `hide` | an empty folder in place of what a `bind` would show |
-| `copy` | a copy of the folder outside, that can be written to: room, and owner or -1 |
-| `scratch` | an empty folder that can be written to, of so many bytes and files |
+| `copy` | a writable copy of the folder outside: its room, and its owner or -1 |
+| `scratch` | an empty writable folder, of so many bytes and files |
 | `proc` | the processes of our namespace |
 
-All is read-only but `copy` and `scratch`; nothing has devices but what lies in /dev; no program
-gets rights of its owner. It works without capabilities in the first user namespace.
+All is read-only but `copy` and `scratch`; there are no devices but in /dev; no program gets rights
+of its owner. It works without capabilities in the first user namespace.
 """
 
 # ruff: noqa: PTH101, PTH102, PTH109, PTH115, PTH123, PTH211
@@ -30,7 +30,7 @@ from collections.abc import Sequence
 
 from grader import linux
 
-#: Where the new root is put together: a folder that every system has, and that shows nothing here.
+#: Where the new root is built: a folder that every system has, and that is hidden in the new one.
 SITE = "/sys"
 _QUIET = linux.MS_NOSUID | linux.MS_NODEV
 _LIMITED = linux.MOUNT_ATTR_RDONLY | linux.MOUNT_ATTR_NOSUID | linux.MOUNT_ATTR_NODEV
@@ -39,10 +39,10 @@ _KEPT = {8: linux.MS_NOEXEC, 1024: 1024, 2048: 2048, 4096: 1 << 21}
 
 
 def enter(steps: Sequence[Sequence[str]]) -> None:
-    """Leave the old root for one that has just this in it; the current folder has the same path.
+    """Change to a new root with just these things in it; the current folder keeps its path.
 
     Args:
-        steps: parents come before what is in them.
+        steps: parents come before their contents.
 
     Raises:
         OSError: the system does not allow it; then this process must not go on.
@@ -85,13 +85,12 @@ def _do(kind: str, path: str, more: str = "") -> None:
 
 
 def copy_tree(source: str, target: str, owner: int = -1) -> None:
-    """Copy what is in a folder into an empty one, to be written to by its owner.
+    """Copy the contents of a folder into an empty one, writable by its owner.
 
-    Files, folders, and links as they are: what is copied is a submission's private copy, which has
-    nothing else.
+    Files, folders, and links as they are: a submission's private copy has nothing else.
 
     Args:
-        owner: whose all of it is to be; -1: the process's own user's.
+        owner: the user that is to own all of it; -1: the process's user.
 
     Raises:
         OSError: something cannot be copied.

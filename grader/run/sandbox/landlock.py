@@ -1,10 +1,9 @@
 """Which files a submission's process may use, and whom it may signal: Landlock.
 
-It needs no rights and no namespaces, so that it is there in most containers. What a kernel can
-restrict is told by its ABI, a number: files from 1 on (Linux 5.13), moving files between folders
-from 2, truncating from 3, TCP from 4 (6.7), devices' ioctl from 5, signals and abstract Unix
-sockets from 6 (6.12). Not by any of these: UDP, Unix sockets by path, chmod, chown, setxattr, and
-looking (stat) at what may not be opened.
+It needs no rights and no namespaces, so that most containers have it. The ABI, a number, is what a
+kernel can restrict: files from 1 on (Linux 5.13), moving files between folders from 2, truncating
+from 3, TCP from 4 (6.7), devices' ioctl from 5, signals and abstract Unix sockets from 6 (6.12).
+None restricts UDP, Unix sockets by path, chmod, chown, setxattr, or stat of what may not be opened.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ REMOVE, MAKE = 1 << 4 | 1 << 5, 1 << 7 | 1 << 8 | 1 << 9 | 1 << 10 | 1 << 12
 #: MAKE_CHAR, MAKE_BLOCK: given to nobody.
 MAKE_DEVICE = 1 << 6 | 1 << 11
 REFER, TRUNCATE, IOCTL_DEV = 1 << 13, 1 << 14, 1 << 15
-#: The rights over files that a kernel knows: the ABI from which on -> those.
+#: ABI -> the rights over files that a kernel knows from it on.
 FILES: Final = {
     1: EXECUTE | WRITE_FILE | READ_FILE | READ_DIR | REMOVE | MAKE | MAKE_DEVICE,
     2: REFER,
@@ -39,7 +38,7 @@ FILES: Final = {
 #: TCP's bind and connect, from 4 on; abstract Unix sockets and signals, from 6 on.
 NET, NET_SINCE = 0b11, 4
 SCOPES, SCOPES_SINCE = 0b11, 6
-#: What it tries in vain does not fill the system's log; from 7 on.
+#: Refusals do not fill the system's log; from 7 on.
 LOG_SAME_EXEC_OFF, LOG_SINCE = 1, 7
 
 READ = EXECUTE | READ_FILE | READ_DIR
@@ -49,7 +48,7 @@ OF_A_FILE = EXECUTE | WRITE_FILE | READ_FILE | TRUNCATE | IOCTL_DEV
 
 
 def abi() -> int:
-    """What of Landlock there is here; 0: none."""
+    """Return the ABI of this kernel's Landlock; 0: none."""
     if os.uname().sysname != "Linux":
         return 0
     try:
@@ -65,18 +64,17 @@ def restrict(
     *,
     max_abi: int = 1 << 16,
 ) -> None:
-    """Leave the calling thread, and all that it starts, nothing but these files.
+    """Restrict the calling thread, and all that it starts, to these files.
 
-    Beside that it can neither bind nor connect TCP, nor reach processes outside by signals or
-    abstract Unix sockets, as far as `abi` goes. Descriptors that are open stay as they are.
-    `no_new_privs` comes with it.
+    It can then neither bind nor connect TCP, nor reach processes outside by signals or abstract
+    Unix sockets, as far as `abi` goes. Open descriptors stay as they are. Sets `no_new_privs`.
 
     Args:
         read: files and folders, with all below, that may be read and executed. Those that are not
             there are left out.
         write: in these anything may be done, but for making devices.
         listed: folders in which, and below which, names may be listed and nothing opened for it.
-        max_abi: act as a kernel would that has no more than this.
+        max_abi: act like a kernel with this ABI at most.
 
     Raises:
         OSError: the system has no Landlock or does not allow it.

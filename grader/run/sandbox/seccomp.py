@@ -109,7 +109,7 @@ REFUSED: Final[dict[str, dict[str, Numbers]]] = {
         "ioperm": (173, None),
     },
 }
-#: Refused where the submission keeps the user's files in sight: Landlock does not look at these.
+#: Refused where the submission still sees the user's files: Landlock does not check these.
 OF_FILES: Final[dict[str, Numbers]] = {
     "chmod": (90, None),
     "fchmod": (91, 52),
@@ -133,9 +133,9 @@ OF_FILES: Final[dict[str, Numbers]] = {
     "removexattrat": (466, 466),
     "file_setattr": (469, 469),
 }
-#: What is as if the kernel did not know it, so that libraries take an older way. The flags of
-#: clone3 lie in memory, where a filter cannot look; glibc then uses clone.
-#: inotify is told of names where nothing may be read (Landlock does not look at it), and the user
+#: Calls that seem unknown to the kernel, so that libraries use older ones. The flags of clone3 lie
+#: in memory, which a filter cannot read; glibc then uses clone.
+#: inotify reports names where nothing may be read (Landlock does not check it), and the user
 #: has 128 of them for all programs.
 UNKNOWN: Final[dict[str, Numbers]] = {
     "clone3": (435, 435),
@@ -143,11 +143,11 @@ UNKNOWN: Final[dict[str, Numbers]] = {
     "inotify_init1": (294, 26),
     "inotify_add_watch": (254, 27),
 }
-#: The last system call that was looked at for this list (file_setattr, Linux 6.17): those that came
+#: The last system call considered for this list (file_setattr, Linux 6.17): those that came
 #: later are as unknown as to an older kernel. Numbers of x32 are larger, too.
 NEWEST: Final = 469
 
-#: What is looked at more closely: see `_by_arguments`.
+#: What depends on arguments: see `_by_arguments`.
 CLONE: Final[Numbers] = (56, 220)
 IOCTL: Final[Numbers] = (16, 29)
 FCNTL: Final[Numbers] = (72, 25)
@@ -162,7 +162,7 @@ OF_A_PROCESS: Final[dict[str, Numbers]] = {
     "sched_setattr": (314, 274),
     "sched_setparam": (142, 118),
 }
-#: Their first argument says what the second is: a process (PRIO_PROCESS, IOPRIO_WHO_PROCESS), a
+#: Their first argument is the kind of the second: a process (PRIO_PROCESS, IOPRIO_WHO_PROCESS), a
 #: group, or all of a user, who is the grader's too.
 SETPRIORITY: Final[Numbers] = (141, 140)
 IOPRIO_SET: Final[Numbers] = (251, 30)
@@ -173,7 +173,7 @@ SECCOMP: Final[Numbers] = (317, 277)
 NEW_NAMESPACES: Final = 0x7E020000
 #: Types into a terminal as if its user did; pastes there; loads a line discipline.
 TIOCSTI, TIOCLINUX, TIOCSETD = 0x5412, 0x541C, 0x5423
-#: Have others wait before they open a file (F_SETDELEG: from Linux 6.19 on), or are told of them.
+#: Make others wait before they open a file (F_SETDELEG: from Linux 6.19 on), or report them.
 F_SETLEASE, F_NOTIFY, F_SETDELEG = 1024, 1026, 1040
 AF_UNIX, AF_INET, AF_INET6, AF_NETLINK = 1, 2, 10, 16
 SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET, SOCK_KIND = 1, 2, 5, 0xF
@@ -196,7 +196,7 @@ Instruction = tuple[int, int, int, int]
 
 
 def is_there() -> bool:
-    """Whether `install` can do something here."""
+    """Whether `install` works here."""
     found = MACHINES.get(os.uname().machine)
     if found is None or sys.maxsize < 1 << 32 or sys.byteorder != "little":
         return False
@@ -208,7 +208,7 @@ def is_there() -> bool:
 
 
 def install(*, is_apart: bool = True) -> None:
-    """Put the filter on the calling process, all its threads, and all that it starts.
+    """Install the filter in the calling process, all its threads, and all that it starts.
 
     With it comes `no_new_privs`: no program that it starts has more rights than it has.
 
@@ -270,14 +270,14 @@ def _by_arguments(place: int, *, is_apart: bool) -> list[Instruction]:
     spaces = [_load(0), (JUMP_SET, 0, 1, NEW_NAMESPACES), refused, allowed]
     terminal = [_load(1), *_if(refused, TIOCSTI, TIOCLINUX, TIOCSETD), allowed]
     others = [_load(1), *_if(refused, F_SETLEASE, F_NOTIFY, F_SETDELEG), allowed]
-    # What lies in sockets counts as nobody's memory. Asked for more room, they say yes.
+    # What lies in sockets counts as nobody's memory. A request for more room is ignored.
     room = [_load(1), *_unless(SOL_SOCKET, allowed), _load(2)]
     room += [*_if(_refuse(0), SO_SNDBUF, SO_RCVBUF), allowed]
-    # Limits and priorities of others of the same user: it could have the simulator starve.
-    own = [_load(0), *_if(allowed, 0), refused]
-    own_second = [_load(1), *_if(allowed, 0), refused]
-    # Fast DDS tells each of its threads by number to be an ordinary one.
-    ordinary = [*own[:-1], *own_second]
+    # Limits and priorities of the user's other processes: it could make the simulator starve.
+    itself = [_load(0), *_if(allowed, 0), refused]
+    itself_second = [_load(1), *_if(allowed, 0), refused]
+    # Fast DDS sets each of its threads, by number, to ordinary scheduling.
+    ordinary = [*itself[:-1], *itself_second]
     kind = [_load(1), (AND, 0, 0, SOCK_KIND)]
     udp = [*kind, *_unless(SOCK_DGRAM, no_family)]
     protocols = [_load(2), *_if(allowed, 0, IPPROTO_TCP, IPPROTO_UDP), no_family]
@@ -304,11 +304,11 @@ def _by_arguments(place: int, *, is_apart: bool) -> list[Instruction]:
         *_call(IOCTL[place], terminal),
         *_call(FCNTL[place], others),
         *_call(SETSOCKOPT[place], room),
-        *_call(PRLIMIT64[place], own),
+        *_call(PRLIMIT64[place], itself),
         *_call(SCHED_SETSCHEDULER[place], ordinary),
-        *_each(OF_A_PROCESS, place, own),
-        *_call(SETPRIORITY[place], [_load(0), *_case(PRIO_PROCESS, own_second), refused]),
-        *_call(IOPRIO_SET[place], [_load(0), *_case(IOPRIO_WHO_PROCESS, own_second), refused]),
+        *_each(OF_A_PROCESS, place, itself),
+        *_call(SETPRIORITY[place], [_load(0), *_case(PRIO_PROCESS, itself_second), refused]),
+        *_call(IOPRIO_SET[place], [_load(0), *_case(IOPRIO_WHO_PROCESS, itself_second), refused]),
         *_call(SOCKET[place], sockets),
         *_call(SOCKETPAIR[place], pairs),
     ]

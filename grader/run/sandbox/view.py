@@ -1,8 +1,8 @@
-"""What a submission's process is to see of the file system: planned in the grader.
+"""Plans, in the grader, what a submission's process sees of the file system.
 
-Python, the installed packages but for ours, the ROS libraries, the system's programs and libraries,
-a little of /etc and /dev, the few modules of ours that work in that process, and the submission.
-What is always the same is looked up once. `.landlock` gets it as lists of what may be read
+It sees Python, the installed packages but for ours, the ROS libraries, the system's programs and
+libraries, a little of /etc and /dev, the few modules of ours that work in that process, and the
+submission. What is always the same is found once. `.landlock` gets it as lists of what may be read
 (`readable`). `.filesystem` builds a root of it (`steps`), for which these rules hold:
 
 - Each place is a mount of one kind: `bind` shows what is there outside, `hide` an empty folder,
@@ -33,7 +33,7 @@ from grader.run.limits import MIB, ROOM, SCRATCH
 
 #: Where our packages are, if they are not installed.
 ROOT = Path(__file__).resolve().parents[3]
-#: Packages of ours, which show how we judge, or a solution.
+#: Packages of ours, which contain the checks, or a solution.
 HIDDEN = ("grader", "grader_robots", "turtlesim_challenge", "turtlesim_py")
 #: ... but for what works in the submission's own process.
 HOST = (
@@ -45,16 +45,16 @@ HOST = (
     *("grader/limited.py", "grader/scenes/__init__.py", "grader/scenes/package"),
     *("grader_robots/__init__.py", "grader_robots/inspection"),
     "grader/strict_json.py",
-    # ... and what says how far it may be
+    # ... and the sentences of its remarks
     "grader/message.py",
 )
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
-#: Of /etc, where libraries are, and the time zone; who is here, the process is told otherwise.
+#: Of /etc, where libraries are, and the time zone; users and hosts have files of ours.
 SETTINGS = (
     *("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alternatives"),
     *("/etc/localtime", "/etc/timezone", "/etc/os-release", "/etc/mime.types", "/etc/fonts"),
 )
-#: Of what belongs to an installed Python, which may lie in a folder with much else.
+#: Of an installed Python, which may lie in a folder with much else.
 PREFIX = ("bin", "lib", "lib64", "libexec", "share", "include", "etc", "opt", "pyvenv.cfg")
 DEVICES = ("null", "zero", "full", "random", "urandom")
 LINKS = {
@@ -63,7 +63,7 @@ LINKS = {
     "/dev/stdout": "/proc/self/fd/1",
     "/dev/stderr": "/proc/self/fd/2",
 }
-#: Of /proc, what a process may read where it sees that of all.
+#: Of /proc, where it shows all processes.
 SHOWN_OF_PROC = ("self", "cpuinfo", "meminfo", "stat", "uptime", "version", "loadavg", "sys")
 FILES = {
     "/etc/nsswitch.conf": "passwd: files\ngroup: files\nhosts: files\n",
@@ -79,8 +79,8 @@ class SystemView:
     """What every submission sees: paths without symbolic links, and the links that lead to them.
 
     Attributes:
-        shown: folders and files with all that is in them.
-        hidden: folders below those that are not to be seen ...
+        shown: folders and files, with all that is in them.
+        hidden: hidden folders below those ...
         host: ... but for these.
         links: link -> where it points.
     """
@@ -93,7 +93,7 @@ class SystemView:
 
 @cache
 def system_view() -> SystemView:
-    """Look up what is the same for every submission."""
+    """Find what is the same for every submission."""
     found: set[str] = set()
     links: dict[str, str] = {}
     for path in _shown():
@@ -111,9 +111,9 @@ def system_view() -> SystemView:
 
 
 def readable(submission: Path) -> tuple[list[str], list[str]]:
-    """For `.landlock`: what may be read, and run; and folders of which the names may be seen.
+    """Return, for `.landlock`, what may be read and run, and folders whose names may be listed.
 
-    Those hold what is read and what is not: Python looks for modules in them.
+    The latter are only partly readable, and Python searches them for modules.
     """
     found, listed = map(list, _always_readable())
     for real in _follow(str(submission), {}):
@@ -136,7 +136,7 @@ def _always_readable() -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _without(path: str, hidden: Collection[str], listed: list[str]) -> Iterator[str]:
-    """A folder, or if something in it is to be hidden, what else is in it; it is then `listed`."""
+    """Yield a folder; or if it has hidden contents, the other ones, and add it to `listed`."""
     below = [each for each in hidden if _is_below(each, path)]
     if not below and path not in hidden:
         yield path
@@ -145,16 +145,16 @@ def _without(path: str, hidden: Collection[str], listed: list[str]) -> Iterator[
         with os.scandir(path) as entries:
             for entry in sorted(entries, key=lambda entry: entry.name):
                 if entry.is_symlink():
-                    continue  # where it leads is shown or not for its own sake
+                    continue  # its target is shown or hidden by itself
                 yield from _without(entry.path, hidden, listed)
 
 
 def steps(submission: Path, uid: int, owner: int = -1) -> list[Step]:
-    """For `.filesystem`: the root of a process that runs this submission as this user.
+    """Return, for `.filesystem`, the root of a process that runs this submission as this user.
 
     Args:
-        submission: all of it, which is copied into the new root, to be written to.
-        owner: whose the copy is to be; -1: the process's own user's.
+        submission: all of it; a writable copy comes into the new root.
+        owner: the user that is to own the copy; -1: the process's user.
     """
     always = system_view()
     links = always.links | LINKS
@@ -183,7 +183,7 @@ def steps(submission: Path, uid: int, owner: int = -1) -> list[Step]:
 def _in_order(
     mounts: dict[str, str], links: dict[str, str], files: dict[str, str], room: dict[str, str]
 ) -> Iterator[Step]:
-    """Every step after those that make its place."""
+    """Yield every step after those that make its parents."""
     made = {*mounts, *links}
     for path in sorted({*mounts, *links, *files}, key=_parts):
         is_shown = _kind_around(path, mounts) == "bind"
@@ -202,7 +202,7 @@ def _in_order(
 
 
 def _kind_around(path: str, mounts: dict[str, str]) -> str:
-    """The kind of the mount that a path lies in; '' for the root."""
+    """Return the kind of the mount that a path lies in; '' for the root."""
     while path := path.rpartition("/")[0]:
         if path in mounts:
             return mounts[path]
@@ -210,13 +210,13 @@ def _kind_around(path: str, mounts: dict[str, str]) -> str:
 
 
 def _top_in_scratch(path: str) -> str:
-    """The first folder in a `scratch` on the way to a path."""
+    """Return the first folder in a `scratch` on the way to a path."""
     scratch = next(folder for folder in SCRATCH if _is_below(path, folder))
     return f"{scratch}/{_parts(path.removeprefix(scratch))[0]}"
 
 
 def _room(folder: str) -> str:
-    """What a copy of a folder takes, and what may be added to it."""
+    """Return the room for a copy of a folder, with what may be added to it."""
     size = entries = 0
     for at, folders, files in os.walk(folder):
         entries += len(folders) + len(files)
@@ -230,7 +230,7 @@ def _size(mib: int, files: int) -> str:
 
 
 def import_path() -> list[str]:
-    """The folders in which a submission's Python finds modules, but for the submission itself."""
+    """Return the folders where a submission's Python finds modules, but for the submission's."""
     names = ("stdlib", "platstdlib", "purelib", "platlib")
     found = [sysconfig.get_paths()[name] for name in names]
     packages = [
@@ -246,7 +246,7 @@ def import_path() -> list[str]:
 
 
 def _added(folder: str) -> Iterator[str]:
-    """Folders that are put on the import path by files in another one."""
+    """Yield the folders that the .pth files of a folder add to the import path."""
     # not by glob, which finds nothing where no descriptor is free
     for file in sorted(path for path in Path(folder).iterdir() if path.suffix == ".pth"):
         for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
@@ -282,7 +282,7 @@ def _is_below(path: str, folder: str) -> bool:
 
 
 def _follow(path: str, links: dict[str, str]) -> Iterator[str]:
-    """Where a path leads, if there is something; the links on the way are put down."""
+    """Yield where a path leads, if there is something; add the links on the way to `links`."""
     parts, real, hops = _parts(os.path.abspath(path)), "", 0
     while parts:
         here = f"{real}/{parts.pop(0)}"

@@ -1,21 +1,20 @@
-"""The simulator's readers and writers in virtual time: numbered, and what goes out through them."""
+"""The simulator's readers and writers in virtual time, numbered, with their outgoing messages."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Final
+from typing import Final
 
 from grader.message import Message, msg
 from grader.run.lockstep.endpoints import deserialized
 from grader.run.lockstep.protocol import EndpointInfo, Interests, Parcel, Parcels, Table
 from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
 
-#: The longest message that a reader takes [bytes]; DDS has no limit, a parameter of such a length
-#: has no use.
+#: The longest message that a reader accepts [bytes]; DDS has no limit, but no parameter is longer.
 LONGEST_MESSAGE: Final = 2_000_000
-#: So much may lie in all readers [bytes] before what is longer than LARGE is not taken any more.
+#: So much may lie in all readers [bytes]; beyond it nothing longer than LARGE is accepted.
 MOST_UNREAD, LARGE = 64_000_000, 4_096
-#: So much may wait for its way to the student's side [bytes] until that is asked to take it.
+#: So much may wait for the student's side [bytes] before a reply sends it.
 MOST_OUTGOING = 32_000_000
 #: Different topics of the student's side that are kept for the result.
 MOST_TOPICS = 1_000
@@ -24,18 +23,18 @@ _TOO_MUCH = msg("messages on {channel} were too long or too many to be taken")
 
 
 class SimulatorEndpoints(EndpointRegistry):
-    """All of them, with the numbers by which the student's side knows them.
+    """The simulator's endpoints, with the numbers by which the student's side knows them.
 
     Attributes:
-        published: on which topics the student's side has published: topic -> type.
+        published: the topics on which the student's side has published: topic -> type.
     """
 
     def __init__(self, now_ns: Callable[[], int], flag: Callable[[Message], None]) -> None:
-        """`flag` keeps remarks for the result."""
+        """`flag` is called with remarks for the result."""
         super().__init__(now_ns)
         self._flag = flag
         self.tick = 0
-        #: since the last call of `take_outgoing` something was sent that may be waited for
+        #: since the last call of `pop_outgoing` something was sent that may be waited for
         self.answered = False
         self._last_number = 0
         self._by_number: dict[int, Endpoint] = {}
@@ -43,7 +42,7 @@ class SimulatorEndpoints(EndpointRegistry):
         self._removed: list[int] = []
         self._outgoing: Parcels = []
         self._outgoing_bytes = 0
-        self._unread_bytes = 0  # at most: what was taken since is not subtracted
+        self._unread_bytes = 0  # at most: what was read since is not subtracted
         self._read = frozenset[str]()
         self.published: dict[str, str] = {}
         self._may_have_unread = True
@@ -61,13 +60,13 @@ class SimulatorEndpoints(EndpointRegistry):
         )
 
     def remove(self, endpoints: Iterable[Endpoint]) -> None:
-        """Strike out endpoints."""
+        """Remove endpoints."""
         gone = [e for e in endpoints if self._by_number.pop(e.number, None)]
         super().remove(gone)
         self._removed += [endpoint.number for endpoint in gone]
 
-    def take_table(self) -> Table:
-        """What has changed since the last table."""
+    def pop_table(self) -> Table:
+        """Return the changes since the last table."""
         self.changed = False
         gone = set(self._removed)
         added = tuple(entry for entry in self._added if entry.id not in gone)
@@ -100,7 +99,7 @@ class SimulatorEndpoints(EndpointRegistry):
         return writer.channel in self._read
 
     def count_readers(self, writer: Writer) -> int:
-        """How many hear a writer; how many there are on the student's side is not known."""
+        """Return how many hear a writer; all readers on the student's side count as one."""
         return super().count_readers(writer) + self.is_read(writer)
 
     def others_are_read(self, writers: Iterable[Writer]) -> bool:
@@ -114,14 +113,14 @@ class SimulatorEndpoints(EndpointRegistry):
     # Messages ---------------------------------------------------------------------------------
 
     def publish(self, writer: Writer, data: bytes) -> None:
-        """To readers in this process at once, to the student's side with the next reply."""
+        """Send to readers in this process at once, to the student's side with the next reply."""
         super().publish(writer, data)
         self._may_have_unread = self._may_have_unread or bool(writer.local)
         if self.is_read(writer) or writer.is_lasting:
             self._send(writer, 0, writer.sent, data)
 
     def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
-        """The same with a response."""
+        """Send a response in the same way."""
         super().respond(writer, to, data)
         if isinstance(to.client, int):
             self._send(writer, to.client, to.number, data)
@@ -129,19 +128,19 @@ class SimulatorEndpoints(EndpointRegistry):
     def _send(self, writer: Writer, client: int, number: int, data: bytes) -> None:
         self._outgoing.append(Parcel(writer.number, client, number, self.tick, data))
         self._outgoing_bytes += len(data)
-        # a reply of more than a few pictures is as if there was something to wait for
+        # more than a few pictures are sent as soon as an answer would be
         is_answer = not writer.is_stream or self._outgoing_bytes > MOST_OUTGOING
         self.answered = self.answered or is_answer
 
-    def take_outgoing(self) -> Parcels:
-        """What was sent to the student's side since the last call."""
+    def pop_outgoing(self) -> Parcels:
+        """Return what was sent to the student's side since the last call."""
         parcels, self._outgoing = self._outgoing, []
         self._outgoing_bytes = 0
         self.answered = False
         return parcels
 
     def receive(self, parcels: Parcels) -> None:
-        """Take what the student's side has sent."""
+        """Put what the student's side has sent into the readers."""
         self._may_have_unread = True
         for endpoint, client, number, _, data in parcels:
             reader = self._by_number.get(endpoint)
@@ -159,7 +158,7 @@ class SimulatorEndpoints(EndpointRegistry):
             reader.items.append(Arrived(data, self.now_ns(), number, asked_by))
 
     def _has_room(self, length: int) -> bool:
-        """Whether a message of this length may be taken beside what is not yet read."""
+        """Whether a message of this length fits beside what is not yet read."""
         if length <= LARGE:
             return True
         if length > LONGEST_MESSAGE:
@@ -177,9 +176,3 @@ class SimulatorEndpoints(EndpointRegistry):
         if self._may_have_unread:
             self._may_have_unread = any(reader.items for reader in self.readers)
         return self._may_have_unread
-
-
-def writer_of(publisher: Any) -> Writer:
-    """The writer of one of rclpy's publishers."""
-    writer: Writer = publisher.handle.writer
-    return writer

@@ -32,17 +32,17 @@ from grader.run.lockstep.protocol import (
     pieces,
 )
 
-#: How often it is looked at while it is silent [ms], and while it is not [s].
-LOOK_MS = 250
-CPU_LOOK_S = 1.0
+#: How often the process is checked while it is silent [ms], and while it is not [s].
+POLL_MS = 250
+CPU_CHECK_S = 1.0
 MOST_FLAGS = 20
-#: What is no longer than this is not looked at [s].
+#: A shorter wait is not counted as sleep [s].
 SHORT_S = 0.02
 #: Another thread's second of processor time may have been so many in the queue, on a busy machine.
 MOST_QUEUING = 20.0
-#: More packets than a mailbox holds; who fills it while it is emptied has to wait.
+#: More packets than a mailbox holds; a process that fills it meanwhile has to wait.
 MOST_MAIL = 2_000
-#: The longest packet that is taken from a submission's process.
+#: The longest packet that is accepted from a submission's process.
 LIMIT_BYTES = 8_000_000
 #: The kernel's letter for a process that has a processor, or waits for one.
 WANTS_PROCESSOR = "R"
@@ -64,19 +64,19 @@ class Refused(Exception):
 
 
 class StudentLink:
-    """Hears a submission's process for as long as there is something to hear.
+    """Receives from a submission's process, and watches it.
 
     Attributes:
         silence: why nothing comes any more: '', `gone`, `stalled`, `stopped`, `slow`, `broken`,
             `flooding` - it keeps the simulator from its work.
-        waits: `for ever` - it waits for something that will not come, as a program may that has
-            done its work; `stuck` - in a callback, where it must not.
+        waits: `for ever` - it waits for something that will not come, as a program may after its
+            work; `stuck` - in a callback, where it must not.
         flags: remarks for the result.
         excused_cpu_s: processor time of the simulator's that is not the submission's doing [s].
     """
 
     def __init__(self, link: socket.socket, page: int, pid: int, patience: Patience) -> None:
-        """Hear process `pid` on this link; in the page it writes how far it has got."""
+        """Watch process `pid` at the other end, which writes its tick into the page."""
         self.silence = ""
         self.waits: Literal["", "for ever", "stuck"] = ""
         self.flags: list[Message] = []
@@ -89,14 +89,14 @@ class StudentLink:
         self._may_read.register(link, select.POLLIN)
         self._may_send.register(link, select.POLLOUT)
         self._patience = patience
-        self._look_at_s = time.monotonic() + CPU_LOOK_S
+        self._next_check_s = time.monotonic() + CPU_CHECK_S
         self._stall_cpu_s = patience.start_cpu_s
         self._asleep_s = self._seen_cpu_s = 0.0
         self._cpu_before_s = time.process_time()
         self._page = page
 
     def introduce(self, table: Table) -> None:
-        """Say the first word, and hand out what `mail` reads."""
+        """Send the first table, with the end of the socket that `mail` reads."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         ours.setblocking(False)
         self.mailbox, self._mail = ours, PacketReader(ours, LIMIT_BYTES)
@@ -104,7 +104,7 @@ class StudentLink:
             socket.send_fds(self._link, [encode(table)], [theirs.fileno()])
 
     def mail(self) -> Iterator[Parcels]:
-        """What the submission has sent since the last call, by packets; also when it is dead."""
+        """Yield what the submission has sent since the last call, even after its death."""
         with suppress(OSError):  # there is no more, or nobody
             for _ in range(MOST_MAIL):
                 if self.silence == "broken":
@@ -122,13 +122,13 @@ class StudentLink:
                     self.break_off(NONSENSE)
 
     def reached(self) -> int:
-        """The tick that the submission's process says that it has reached; also when it is dead."""
+        """Return the tick that the submission's process reports, even after its death."""
         return int(PROGRESS.unpack(os.pread(self._page, PROGRESS.size, 0))[0])
 
     def send(self, packet: Packet) -> None:
-        """Say something; that nobody is there is noticed when receiving.
+        """Send a packet; a process that is gone is noticed when receiving.
 
-        Who asks and does not read the answer is waited for as one that says nothing.
+        One that asks and does not read the answer is waited for like one that sends nothing.
         """
         with suppress(OSError):
             for piece in pieces(encode(packet)):
@@ -149,7 +149,7 @@ class StudentLink:
             self.break_off(msg("its process does not read what it has asked for"))
 
     def receive(self) -> Interests | Advance | None:
-        """The next request; None when there will be no other: see `silence`.
+        """Return the next request; None when there will be no other: see `silence`.
 
         Raises:
             Refused: the submission does what virtual time cannot follow.
@@ -173,7 +173,7 @@ class StudentLink:
                 case None:
                     self.silence = "gone"
                 case Note():
-                    self._hear(packet)
+                    self._handle(packet)
                 case Interests() | Advance():
                     return packet
                 case _:
@@ -181,15 +181,15 @@ class StudentLink:
         return None
 
     def flag(self, remark: Message) -> None:
-        """Remark something, once."""
+        """Add a remark for the result, once."""
         if remark not in self.flags and len(self.flags) < MOST_FLAGS:
             self.flags.append(remark)
 
-    def has_started(self) -> None:
-        """It has asked for time, so it does not import any more."""
+    def note_start(self) -> None:
+        """Expect more of it from now on: it has asked for time, so its imports are over."""
         self._stall_cpu_s = self._patience.stall_cpu_s
 
-    def _hear(self, note: Note) -> None:
+    def _handle(self, note: Note) -> None:
         match note.kind:
             case Kind.STUCK:
                 self.waits = "stuck"
@@ -203,21 +203,21 @@ class StudentLink:
                 self.break_off(TOO_MANY)
 
     def break_off(self, why: Message) -> None:
-        """Hear nothing more of it, for it does what no process of ours does; `why` is a flag."""
+        """Receive nothing more: it does what no process of ours does. `why` becomes a flag."""
         self.silence = "broken"
         self.flags.append(why)  # it decides the run, however many there are
 
     def _wait(self, poll: select.poll) -> bool:
         """Wait until the link can be read, or written; False if it never will."""
         began = time.monotonic()
-        if poll.poll(LOOK_MS):
+        if poll.poll(POLL_MS):
             if time.monotonic() - began > SHORT_S:
                 self._count_sleep(linux.process_stat(self._pid), began)
             return not self._is_slow()
         used_s = last_used_s = linux.process_stat(self._pid).cpu_s
         asleep_since = before = now = time.monotonic()
         patience = self._patience
-        while not poll.poll(LOOK_MS):
+        while not poll.poll(POLL_MS):
             seen, now = linux.process_stat(self._pid), time.monotonic()
             self._count_sleep(seen, before)
             before = now
@@ -238,17 +238,17 @@ class StudentLink:
         return not self._is_slow()
 
     def _count_sleep(self, seen: linux.ProcessStat, since_s: float) -> None:
-        """Add up for how long it wanted no processor, however often it woke for a moment."""
+        """Add up how long it wanted no processor, however often it woke for a moment."""
         used_s, self._seen_cpu_s = seen.cpu_s - self._seen_cpu_s, seen.cpu_s
         if seen.state != WANTS_PROCESSOR:
             waited_s = time.monotonic() - since_s
             self._asleep_s += max(0.0, waited_s - MOST_QUEUING * used_s)
 
     def _is_slow(self) -> bool:
-        """Whether the run has used up its processor time; looked at now and then."""
+        """Whether the run has used up its processor time; measured once in `CPU_CHECK_S`."""
         now = time.monotonic()
-        if now > self._look_at_s:
-            self._look_at_s = now + CPU_LOOK_S
+        if now > self._next_check_s:
+            self._next_check_s = now + CPU_CHECK_S
             if linux.process_stat(self._pid).cpu_s > self._patience.run_cpu_s:
                 self.silence = "slow"
             elif self._asleep_s > self._patience.all_asleep_s:

@@ -1,9 +1,9 @@
-"""What a simulator's process does in real time as in virtual time: precautions, and what it says.
+"""What a simulator's process does by either clock: protect itself, and send messages and news.
 
-To the grader it says how far it is. To the audience of a run it tells what is to be seen, and keeps
-the run slow enough to see: through a socket from which nothing is read, so that what a run comes to
-does not depend on who looks on. What is not taken at once is kept, up to a limit; then the run
-waits a little, and then it goes on unseen. Both is JSON, a line for each piece of news.
+It sends its progress to the grader. To the audience of a run it sends news of the scene, and keeps
+the run slow enough to watch: over a socket from which it reads nothing, so that the outcome of a
+run does not depend on its audience. News that is not received at once is kept, up to a limit; then
+the run waits a little, and then it goes on without an audience. Both are JSON lines.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ from typing import Any, Final, Self
 from grader import linux
 from grader.run.limits import SIMULATOR_BYTES
 
-#: So much may wait to be taken [bytes]; then so long is waited for it, in a whole run [s].
+#: So much may wait to be received [bytes]; then the run waits so long for that, in all [s].
 MOST_BYTES: Final = 8_000_000
 PATIENCE_S: Final = 10.0
-#: Who is so late does not hurry to make up for it [s].
+#: A run that is this late does not hurry to make up for it [s].
 LATE_S: Final = 0.1
-#: The last line of a run that was told to its end.
+#: The last line of a run whose news was sent to its end.
 END: Final = {"over": True}
 
 
-def take_precautions() -> None:
-    """Before anything else: what it serves must not reach it, nor fill the machine."""
-    linux.control(linux.PR_SET_DUMPABLE, 0)  # nobody else looks into our memory and descriptors
+def protect_process() -> None:
+    """Protect this process from the submission, and the machine from it; call this first."""
+    linux.control(linux.PR_SET_DUMPABLE, 0)  # nobody else reads our memory and descriptors
     linux.lower_limit(resource.RLIMIT_DATA, SIMULATOR_BYTES, resource.RLIM_INFINITY)
     # Ctrl-C in a terminal reaches the whole group; the grader decides what happens then.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def say(control: socket.socket, what: str, **more: Any) -> None:
-    """Say something to the grader, which may take its time to hear it; it says so, too."""
+def send_message(control: socket.socket, what: str, **more: Any) -> None:
+    """Send a message between the grader and the simulator, either way; wait until it is sent."""
     control.sendall(_line({"say": what, **more}))
 
 
@@ -46,18 +46,18 @@ def _line(news: Mapping[str, Any]) -> bytes:
     return json.dumps(news, separators=(",", ":")).encode() + b"\n"
 
 
-class Telling:
-    """The simulator's end of what the audience of a run hears.
+class FeedWriter:
+    """Writes the news of a run for its audience.
 
     Attributes:
-        cpu_s: processor time that it has taken [s].
+        cpu_s: the processor time that this has cost [s].
     """
 
     def __init__(self, descriptor: int, speed: float | None, tick_ns: int) -> None:
-        """Tell what happens.
+        """Write to a socket.
 
         Args:
-            speed: how many times as fast as in real time; None: as fast as it goes.
+            speed: of the run, as a multiple of real time; None: as fast as it can.
         """
         self.cpu_s = 0.0
         self._socket = socket.socket(fileno=descriptor)
@@ -70,11 +70,11 @@ class Telling:
 
     @classmethod
     def of(cls, words: str, tick_ns: int) -> Self | None:
-        """As `grader.run.simulator_process` asks for it; None where nobody looks on."""
+        """Make one from `LiveFeed.argument`; None where there is no audience."""
         return cls(**json.loads(words), tick_ns=tick_ns) if words else None
 
-    def tell(self, news: Mapping[str, Any]) -> None:
-        """Tell something; never waits for long."""
+    def write(self, news: Mapping[str, Any]) -> None:
+        """Write some news; never waits for long."""
         if not self._is_heard:
             return
         began_s = time.process_time()
@@ -96,8 +96,8 @@ class Telling:
         self._due_s += self._tick_s
 
     def close(self) -> None:
-        """Say that all is told, and see that it is taken."""
-        self.tell(END)
+        """Write the last line, and wait until all is received."""
+        self.write(END)
         self._wait_for_room(0)
         self._socket.close()
 

@@ -2,12 +2,11 @@
 
     python -m grader.run.simulator.real_time CONTROL FILE PLAN FIRST_NODE_S SHOWN
 
-It speaks JSON lines with the grader over CONTROL, a socket: out go `ready`,
-`progress` about once a second, and `done` when the recording lies in FILE; in come `start` when the
-submission's process is started, and `exited` when it has ended. PLAN is a
-`grader.run.handover.Plan`, SHOWN what `grader.run.simulator_process` asks for, or ''.
-The clock of the run starts when the submission has its first node, has ended, or has had
-FIRST_NODE_S for it [s]. If the grader goes away, so does the simulator.
+It exchanges JSON lines with the grader over CONTROL, a socket: it sends `ready`, `progress` about
+once a second, and `done` when the recording lies in FILE; it receives `start` when the submission's
+process is started, and `exited` when that has ended. PLAN is a `grader.run.handover.Plan`, SHOWN a
+`LiveFeed.argument`. The clock of the run starts when the submission has its first node, has ended,
+or has had FIRST_NODE_S for it [s]. If the grader goes away, so does the simulator.
 """
 
 from __future__ import annotations
@@ -26,47 +25,47 @@ from rclpy.signals import SignalHandlerOptions
 from grader.message import Message, msg
 from grader.run import handover
 from grader.run.handover import Plan
-from grader.run.simulator.process import Telling, say, take_precautions
+from grader.run.simulator.process import FeedWriter, protect_process, send_message
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason
 from turtlesim_py.ros import program
 
-#: How often the graph is looked at for what the submission publishes, and progress is told [ticks].
-LOOK_TICKS = 63
-#: So many times as long as the run's ticks may last they may take, and so much longer [s].
+#: How often the submission's topics are read from the graph, and progress is reported [ticks].
+PROGRESS_TICKS = 63
+#: The ticks of a run may take so many times as long as planned, and so much longer [s].
 SLOWEST, OVERTIME_S = 2.0, 10.0
 OVERTIME = msg("the run was ended: the simulator was kept from ticking at its pace")
 #: What every node publishes.
 EVENTS = "/parameter_events"
-#: So many topics of the graph are looked at; each takes a while, in the middle of a run.
+#: The most topics of the graph that are read; each takes a while, in the middle of a run.
 MOST_TOPICS = 500
 
 
 class PublishedTopics:
-    """On which topics the submission publishes, by the graph: the usual mistake is a wrong name.
+    """The topics on which the submission publishes, by the graph: often a name is wrong.
 
     Attributes:
         types: topic -> type.
     """
 
     def __init__(self, node: Any) -> None:
-        """Look through a node of the scene, whose own publishers do not count."""
+        """Read the graph by a node of the scene, whose own publishers do not count."""
         self.types: dict[str, str] = {}
         self._node = node
 
-    def look(self) -> None:
-        """Note what the graph shows now."""
+    def update(self) -> None:
+        """Add the topics that the graph shows now."""
         node = self._node
-        own = dict(
+        scene_topics = dict(
             node.get_publisher_names_and_types_by_node(node.get_name(), node.get_namespace())
         )
         for topic, types in node.get_topic_names_and_types()[:MOST_TOPICS]:
-            if node.count_publishers(topic) > (topic in own):
+            if node.count_publishers(topic) > (topic in scene_topics):
                 self.types[topic] = types[0]
 
 
 class GradedSimulator:
-    """A scene at work, told by the grader what becomes of the submission."""
+    """Runs a scene, and receives the submission's start and end from the grader."""
 
     def __init__(
         self, link: socket.socket, file: Path, plan: Plan, first_node_s: float, shown: str
@@ -75,8 +74,8 @@ class GradedSimulator:
         self._first_node_s = first_node_s
         self._file = file
         self._scene = load_scene(plan.scene)
-        self._telling = Telling.of(shown, STEP_NS)
-        hooks = Hooks(tell=None if self._telling is None else self._telling.tell)
+        self._feed = FeedWriter.of(shown, STEP_NS)
+        hooks = Hooks(tell=None if self._feed is None else self._feed.write)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )
@@ -91,27 +90,27 @@ class GradedSimulator:
     def run(self) -> None:
         """Serve until the run is over, then save the recording."""
         self._link.setblocking(False)
-        self._say("ready")
+        self._send("ready")
         reason: Reason = ""
 
         def tick() -> bool:
             nonlocal reason
-            self._hear()
-            if not self._running and self._has_company():
+            self._receive()
+            if not self._running and self._may_start():
                 self._start()
             reason = self._simulation.tick()
             if self._running:
-                self._look()
+                self._report_progress()
                 reason = reason or self._overtime()
             return not reason
 
         program.follow_wall_clock(tick)
-        if self._telling is not None:
-            self._telling.close()
-        self._topics.look()
+        if self._feed is not None:
+            self._feed.close()
+        self._topics.update()
         handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
         flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
-        self._say("done", reason=reason, flags=flags)
+        self._send("done", reason=reason, flags=flags)
 
     def _start(self) -> None:
         if not self._running:
@@ -119,21 +118,21 @@ class GradedSimulator:
         self._running = True
         self._simulation.record()
 
-    def _look(self) -> None:
+    def _report_progress(self) -> None:
         self._ticks += 1
-        if self._ticks % LOOK_TICKS == 1:
-            self._topics.look()
-            self._say("progress", seconds=round(self._simulation.ticks * STEP_NS / 1e9, 1))
+        if self._ticks % PROGRESS_TICKS == 1:
+            self._topics.update()
+            self._send("progress", seconds=round(self._simulation.ticks * STEP_NS / 1e9, 1))
 
     def _overtime(self) -> Reason:
-        """Ticks may come late, but not without end."""
+        """Return the reason to end a run whose ticks come far too late; '' otherwise."""
         if time.monotonic() < self._end_at_s:
             return ""
         self._flags.append(OVERTIME)
         return "time_limit"
 
-    def _has_company(self) -> bool:
-        """Whether the submission has a node; or it has had the time to make one."""
+    def _may_start(self) -> bool:
+        """Whether the submission has a node, or has had the time to make one."""
         if math.isinf(self._start_at_s):
             return False
         # Every node has this publisher, and what it publishes with is made known in order: at the
@@ -142,12 +141,12 @@ class GradedSimulator:
         has_node = self._simulation.node.count_publishers(EVENTS) > ours
         return time.monotonic() > self._start_at_s or has_node
 
-    def _say(self, what: str, **more: str | float | list[str]) -> None:
+    def _send(self, what: str, **more: str | float | list[str]) -> None:
         self._link.setblocking(True)
-        say(self._link, what, **more)
+        send_message(self._link, what, **more)
         self._link.setblocking(False)
 
-    def _hear(self) -> None:
+    def _receive(self) -> None:
         try:
             text = self._link.recv(4096)
         except BlockingIOError:
@@ -167,7 +166,7 @@ class GradedSimulator:
 
 def main(argv: list[str]) -> int:
     """Run one graded simulation; the grader reads the exit code."""
-    take_precautions()
+    protect_process()
     link = socket.socket(fileno=int(argv[0]))
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     plan, first_node_s = Plan.from_json(argv[2]), float(argv[3])

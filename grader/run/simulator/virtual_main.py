@@ -1,4 +1,4 @@
-"""Starts the simulator of a run in virtual time; where that cannot work, says so and ends.
+"""Starts the simulator of a run in virtual time; where that cannot work, reports it and ends.
 
     python -m grader.run.simulator.virtual_main ...
     python -m grader.run.simulator.virtual_main --fork-server SOCKET NEEDED
@@ -25,7 +25,7 @@ from pathlib import Path
 from grader import extensions
 from grader.message import Message, msg
 from grader.run.processes import FORK_SERVER
-from grader.run.simulator.process import say
+from grader.run.simulator.process import send_message
 
 
 def main(argv: list[str]) -> int:
@@ -54,7 +54,7 @@ def serve_runs(words: Sequence[str]) -> list[str]:
     from grader.run.lockstep import contract
 
     if contract.broken():
-        sys.exit(1)  # the run says so, when it has started from nothing
+        sys.exit(1)  # the run reports it, after a cold start
     from grader.run.lockstep import endpoints
     from grader.run.processes import fork_server_main
     from grader.run.simulator import virtual_time  # noqa: F401
@@ -63,7 +63,7 @@ def serve_runs(words: Sequence[str]) -> list[str]:
     number, needed = words
     endpoints.import_messages(json.loads(needed))
     for name in extensions.points(extensions.SCENES):
-        with suppress(Exception):  # whatever a scene raises, its own runs say so
+        with suppress(Exception):  # a scene that cannot be loaded fails in its own runs
             load_scene(name).preload()
     command = fork_server_main.serve(number, ())
     return command[command.index("-m") + 2 :]
@@ -76,13 +76,13 @@ def _where(error: Exception) -> str:
 
 def _refuse(argv: list[str], why: Message) -> int:
     with socket.socket(fileno=int(argv[0])) as grader:
-        say(grader, "refused", reason=why.serialise())
+        send_message(grader, "refused", reason=why.serialise())
     return 0
 
 
 if __name__ == "__main__":
     code = main(sys.argv[1:])
-    # All is said and saved. What ROS and Python would still take apart goes with the process.
+    # All is sent and saved. What ROS and Python would still tear down goes with the process.
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     os._exit(code)

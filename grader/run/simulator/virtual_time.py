@@ -2,14 +2,14 @@
 
     python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PAGE PID CORE PATIENCE SHOWN
 
-The first three as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
-process PID, PAGE a descriptor of the page in which that says how far it has got, CORE the processor
-core that both are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON,
-SHOWN what `grader.run.simulator_process` asks for, or ''.
+The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to the
+submission's process PID, PAGE a descriptor of the page in which that notes the tick that it has
+reached, CORE the processor core that both are to share (-1: any), PATIENCE a
+`grader.run.limits.Patience` as JSON.
 
-What the submission has sent comes with its request for time, what is answered and published goes
-with the reply (`grader.run.lockstep.protocol`). What happens in a tick is the node's own business,
-as in real time.
+What the submission has sent comes with its request for time; answers and published messages go with
+the reply (`grader.run.lockstep.protocol`). What happens in a tick is up to the node, as in real
+time.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from grader.message import msg
@@ -37,19 +36,19 @@ from grader.run.processes import cores
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import Foresight
 from grader.run.simulator.link import Refused, StudentLink
-from grader.run.simulator.process import Telling, say, take_precautions
+from grader.run.simulator.process import FeedWriter, protect_process, send_message
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason
 
 #: So many new objects are searched for garbage: what a run records stays to its end.
 GARBAGE = 100_000
-#: So many requests of a run may let no time pass; most runs have none of these.
+#: The most requests of a run that let no time pass; most runs have none of these.
 MOST_VAIN = 100_000
 VAIN = msg("its process made more than {number} requests that let no time pass", number=MOST_VAIN)
 
 
 class Lockstep:
-    """Ticks a scene as its student's side asks, to the end of the run."""
+    """Ticks a scene as the student's side asks, to the end of the run."""
 
     def __init__(
         self,
@@ -59,24 +58,26 @@ class Lockstep:
         on_met: Callable[[], None],
         shown: str = "",
     ) -> None:
-        """Both are called once: `on_met` at the first word of the submission's process.
+        """Set up the scene.
 
-        `share_core` is called when that first asks for time.
+        Args:
+            share_core: called once, when the submission's process first asks for time.
+            on_met: called once, at the first packet of that process.
         """
         self._link = link
         self._on_met = on_met
         self._share_core = share_core
         self.now_ns = 0
-        self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
-        waitsets.install(waitsets.Waiter(self._clocks.tell))
+        self._clocks = rclpy_clocks.install(lambda: self.now_ns, lambda: None)
+        waitsets.install(waitsets.Waiter(self._clocks.attach))
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, link.flag)
         endpoints.install(self._registry)
         actions.install()
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
         assert STEP_NS == TICK_NS
-        self._telling = Telling.of(shown, TICK_NS)
-        tell = None if self._telling is None else self._telling.tell
+        self._feed = FeedWriter.of(shown, TICK_NS)
+        tell = None if self._feed is None else self._feed.write
         hooks = Hooks(has_unread=self._registry.has_unread, tell=tell)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
@@ -85,21 +86,21 @@ class Lockstep:
         self._foresight = Foresight(self._simulation, self._registry)
         self._tick = self._vain = 0
         self._reason: Reason = ""
-        #: when the run reached which stage, on the machine's monotonic clock [s]
+        #: when the run was connected, over, ..., on the machine's monotonic clock [s]
         self._marks: dict[str, float] = {}
         self._was_at_rest: bool | None = None  # when the submission stopped responding
 
     def run(self) -> dict[str, Any]:
-        """To the end; how it came."""
-        self._link.introduce(self._registry.take_table())
+        """Tick to the end of the run; return how it ended."""
+        self._link.introduce(self._registry.pop_table())
         request = self._next_request()
         self._mark("connected")
         self._share_core()
         while request and not self._reason:
-            self._link.has_started()
+            self._link.note_start()
             self._catch_up(request.reached)
             if request.has_mailed:
-                self._take_mail()
+                self._receive_mail()
             if self._link.waits:
                 self._note_rest()
             before = self._tick
@@ -113,11 +114,11 @@ class Lockstep:
         if not self._reason:
             self._catch_up(self._link.reached())
             self._note_rest()
-            self._take_mail()
+            self._receive_mail()
         self._finish_alone()
         self._mark("over")
-        if self._telling is not None:
-            self._telling.close()
+        if self._feed is not None:
+            self._feed.close()
         return {
             "reason": self._reason,
             "silence": self._link.silence,
@@ -128,11 +129,11 @@ class Lockstep:
             "marks": self._marks,
         }
 
-    def _mark(self, stage: str) -> None:
-        self._marks.setdefault(stage, time.monotonic())
+    def _mark(self, name: str) -> None:
+        self._marks.setdefault(name, time.monotonic())
 
     def _note_rest(self) -> None:
-        """Whether the work was done is asked once: when the submission stopped."""
+        """Note, once, whether the work was done when the submission stopped responding."""
         if self._was_at_rest is None:
             self._was_at_rest = self._simulation.is_at_rest
 
@@ -141,7 +142,7 @@ class Lockstep:
         handover.leave(file, self._scene, self._simulation.trace(), self._registry.published)
 
     def _next_request(self) -> Advance | None:
-        """The next `Advance`, after all that comes before it."""
+        """Return the next `Advance`, after handling the packets before it."""
         while (packet := self._link.receive()) is not None:
             if "met" not in self._marks:
                 self._mark("met")
@@ -154,79 +155,78 @@ class Lockstep:
                     return packet
         return None
 
-    def _take_mail(self) -> None:
+    def _receive_mail(self) -> None:
         for parcels in self._link.mail():
             self._registry.receive(parcels)
 
     def _catch_up(self, reached: int) -> None:
-        """Live through the ticks that the student's side was told of before they were."""
+        """Make the forecast ticks that the student's side has used."""
         while self._tick < min(reached, self._foresight.end) and not self._reason:
             self._count_tick()
-            self._reason = self._foresight.live_through(EPOCH_NS + self.now_ns)
+            self._reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
         self._clocks.set_now(self.now_ns)
         self._foresight.forget()
 
     def _advance(self, request: Advance) -> None:
         last = min(request.target, self._tick + request.most)
         while self._tick < last and not self._reason:
-            self._begin_tick()
-            self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
+            self._make_tick()
             if self._registry.answered:
                 return
 
-    def _begin_tick(self) -> None:
+    def _make_tick(self) -> None:
         self._count_tick()
         self._clocks.set_now(self.now_ns)
+        self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
 
     def _count_tick(self) -> None:
-        if self._telling is not None:
-            self._telling.pace()
-            self._link.excused_cpu_s = self._telling.cpu_s
+        if self._feed is not None:
+            self._feed.pace()
+            self._link.excused_cpu_s = self._feed.cpu_s
         self._tick += 1
         self._registry.tick = self._tick
         self.now_ns = self._tick * TICK_NS
 
     def _reply(self, request: Advance) -> None:
         state = State.OVER if self._reason else State.RUNNING
-        parcels = self._registry.take_outgoing()
+        parcels = self._registry.pop_outgoing()
         if self._registry.changed:
-            self._link.send(self._registry.take_table())
+            self._link.send(self._registry.pop_table())
         elif state == State.RUNNING:
-            self._foresight.look_ahead(self._tick, request)
+            self._foresight.foresee(self._tick, request)
             parcels += self._foresight.parcels
         self._link.send(Reply(self._tick, state, max(self._tick, self._foresight.end), parcels))
 
     def _finish_alone(self) -> None:
-        """The submission says nothing more; the scene goes on."""
+        """Tick to the end without the submission, which sends nothing more."""
         if self._reason:
             return
         if self._link.silence == "gone":
             self._simulation.submission_gone()
         while not self._reason:
-            self._begin_tick()
-            self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
+            self._make_tick()
 
 
 def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
-    take_precautions()
+    protect_process()
     control = socket.socket(fileno=int(argv[0]))
     theirs = socket.socket(fileno=int(argv[3]))
     page, student, core = map(int, argv[4:7])
     link = StudentLink(theirs, page, student, Patience(**json.loads(argv[7])))
 
     def share_core() -> None:
-        # for both, from here: a submission's process may not say where threads run
+        # for both, from here: a submission's process may not choose its cores
         cores.pin(core, os.getpid(), student)
 
     plan = Plan.from_json(argv[2])
-    lockstep = Lockstep(link, plan, share_core, lambda: say(control, "met"), argv[8])
+    lockstep = Lockstep(link, plan, share_core, lambda: send_message(control, "met"), argv[8])
     gc.freeze()
     gc.set_threshold(GARBAGE)
     try:
         ending = lockstep.run()
         lockstep.save(Path(argv[1]))
-        say(control, "done", **ending)
+        send_message(control, "done", **ending)
     except Refused as refusal:
-        say(control, "refused", reason=refusal.why.serialise())
+        send_message(control, "refused", reason=refusal.why.serialise())
     return 0

@@ -1,6 +1,6 @@
-"""Loads a submission's program, and nothing of ours: as it would be found at a student's desk.
+"""Loads a submission's program as a student's machine would: without our packages.
 
-Our packages of the same names as the submission's are out of reach, whatever is installed.
+Our packages with the same names as the submission's are out of reach, whatever is installed.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class OnlyFromSubmission:
 
 
 class AfterImport:
-    """An import hook: when one of these modules has been loaded, each of its calls is made."""
+    """An import hook: calls functions with a module when that has been loaded."""
 
     def __init__(self, calls: Mapping[str, Sequence[Callable[[types.ModuleType], None]]]) -> None:
         self._calls = calls
@@ -83,8 +83,8 @@ def call(
     Tracebacks go without our own lines.
 
     Args:
-        on_error: called with an exception that nobody has caught, before its traceback is printed;
-            also with one that Python prints nothing of.
+        on_error: called with an uncaught exception, before its traceback is printed; also with one
+            that Python does not print.
     """
     try:
         code = run(root, target, function)
@@ -127,7 +127,7 @@ def run(root: str, target: str, function: str | None) -> object:
 
 
 def must_be_text(file: str) -> None:
-    """Refuse what `python3 FILE` refuses, and `runpy` passes over or does not place.
+    """Refuse what `python3 FILE` refuses, and `runpy` accepts or reports without a line.
 
     Raises:
         SyntaxError: bytes that are no UTF-8 and no declared encoding either, or null bytes.
@@ -149,7 +149,7 @@ def must_be_text(file: str) -> None:
 
 
 def check_origin(module: types.ModuleType, root: str) -> None:
-    """The module must be the submission's, not one of the same name that was there before.
+    """Check that a module is the submission's, not another of the same name.
 
     Raises:
         ImportError: it is not; the text says what to do.
@@ -163,7 +163,7 @@ def check_origin(module: types.ModuleType, root: str) -> None:
 
 
 def hide_the_grader(root: str, target: str, arguments: Sequence[str] = ()) -> None:
-    """Have the interpreter look as it would at a student's desk."""
+    """Make the interpreter look as it would on a student's machine."""
     name = Path(target).name if target.endswith(".py") else target.partition(":")[0]
     sys.argv = [name, *arguments]
     sys.path[0] = root
@@ -176,9 +176,9 @@ def hide_the_grader(root: str, target: str, arguments: Sequence[str] = ()) -> No
 
 
 def accept_numbers(module: Any) -> None:
-    """Have lists of numbers in messages take what they take where nothing checks fields.
+    """Have lists of numbers in messages accept what they accept where nothing checks fields.
 
-    A submission's messages check their fields (`grader.run.environment`), since a number alone of
+    A submission's messages check their fields (`grader.run.environment`), since a single number of
     another type goes wrong on its way into C. A list does not: it becomes an `array.array`, which
     converts or refuses. Where nothing checks, `position = [0, 1]` and a numpy array are right.
 
@@ -190,7 +190,7 @@ def accept_numbers(module: Any) -> None:
     @functools.wraps(make)
     def made(self: Any, *args: Any, **kwargs: Any) -> None:
         make(self, *args, **kwargs)
-        with suppress(Exception):  # what rclpy takes is none of our business
+        with suppress(Exception):  # rclpy decides what it accepts
             convert_lists(self.msg_type)
 
     module.Publisher.__init__ = made

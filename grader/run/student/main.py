@@ -10,8 +10,8 @@ is a JSON list of [name, module:function, arguments], as a launch file starts th
 process of its own, without an account, which several must not write.
 
 Started by path, not with -m, and of the grader it imports only what loads and observes a program,
-so that the submission finds the interpreter as it would at a student's desk. ROOT comes first on
-the import path.
+so that the submission finds the interpreter as on a student's machine. ROOT comes first on the
+import path.
 """
 
 import sys
@@ -86,7 +86,7 @@ def start(
 
 
 def start_all(awaited: str, root: str, programs: Sequence[tuple[str, str, list[str]]]) -> int:
-    """Start several programs, and wait for all; return the exit code of the first that failed."""
+    """Start several programs and wait for all; return the exit code of the first that failed."""
     names = {}
     for name, target, words in programs:
         pid = os.fork()
@@ -105,7 +105,7 @@ def start_all(awaited: str, root: str, programs: Sequence[tuple[str, str, list[s
 
 
 def _ignore_questions() -> None:
-    """Ignore the signals that ask a program where it is: this is none."""
+    """Ignore the signals that ask a program for a dump: this process is none."""
     for number in (signal.SIGUSR1, signal.SIGUSR2, *range(signal.SIGRTMIN, signal.SIGRTMAX + 1)):
         with suppress(OSError, ValueError):
             signal.signal(number, signal.SIG_IGN)
@@ -128,13 +128,12 @@ def _wait(names: dict[int, str]) -> int:
 
 
 class Introduced:
-    """What drives the scene is connected when the submission gets it, in real time.
+    """Has publishers and clients of the scene's names wait until they are connected, in real time.
 
     ROS drops what is published before the other side is found, which takes some tenths of a
     second, and seconds on a busy machine: the same submission would do something else each time.
-    So publishers and clients of these names wait until they are connected. What only ends like one
-    of them may be a wrong name, or one of what is yet to come: these wait for `patience_s` at most,
-    all together.
+    A name that only ends like one of the scene's may be wrong, or that of something yet to come:
+    these wait for `patience_s` at most, all together.
     """
 
     def __init__(self, topics: list[str], services: list[str]) -> None:
@@ -144,7 +143,7 @@ class Introduced:
         self._topics, self._services = _with_endings(topics), _with_endings(services)
 
     def patch(self, module: Any) -> None:
-        """Put the waiting into `rclpy.node`."""
+        """Replace the methods of `rclpy.node` that make publishers and clients."""
         node = module.Node
         create_publisher, create_client = node.create_publisher, node.create_client
 
@@ -183,12 +182,12 @@ def _ending(name: str) -> str:
 
 
 def _wait_for(is_connected: Callable[[], bool], patience_s: float) -> float:
-    """Wait for a connection; return how long that took [s]."""
+    """Wait for a connection; return how long that has lasted [s]."""
     began = time.monotonic()
     is_new = not is_connected()
     while is_new and time.monotonic() < began + patience_s:
         is_new = not is_connected()
-        # ROS tells of a service a moment before a request would reach it, so not too short
+        # ROS reports a service a moment before a request would reach it, so not too short
         time.sleep(0.02)
     return time.monotonic() - began
 

@@ -1,18 +1,18 @@
-"""Starts a submission in virtual time: replaces what tells time, observes, runs its program.
+"""Starts a submission in virtual time: replaces the clocks, observes, runs its program.
 
     python virtual_main.py FD EVIDENCE SCENE ROOT module:function
     python virtual_main.py FD EVIDENCE SCENE ROOT path/to/script.py [function]
     python virtual_main.py --fork-server SOCKET MESSAGES
 
 FD is the link to the simulator, EVIDENCE the page of the submission's account, SCENE a JSON list of
-the simulator's nodes, with names and namespaces, and of whether two stamps have to be told apart.
+the simulator's nodes, with names and namespaces, and of whether two stamps have to differ.
 Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
 the same. Everything of ours is imported before the submission is, and then forgotten by the import
 system.
 
 As a fork server it does the same up to where the link comes in, imports what nearly every
 submission needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with
-the arguments of the first two forms, and looks to a submission as if it had been started with them.
+the arguments of the first two forms, and a submission finds it as if it had been started with them.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def main() -> None:
     fault, state = prepare(scheduler)
     if is_server:
         if fault:
-            sys.exit(str(fault))  # the run says so, when it has started from nothing
+            sys.exit(str(fault))  # the run reports it, after a cold start
         words = become_one_of_many(scheduler, state, words[2:])
     _, fd, page, introduction, root, target, *more = words
     connection = socket.socket(fileno=int(fd))
@@ -79,9 +79,9 @@ def main() -> None:
     connect = faults.guarded(link.connect)
 
     def on_error(error: BaseException) -> None:
-        """An exception has ended the main thread."""
+        """Report an exception that has ended the main thread."""
         faults.report(error)
-        connect()  # so that it is known who has the other ends
+        connect()  # so that the counterparts are known
         witness.ending.raised(error)
 
     system_calls.refuse_processes(refuse)
@@ -96,9 +96,10 @@ def main() -> None:
 
 
 def prepare(scheduler: Scheduler) -> tuple[Message, Callable[[], object]]:
-    """Replace all that needs no link.
+    """Replace everything that needs no link.
 
-    Returns: what is wrong, if anything, and what returns the state of chance.
+    Returns:
+        What is wrong, NOTHING for nothing; and a function that returns the state of chance.
     """
     state: Callable[[], object] = object
     try:
@@ -153,9 +154,9 @@ def install(
 
 
 def is_met(kind: str, entity: Any) -> Callable[[], bool]:
-    """Return what tells of an end whether anybody has had the other one.
+    """Return a function that returns whether an end ever had a counterpart.
 
-    The entity itself is not to live longer for it.
+    It holds no reference to the entity itself.
     """
     handle = entity._client_handle if kind == "action_client" else entity.handle
     endpoint = handle.endpoints[0]
@@ -172,7 +173,7 @@ def broken(error: Exception) -> Message:
 def become_one_of_many(
     scheduler: Scheduler, state: Callable[[], object], words: Sequence[str]
 ) -> list[str]:
-    """Be a fork server; returns in each child, with the arguments of a start of its own.
+    """Be a fork server; return in each child, with its arguments.
 
     Args:
         state: returns another value when anything has drawn random numbers.

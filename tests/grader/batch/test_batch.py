@@ -260,7 +260,9 @@ def test_a_class_goes_on_at_the_level_at_which_it_was_begun_or_not_at_all(
     words = (lay(tmp_path / "handed_in", MORE), "--out", graded, *rubric)
     with monkeypatch.context() as less:
         less.setattr(levels, "_found", {})
-        less.setattr(levels, "_look", lambda *_: levels.Level("", refused={"namespaces": "no"}))
+        less.setattr(
+            levels, "_find_level", lambda *_: levels.Level("", refused={"namespaces": "no"})
+        )
         code, messages = batch(*words)
         assert code == 2
         assert "at which this class is graded, is not to be had here: no. To get it:" in messages

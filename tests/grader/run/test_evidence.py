@@ -7,6 +7,7 @@ import os
 import random
 import signal
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from itertools import count
 
@@ -15,7 +16,7 @@ import pytest
 from grader import linux
 from grader.recording.observations import LintFinding, Observations, SourceLine
 from grader.run import evidence
-from grader.run.evidence import open_evidence
+from grader.run.evidence import EvidencePage
 from grader.run.observe import account
 from grader.run.opening import open_submission
 from grader.submission.start import Submission
@@ -42,7 +43,7 @@ def submission(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Submission]
 
 def told(submission: Submission, account: bytes = b"", dumped: bytes = b"") -> Observations:
     """What is believed of what stands in the page."""
-    with open_evidence() as evidence:
+    with closing(EvidencePage()) as evidence:
         if account:
             put(evidence.page, 1, account)
         os.write(evidence.page, dumped)
@@ -148,7 +149,7 @@ def test_of_a_process_that_tells_nonsense_nothing_is_told(
 
 
 def test_the_newest_half_that_is_whole_counts(submission: Submission) -> None:
-    with open_evidence() as evidence:
+    with closing(EvidencePage()) as evidence:
         page = evidence.page
         put(page, 1, say(spun_s=1))
         put(page, 2, say(spun_s=2))
@@ -159,14 +160,14 @@ def test_the_newest_half_that_is_whole_counts(submission: Submission) -> None:
 
 @pytest.mark.parametrize("length", [0, 1, 2**31, 2**32 - 1])
 def test_a_length_that_is_none_is_not_believed(submission: Submission, length: int) -> None:
-    with open_evidence() as evidence:
+    with closing(EvidencePage()) as evidence:
         page = evidence.page
         put(page, 1, say(), length)
         assert evidence.observations(submission, 1.5, computes=True) == Observations()
 
 
 def test_nobody_makes_the_page_longer_or_shorter() -> None:
-    with open_evidence() as evidence:
+    with closing(EvidencePage()) as evidence:
         page = evidence.page
         for size in (0, 10 * account.HALF_BYTES):
             with pytest.raises(PermissionError):
@@ -260,7 +261,7 @@ def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None
 
 
 def test_a_dump_has_so_much_room_and_no_more(submission: Submission) -> None:
-    with open_evidence() as evidence:
+    with closing(EvidencePage()) as evidence:
         put(evidence.page, 1, say())
         sent = 0
         with pytest.raises(PermissionError):
@@ -290,7 +291,7 @@ def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
     submission: Submission, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lines = iter(dump(submission, (str(submission.root / "a.py"), 2, "<module>")).splitlines())
-    with open_evidence() as heard:
+    with closing(EvidencePage()) as heard:
         # each look finds it where the last one did; every fifth time it has come to a line more
         looks = count(1)
 
@@ -305,7 +306,7 @@ def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
         monkeypatch.setattr(account, "DUMP_SIGNAL", signal.SIGCONT)
         monkeypatch.setattr(evidence, "QUIET_S", 0.01)
         monkeypatch.setattr(evidence, "PATIENCE_S", 0.01)
-        heard.ask(os.getpid())
+        heard.request_dump(os.getpid())
         said = account.dumped(heard.page).splitlines()
     assert len(said) == 2
 

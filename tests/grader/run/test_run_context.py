@@ -380,7 +380,7 @@ def test_locks_that_a_submission_has_taken_are_free_when_its_run_is_over(
         recording = real_time.run(submission, Plan(Limits(0.2, 0.2, 2)))
         assert recording.output == "b'kept'\n"
         for number in isolation.DOMAINS:
-            lock = scratch.take_lock(f"domain-{number}")
+            lock = scratch.acquire_lock(f"domain-{number}")
             assert lock is not None
             lock.close()
 

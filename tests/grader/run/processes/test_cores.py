@@ -12,7 +12,7 @@ def groups(tmp_path, monkeypatch):
     """A machine of 8 cores whose control groups a test writes."""
     monkeypatch.setattr(cores, "available", lambda: list(range(8)))
     monkeypatch.setattr(cores, "_CGROUPS", tmp_path)
-    monkeypatch.setattr(cores, "_OWN_GROUPS", tmp_path / "own")
+    monkeypatch.setattr(cores, "_MEMBERSHIP", tmp_path / "own")
     (tmp_path / "own").write_text("1:cpu:/\n0::/slice/ours\n")
     (tmp_path / "slice" / "ours").mkdir(parents=True)
     (tmp_path / "cpu").mkdir()

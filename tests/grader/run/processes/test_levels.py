@@ -31,7 +31,7 @@ WEAK = levels.Level("landlock", "same", {"namespaces": "mount: Operation not per
 
 def there_is(level: levels.Level, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(levels, "_found", {})
-    monkeypatch.setattr(levels, "_look", lambda isolated, wanted: level)
+    monkeypatch.setattr(levels, "_find_level", lambda isolated, wanted: level)
 
 
 @pytest.fixture

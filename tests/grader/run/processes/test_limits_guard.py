@@ -110,7 +110,7 @@ def test_the_last_look_finds_what_came_after_the_one_before(
     ended = threading.Event()
     with family():
         guard = LimitsGuard(os.getpid(), ended.set, RunLimits(family_bytes=50 * MIB))
-        assert guard.look_last()
+        assert guard.measure_last()
     assert ended.is_set()
     assert "used more than 50 MiB of memory" in str(guard.remark)
 
@@ -118,5 +118,5 @@ def test_the_last_look_finds_what_came_after_the_one_before(
 def test_the_last_look_lets_be_who_takes_little() -> None:
     ended = threading.Event()
     with family():
-        assert not LimitsGuard(os.getpid(), ended.set).look_last()
+        assert not LimitsGuard(os.getpid(), ended.set).measure_last()
     assert not ended.is_set()

@@ -94,7 +94,7 @@ def test_nonsense_in_the_mail_ends_the_conversation(
 def test_a_run_that_uses_up_its_processor_time_is_slow(
     ends: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(link, "CPU_LOOK_S", 0.0)
+    monkeypatch.setattr(link, "CPU_CHECK_S", 0.0)
     heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience(run_cpu_s=0.0))
     ends[1].send(encode(Advance(5, 1, 0)))
     assert heard.receive() is None
@@ -108,7 +108,7 @@ def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing
     excused_cpu_s: float,
     silence: str,
 ) -> None:
-    monkeypatch.setattr(link, "CPU_LOOK_S", 0.0)
+    monkeypatch.setattr(link, "CPU_CHECK_S", 0.0)
     # of this process, whose pid stands for the submission's, nothing is limited
     heard = StudentLink(
         ends[0], NO_PAGE, os.getpid(), Patience(run_cpu_s=math.inf, simulator_cpu_s=30.0)

@@ -9,7 +9,7 @@ import threading
 import pytest
 
 from grader.run.simulator import process
-from grader.run.simulator.process import Telling
+from grader.run.simulator.process import FeedWriter
 
 TICK_NS = 16_000_000
 
@@ -51,37 +51,37 @@ def all_of(ours: socket.socket) -> list[object]:
 
 @pytest.mark.parametrize(("speed", "lasts_s"), [(1.0, 16.0), (5.0, 3.2), (None, 0.0)])
 def test_ticks_come_at_the_speed_that_was_asked_for(ends, clock, speed, lasts_s):
-    teller = Telling(ends[1], speed, TICK_NS)
+    feed = FeedWriter(ends[1], speed, TICK_NS)
     began_s = clock.now_s
     for _ in range(1001):
-        teller.pace()
+        feed.pace()
     assert clock.now_s - began_s == pytest.approx(lasts_s)
-    teller.close()
+    feed.close()
 
 
 def test_after_a_pause_nothing_is_hurried(ends, clock):
-    teller = Telling(ends[1], 1.0, TICK_NS)
+    feed = FeedWriter(ends[1], 1.0, TICK_NS)
     for _ in range(2):
-        teller.pace()
+        feed.pace()
     clock.now_s += 30.0  # the submission computes
     began_s = clock.now_s
     for _ in range(11):
-        teller.pace()
+        feed.pace()
     assert clock.now_s - began_s == pytest.approx(0.16)
-    teller.close()
+    feed.close()
 
 
 def test_all_that_is_told_arrives_in_order_however_much_it_is(ends):
     ours, theirs = ends
-    teller = Telling(theirs, None, TICK_NS)
+    feed = FeedWriter(theirs, None, TICK_NS)
     news = [{"tick": tick, "drawn": ["x" * 10_000]} for tick in range(300)]
 
-    def tell() -> None:
+    def write() -> None:
         for each in news:
-            teller.tell(each)
-        teller.close()
+            feed.write(each)
+        feed.close()
 
-    thread = threading.Thread(target=tell)
+    thread = threading.Thread(target=write)
     thread.start()
     assert all_of(ours) == [*news, process.END]
     thread.join()
@@ -91,10 +91,10 @@ def test_one_who_takes_nothing_is_waited_for_a_little_and_then_told_no_more(ends
     monkeypatch.setattr(process, "PATIENCE_S", 0.01)
     monkeypatch.setattr(process, "MOST_BYTES", 100_000)
     ours, theirs = ends
-    teller = Telling(theirs, None, TICK_NS)
+    feed = FeedWriter(theirs, None, TICK_NS)
     for tick in range(200):
-        teller.tell({"tick": tick, "drawn": ["x" * 10_000]})
-    teller.close()
+        feed.write({"tick": tick, "drawn": ["x" * 10_000]})
+    feed.close()
     told = b""
     while chunk := ours.recv(1 << 20):
         told += chunk
@@ -103,13 +103,13 @@ def test_one_who_takes_nothing_is_waited_for_a_little_and_then_told_no_more(ends
 
 def test_one_who_has_left_is_no_error(ends):
     ours, theirs = ends
-    teller = Telling(theirs, 1.0, TICK_NS)
+    feed = FeedWriter(theirs, 1.0, TICK_NS)
     ours.close()
     for tick in range(3):
-        teller.tell({"tick": tick})
-    teller.close()
+        feed.write({"tick": tick})
+    feed.close()
 
 
 def test_where_nobody_looks_on_there_is_nothing(ends):
-    assert Telling.of("", TICK_NS) is None
+    assert FeedWriter.of("", TICK_NS) is None
     socket.socket(fileno=ends[1]).close()
