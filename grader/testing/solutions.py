@@ -108,7 +108,9 @@ def changed(name: str, path: Path, changes: Sequence[Change]) -> Mapping[str, st
         if change.old is None:
             texts[change.file] = change.new
             continue
-        text = texts.get(change.file) or file.read_text(encoding="utf-8")
+        text = texts.get(change.file)
+        if text is None:
+            text = file.read_text(encoding="utf-8")
         if text.count(change.old) != 1:
             raise ExerciseError(
                 "mutants: {name}: {old!r} stands {count} times in {in_file}; expected once",
