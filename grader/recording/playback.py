@@ -1,4 +1,4 @@
-"""What a page that plays runs is made from: the runs, and what was found in them, as plain data."""
+"""Plain data for a page that plays runs: the runs, and the findings in them."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class Moment:
 
 @dataclass(frozen=True)
 class JudgedCheck:
-    """What a check says.
+    """The verdict of a check, as shown.
 
     Attributes:
         title: what it asks for.
         status: `passed`, `failed` or `not_judged`.
         word: the same for people, with its points.
-        rationale, help: what was seen, what to look at.
+        rationale, help: what was found, and a hint.
         moments: where to see it.
     """
 
@@ -51,7 +51,7 @@ class Line:
     """A line of a submission.
 
     Attributes:
-        file, line, text: where it stands, and what.
+        file, line, text: its place, and the line itself.
     """
 
     file: str
@@ -61,12 +61,12 @@ class Line:
 
 @dataclass(frozen=True)
 class Sent:
-    """From where what was sent by one name, as the submission's process has told.
+    """The lines that sent on one name, as the submission's process has reported.
 
     Attributes:
         name: of a topic or service, with its namespace.
         times: how often it was sent.
-        lines: from where it was sent.
+        lines: that sent.
         order: (which of the lines, how often in a row), from the first that was sent on; not
             always to the last.
     """
@@ -78,7 +78,7 @@ class Sent:
 
 
 @dataclass(frozen=True)
-class Take:
+class PlayedRun:
     """A run.
 
     Attributes:
@@ -99,18 +99,18 @@ class Take:
 
 @dataclass(frozen=True)
 class Playback:
-    """All that is played.
+    """The runs that are played, and their judgement.
 
     Attributes:
-        title: whose it is, in a line.
-        summary: what came of it, in a line; '' where nobody has judged it.
+        title: name and score, in a line.
+        summary: the diagnosis, in a line; '' where nothing was judged.
         takes: the nominal run, and the varied ones.
-        judged: what the checks say, in their order.
-        other: what it is to be compared with.
+        judged: the verdicts, in the order of the checks.
+        other: to compare with.
     """
 
     title: str
     summary: str
-    takes: tuple[Take, ...]
+    runs: tuple[PlayedRun, ...]
     judged: tuple[JudgedCheck, ...] = ()
     other: Playback | None = None

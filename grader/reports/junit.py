@@ -17,7 +17,7 @@ from grader.translations import tr, translate
 
 
 def render(report: Report) -> str:
-    """The XML document. Points stand in the suite's properties and in each case's system-out."""
+    """Return the XML document, with points in the suite's properties and each system-out."""
     properties = {
         "submission": report.submission,
         "score": text.points(report.score),
@@ -36,7 +36,7 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """The XML document: a failure of the only case, or an error where there is no judgement."""
+    """Return the XML document: its only case fails, or is an error where nothing was judged."""
     properties = {"whose": str(report.whose)}
     if report.is_judged:
         properties["score"] = "0"
@@ -45,9 +45,9 @@ def render_error(report: ErrorReport) -> str:
     case = ElementTree.Element(
         "testcase", {"classname": "grader", "name": report.title, "time": "0"}
     )
-    said = {"message": text.one_line(report.message), "type": report.whose}
+    attributes = {"message": text.one_line(report.message), "type": report.whose}
     kind = "failure" if report.is_judged else "error"
-    ElementTree.SubElement(case, kind, said).text = "\n\n".join(report.paragraphs)
+    ElementTree.SubElement(case, kind, attributes).text = "\n\n".join(report.paragraphs)
     return _document("grader", 0, properties, [case])
 
 
@@ -86,17 +86,17 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
         failure.text = "\n".join(lines)
     elif verdict.status == "not_judged":
         ElementTree.SubElement(case, "skipped", message)
-    said = [tr("{word}, {score} points", word=word(verdict), score=score_text(verdict))]
+    output = [tr("{word}, {score} points", word=word(verdict), score=score_text(verdict))]
     if verdict.status != "failed":
-        said += [_quote(line) for line in lines]
+        output += [_quote(line) for line in lines]
     elif attachment := _canvas_here(report):
-        said.append(f"[[ATTACHMENT|{attachment}]]")
-    ElementTree.SubElement(case, "system-out").text = "\n".join(said)
+        output.append(f"[[ATTACHMENT|{attachment}]]")
+    ElementTree.SubElement(case, "system-out").text = "\n".join(output)
     return case
 
 
 def _not_shown(report: Report) -> ElementTree.Element:
-    """Skipped, whatever came of them: else all would look passed."""
+    """Make a skipped case of all hidden checks: else all would seem to pass."""
     case = ElementTree.Element(
         "testcase", {"classname": report.exercise, "name": report.not_shown_name, "time": "0"}
     )
@@ -105,12 +105,12 @@ def _not_shown(report: Report) -> ElementTree.Element:
 
 
 def _quote(line: str) -> str:
-    """A line in which nothing but this module attaches a file."""
+    """Quote a line so that it attaches no file."""
     return line.replace("[[", "[ [")
 
 
 def _canvas_here(report: Report) -> str:
-    """The picture's path as GitLab needs it: relative to the project, where its jobs run."""
+    """Return the picture's path relative to the project, for GitLab; '' where it has none."""
     path = report.beside.canvas_path
     if path is None or not path.is_relative_to(Path.cwd()):
         return ""

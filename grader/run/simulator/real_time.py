@@ -76,7 +76,7 @@ class GradedSimulator:
         self._file = file
         self._scene = load_scene(plan.scene)
         self._telling = Telling.of(shown, STEP_NS)
-        hooks = Hooks(tell=None if self._telling is None else self._telling.tell)
+        hooks = Hooks(send_news=None if self._telling is None else self._telling.tell)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )

@@ -77,7 +77,7 @@ class Lockstep:
         assert STEP_NS == TICK_NS
         self._telling = Telling.of(shown, TICK_NS)
         tell = None if self._telling is None else self._telling.tell
-        hooks = Hooks(has_unread=self._registry.has_unread, tell=tell)
+        hooks = Hooks(has_unread=self._registry.has_unread, send_news=tell)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )

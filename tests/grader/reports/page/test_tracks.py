@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from grader.reports.page.tracks import film, svg_path
+from grader.reports.page.tracks import animation, svg_path
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import view
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
@@ -11,7 +11,7 @@ from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 
 def film_of(recording):
-    return film(view(recording.trace), recording.trace.duration_ns)
+    return animation(view(recording.trace), recording.trace.duration_ns)
 
 
 def test_a_line_is_interrupted_where_a_place_is_missing():
