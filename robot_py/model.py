@@ -171,7 +171,7 @@ class Model:
     """A robot that urdfdom accepts: `links` and `joints` by name, in the order of the file.
 
     Exactly one link, `root`, is no joint's child. Nothing else is sure: a link may be the child of
-    two joints, and links may go round in a circle. `kinematics.tree` says what hangs where.
+    two joints, and links may go round in a circle. `kinematics.tree` finds the parent of each link.
     """
 
     name: str

@@ -58,7 +58,7 @@ class NodeLog:
     """A line that a node would log.
 
     Attributes:
-        logger: its logger's name; '' for the node's own.
+        logger: its logger's name; '' for the node's.
     """
 
     severity: Severity
@@ -162,7 +162,7 @@ class Robot:
 
     @property
     def logs(self) -> tuple[NodeLog, ...]:
-        """What kdl_parser logs of it."""
+        """The log lines of kdl_parser."""
         texts = []
         if self.model.links[self.model.root].inertial is not None:
             texts.append(ROOT_INERTIA.format(self.model.root))
@@ -172,13 +172,13 @@ class Robot:
         return tuple(NodeLog(Severity.WARN, text, "kdl_parser") for text in texts)
 
     def fixed(self, prefix: str, now_ns: int) -> tuple[Placed, ...]:
-        """The transforms for /tf_static, by the alphabet of their joints' names."""
+        """Return the transforms for /tf_static, by the alphabet of their joints' names."""
         joints = self.tree.fixed.values()
         return tuple(placed(joint, 0.0, now_ns, prefix) for joint in joints)
 
 
 def placed(joint: Joint, position: float, stamp_ns: int, prefix: str) -> Placed:
-    """Where a joint's child is in its parent."""
+    """Return where a joint's child is in its parent."""
     transform = kinematics.joint_transform(joint, position)
     return Placed(
         stamp_ns,
@@ -200,7 +200,7 @@ class StaticFrames:
         self._by_child: dict[str, Placed] = {}
 
     def send(self, transforms: Sequence[Placed]) -> tuple[Placed, ...]:
-        """The whole message for /tf_static."""
+        """Add transforms; return the whole message for /tf_static."""
         self._by_child.update((one.child_frame, one) for one in transforms)
         return tuple(self._by_child.values())
 
@@ -225,7 +225,7 @@ class RobotState:
         self._moving = robot.tree.moving
 
     def hear(self, state: JointState, now_ns: int) -> Published:
-        """What is published because of a joint state that arrives now."""
+        """Return what is published when a joint state arrives now."""
         if len(state.names) != len(state.positions):
             return Published(None, (_complaint(state),))
         if state.stamp_ns < 0:

@@ -1,6 +1,6 @@
 """The frames that a buffer knows: their poses over time, and the way from one to another.
 
-A frame has one parent at a time. What is known of it is kept under its own name, so whoever sends a
+A frame has one parent at a time. What is known of it is kept under its name, so whoever sends a
 frame under another parent moves it there. Times are nanoseconds; 0 stands for the latest. What has
 no answer ends in one of tf2's six exceptions, by their names in Python.
 """

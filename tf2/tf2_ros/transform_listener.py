@@ -24,7 +24,7 @@ class TransformListener:
     Args:
         buffer: gets what is heard.
         node: what listens.
-        spin_thread: spin the node in a thread of its own.
+        spin_thread: spin the node in a separate thread.
         qos, static_qos: a quality of service, or the depth of one.
         tf_topic, tf_static_topic: where to listen.
     """

@@ -1,4 +1,4 @@
-"""What a viewer may ask for, as JSON: a part of the rosbridge protocol, version 2.
+"""The requests of viewers, as JSON: a part of the rosbridge protocol, version 2.
 
     advertise, unadvertise, publish, subscribe, unsubscribe, call_service,
     send_action_goal, cancel_action_goal
@@ -208,7 +208,7 @@ class Session:
                 goal.is_cancelled = True
 
     def _begin(self, work: Coroutine[Any, Any, None], goal: Goal | None = None) -> None:
-        """Let work that takes time go on beside the next frames."""
+        """Start work that runs beside the next frames."""
         try:
             _check_room(self._tasks)
         except Rejected:
@@ -254,14 +254,14 @@ def _refuse(constant: str) -> Any:
 
 
 def _why(error: Exception, name: str) -> dict[str, Any]:
-    """The answer to a frame that cannot be followed: its text, of this name, and its sentence."""
+    """Return the answer to a refused frame: its text, by this name, and its sentence."""
     if isinstance(error, Rejected):
         return {name: str(error), "sentence": {"key": error.key, "values": error.values}}
     return {name: f"{type(error).__name__}: {error!s:.200}"}
 
 
 def _id_of(frame: Mapping[str, Any]) -> dict[str, Any]:
-    """The id that an answer repeats, where a frame has one."""
+    """Return the id that an answer repeats, where a frame has one."""
     return {} if frame.get("id") is None else {"id": frame["id"]}
 
 

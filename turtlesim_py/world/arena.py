@@ -15,7 +15,7 @@ from turtlesim_py.world.floats import float32, printf_f
 from turtlesim_py.world.picture import NAMES, Sprite
 from turtlesim_py.world.turtle import METER_PX, SIZE_M, Reading, Teleport, Turtle
 
-#: A tick's length on a clock of its own [ns].
+#: A tick's length on the arena's clock [ns].
 TICK_NS = 16_000_000
 DEFAULT_BACKGROUND = (69, 86, 255)
 

@@ -49,7 +49,7 @@ class Pen:
 
 
 class Canvas:
-    """An image that starts transparent and takes strokes; x to the right, y down, both in pixels.
+    """An image that starts transparent, for strokes; x to the right, y down, both in pixels.
 
     A pixel is painted wholly or not at all, and later strokes cover earlier ones. The turtles and
     the background are not in it: see `picture`.
