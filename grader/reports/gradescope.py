@@ -88,8 +88,7 @@ def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
 
 def _overview(report: Report) -> str:
     parts = [f"<p><strong>{html.escape(report.first_line)}</strong></p>"]
-    lines = (*report.advice, *report.attempt, report.not_shown)
-    parts += [f"<p>{html.escape(line)}</p>" for line in lines if line]
+    parts += [f"<p>{html.escape(line)}</p>" for line in (*report.advice, *report.notes)]
     picture = pictures.canvas_uri(report)
     if picture:
         alt = html.escape(tr("The window at the end"))

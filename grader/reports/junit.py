@@ -42,9 +42,7 @@ def render_error(report: ErrorReport) -> str:
         properties["score"] = "0"
     if report.max_score is not None:
         properties["max_score"] = text.points(report.max_score)
-    case = ElementTree.Element(
-        "testcase", {"classname": "grader", "name": report.title, "time": "0"}
-    )
+    case = _testcase("grader", report.title)
     attributes = {"message": text.one_line(report.message), "type": report.whose}
     kind = "failure" if report.is_judged else "error"
     ElementTree.SubElement(case, kind, attributes).text = "\n\n".join(report.paragraphs)
@@ -73,12 +71,13 @@ def _document(
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'
 
 
-def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
-    name = f"{verdict.check}: {translate(verdict.title)}"
+def _testcase(suite: str, name: str) -> ElementTree.Element:
     # GitLab shows the class as the suite.
-    case = ElementTree.Element(
-        "testcase", {"classname": report.exercise, "name": name, "time": "0"}
-    )
+    return ElementTree.Element("testcase", {"classname": suite, "name": name, "time": "0"})
+
+
+def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
+    case = _testcase(report.exercise, f"{verdict.check}: {translate(verdict.title)}")
     lines = report.led_lines(verdict)
     message = {"message": text.one_line(lines[0] if lines else "")}
     if verdict.status == "failed":
@@ -97,9 +96,7 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
 
 def _not_shown(report: Report) -> ElementTree.Element:
     """Make a skipped case of all hidden checks: else all would seem to pass."""
-    case = ElementTree.Element(
-        "testcase", {"classname": report.exercise, "name": report.not_shown_name, "time": "0"}
-    )
+    case = _testcase(report.exercise, report.not_shown_name)
     ElementTree.SubElement(case, "skipped", {"message": report.not_shown})
     return case
 

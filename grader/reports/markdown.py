@@ -29,7 +29,7 @@ def render(report: Report) -> str:
         tr("Submission: {submission}", submission=_quote(report.submission)),
         _first(report),
         _table(report),
-        *(_quote(line) for line in (*report.attempt, report.not_shown)),
+        *map(_quote, report.notes),
     ]
     parts += [_seen(report, verdict) for verdict in report.verdicts if verdict.status == "failed"]
     parts += [_run(report), _output(report)]

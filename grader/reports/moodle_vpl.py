@@ -18,11 +18,7 @@ def render(report: Report) -> str:
     """Return what `vpl_execution` prints. The activity's maximum grade has to be max_score."""
     lines = ["<|--", "-" + tr("What to do"), _quote(report.first_line)]
     lines += map(_quote, report.advice)
-    lines += [
-        tr("Also: {said}", said=_quote(line))
-        for line in (*report.attempt, report.not_shown)
-        if line
-    ]
+    lines += [tr("Also: {said}", said=_quote(note)) for note in report.notes]
     for verdict in report.verdicts:
         lines += _verdict(report, verdict)
     lines += ["--|>", f"Grade :=>> {text.points(report.score)}"]

@@ -48,7 +48,7 @@ def _played_run(number: int, recording: Recording) -> PlayedRun:
     after = recording.run.simulated_s
     return PlayedRun(
         number,
-        tr("Varied run {number}", number=number) if number else tr("Nominal run"),
+        wording.run_name(number),
         tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
         recording.trace,
         start,

@@ -43,16 +43,11 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
     return {
         "gradable": True,
         "score": _share(report),
-        "message": text.clip("\n".join(_message_lines(report)), 1000),
+        "message": text.clip("\n".join([report.first_line, *report.advice, *report.notes]), 1000),
         "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,
     }
-
-
-def _message_lines(report: Report) -> list[str]:
-    lines = [report.first_line, *report.advice, *report.attempt, report.not_shown]
-    return [line for line in lines if line]
 
 
 def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:

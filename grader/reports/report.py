@@ -65,8 +65,7 @@ class Report:
         diagnosis: that of the result, with texts of limited length; None for none.
         not_shown: a sentence on the checks that are left out; '' for none.
         not_shown_name: the name of these as one check, for formats that know only checks.
-        attempt: sentences on whose attempt it is, and the deduction for lateness; empty where that
-            is unknown.
+        notes: sentences on whose attempt it is, the deduction for lateness, and `not_shown`.
         beside, view: as above.
     """
 
@@ -88,7 +87,8 @@ class Report:
         )
         self._left_out = shown.not_shown
         self.not_shown = wording.not_shown(shown.not_shown)
-        self.attempt = list(map(readable.line, wording.attempt(shown)))
+        attempt = map(readable.line, wording.attempt(shown))
+        self.notes = list(filter(None, (*attempt, self.not_shown)))
         self.verdicts = tuple(map(readable.of_verdict, shown.verdicts, names))
         self.diagnosis = None if shown.diagnosis is None else readable.of_diagnosis(shown.diagnosis)
         self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))

@@ -84,8 +84,8 @@ def show(report: Report, console: Console) -> None:
     )
     for flag in report.flags:
         console.print(_text(tr("Note: {flag}", flag=flag)))
-    for line in filter(None, (*report.attempt, report.not_shown)):
-        console.print(_text(line))
+    for note in report.notes:
+        console.print(_text(note))
     console.print(_score(report))
 
 

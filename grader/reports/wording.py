@@ -87,6 +87,11 @@ def points(value: float) -> str:
     return number(text.points(value))
 
 
+def run_name(number: int) -> str:
+    """Name a run; 0 is the nominal one."""
+    return tr("Varied run {number}", number=number) if number else tr("Nominal run")
+
+
 def title_of(verdict: Verdict) -> str:
     """Return the title of a verdict's check; its name where it has no title."""
     return translate(verdict.title) or verdict.check

@@ -202,7 +202,7 @@ def _environment() -> jinja2.Environment:
         see_first=wording.SEE_FIRST,
         place=text.place,
         word=wording.word,
-        run_name=_name,
+        run_name=wording.run_name,
         so_many=wording.so_many,
         clock=wording.clock,
         outcome_word=wording.outcome,
@@ -264,14 +264,10 @@ def _still_words(drawing: Drawing) -> str:
     return "; ".join(drawn_parts) or tr("The window at the end")
 
 
-def _name(number: int) -> str:
-    return tr("Varied run {number}", number=number) if number else tr("Nominal run")
-
-
 def _title(report: Report, number: int) -> str:
     start = report.varied_runs[number - 1].start if number else None
     if start is None:
-        return _name(number)
+        return wording.run_name(number)
     return tr(
         "Varied run {number}: from {place}, heading {heading:.0f}°",
         number=number,

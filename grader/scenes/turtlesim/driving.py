@@ -37,8 +37,7 @@ def drive(
     Before it drives, turtle1 may rest for longer, as in a run of a submission.
     """
     arena = Arena(sprite=SPRITE)
-    if start is not None:
-        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
+    place(arena, start)
     recorder = Recorder(arena)
     pose: Pose | None = None
     still, has_driven = 0, False
@@ -52,6 +51,12 @@ def drive(
         if still >= REST_TICKS and (has_driven or still >= FIRST_MOTION_TICKS):
             break
     return recorder.trace(), "rest" if still >= REST_TICKS else "time_limit"
+
+
+def place(arena: Arena, start: Start | None) -> None:
+    """Put turtle1 at the start of a run, without a stroke; None leaves it in the centre."""
+    if start is not None:
+        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
 
 
 def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:

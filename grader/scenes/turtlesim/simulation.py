@@ -11,7 +11,7 @@ from grader.message import Message
 from grader.recording.subject import Start
 from grader.scenes.scene import GRACE_TICKS, Forecast, Hooks, Limits, Reason, Simulation
 from grader.scenes.turtlesim.allowance import MOST_LOGS
-from grader.scenes.turtlesim.driving import Recorder
+from grader.scenes.turtlesim.driving import Recorder, place
 from grader.scenes.turtlesim.graded_node import GradedNode
 from grader.scenes.turtlesim.setting import script
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
@@ -35,7 +35,7 @@ class TurtlesimSimulation(Simulation):
     ) -> None:
         super().__init__()
         self.node = GradedNode(hooks, interfaces)
-        _place(self.node.arena, start)
+        place(self.node.arena, start)
         self._recorder = Recorder(self.node.arena, MOST_LOGS)
         self._end = EndOfRun(limits)
         before, self._script = script(setting)
@@ -116,12 +116,6 @@ def _feed(arena: Arena, send: Callable[[Mapping[str, Any]], None]) -> Feed:
     feed.is_watched = True
     feed.after_tick({})
     return feed
-
-
-def _place(arena: Arena, start: Start | None) -> None:
-    """Put turtle1 at the start of the run, without a stroke, before anything is recorded."""
-    if start is not None:
-        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
 
 
 class EndOfRun:

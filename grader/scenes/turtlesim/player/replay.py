@@ -15,8 +15,9 @@ import numpy as np
 
 from grader.errors import RecordingError
 from grader.recording.subject import Start
+from grader.scenes.turtlesim.driving import place
 from grader.scenes.turtlesim.player.animation import Animation, Place
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace
+from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
 from turtlesim_py.scenario import ScenarioError, replay
 from turtlesim_py.world.arena import DEFAULT_BACKGROUND, Arena, UnknownTurtle
 from turtlesim_py.world.canvas import Canvas, Pen
@@ -104,9 +105,7 @@ class _ReplayRecorder:
         """Put the turtle where the run began, and record from here on."""
         self._arena = arena
         arena.sprite = SPRITE
-        if self._start is not None:
-            start = self._start
-            arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
+        place(arena, self._start)
         arena.canvas.watcher = self._on_stroke
         arena.listeners.append(self._on_notice)
         self._record_frame({})
