@@ -51,7 +51,7 @@ def extensions() -> list[Extension]:
 
 
 class BuildInterfaces(build_ext):
-    """`build_ext` that writes the sources first, and collects what goes beside the extension."""
+    """A `build_ext` that generates the sources first, and collects the files beside the extension."""
 
     def run(self) -> None:
         """Build all packages and the .pth file that makes the ament index work."""
@@ -61,7 +61,7 @@ class BuildInterfaces(build_ext):
         (lib / "turtlesim_py_ament_prefix.pth").write_text(AMENT_PREFIX_PTH)
 
     def build_extensions(self) -> None:
-        """Build the packages side by side, and collect what each has made.
+        """Build the packages in parallel, and collect their files.
 
         Processes, not the threads of `build_ext --parallel`: to generate is Python's work, and
         half of it all.
@@ -80,7 +80,7 @@ class BuildInterfaces(build_ext):
             self._collect(*self._package(ext))
 
     def _package(self, ext: Extension) -> tuple[str, Path]:
-        """Return the name of the package, and the folder of what is generated for it."""
+        """Return the name of the package, and the folder of its generated files."""
         package = ext.name.split(".")[0]
         return package, (Path(self.build_temp) / "rosidl" / package).resolve()
 

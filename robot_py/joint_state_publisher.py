@@ -1,4 +1,4 @@
-"""The node joint_state_publisher: /joint_states for joints that nobody moves."""
+"""The node joint_state_publisher: /joint_states for joints without a controller."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What joint_state_publisher 2.4.3, Jazzy's, does, without a node.
+"""The behaviour of joint_state_publisher 2.4.3, Jazzy's, without a node.
 
 It reads the description by itself, with other rules than urdfdom: `lower` and `upper` have to be
 there, and much else is not checked. Of the three formats that the original reads, this reads one,
@@ -40,7 +40,7 @@ class Dependence(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True)
 class JointStateOptions:
-    """The node's parameters; what they mean stands in docs/robots.md."""
+    """The node's parameters; docs/robots.md describes them."""
 
     publish_default_positions: bool = True
     publish_default_velocities: bool = False

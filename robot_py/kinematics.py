@@ -212,7 +212,7 @@ def _rotation_rpy(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
 
 
 def _rotation_about(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
-    """A turn [rad] about an axis of length 1, as KDL's Rotation::Rot2."""
+    """Return a turn [rad] about an axis of length 1, as KDL's Rotation::Rot2."""
     c, s = (math.cos(angle), math.sin(angle)) if math.isfinite(angle) else (math.nan, math.nan)
     x, y, z = axis
     v = 1 - c

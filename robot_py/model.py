@@ -17,7 +17,7 @@ BLACK: Colour = (0.0, 0.0, 0.0, 1.0)
 
 
 class JointType(StrEnum):
-    """What a joint lets its child do."""
+    """How a joint lets its child move."""
 
     REVOLUTE = "revolute"
     CONTINUOUS = "continuous"
@@ -76,7 +76,7 @@ class Sphere:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A file of triangles, as the URDF names it (`package://...`), and by what it is stretched."""
+    """A file of triangles, as the URDF names it (`package://...`), and its scale."""
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)

@@ -1,4 +1,4 @@
-"""What robot_state_publisher 3.3.4, Jazzy's, does, without a node.
+"""The behaviour of robot_state_publisher 3.3.4, Jazzy's, without a node.
 
 `Robot.of` reads a description, `RobotState` answers each joint state that is heard: what goes to
 /tf, and what is logged. Nothing here knows a clock or a topic: all times are arguments, in
@@ -115,7 +115,7 @@ class Placed:
 
 @dataclass(frozen=True, slots=True)
 class JointState:
-    """What of a JointState message counts here."""
+    """The fields of a JointState message that are used."""
 
     stamp_ns: int
     names: Sequence[str]
@@ -124,7 +124,7 @@ class JointState:
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """What comes of a joint state.
+    """The messages and log lines on a joint state.
 
     Attributes:
         transforms: the message on /tf; None where there is none. It may be empty: then the joint
@@ -137,7 +137,7 @@ class Published:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A description that was accepted, and what urdfdom prints of it."""
+    """An accepted description, and urdfdom's findings on it."""
 
     description: str
     model: Model
@@ -190,7 +190,7 @@ def placed(joint: Joint, position: float, stamp_ns: int, prefix: str) -> Placed:
 
 
 class StaticFrames:
-    """What a static broadcaster has sent so far: every message has it all.
+    """The transforms that a static broadcaster has sent: every message has all of them.
 
     A frame that was sent before is replaced and keeps its place; none ever goes, not even with the
     robot that had it.
@@ -206,7 +206,7 @@ class StaticFrames:
 
 
 class RobotState:
-    """Answers joint states: keeps what was published when.
+    """Answers joint states; remembers when each joint was published.
 
     Attributes:
         parameters: may be replaced at any time.

@@ -161,7 +161,7 @@ def _wrong_parameter(event: kinds.SetParameter) -> str:
 
 
 class _Player:
-    """One replay: the arena, and what is recorded of it."""
+    """One replay: the arena, and its recording."""
 
     def __init__(self) -> None:
         self.tick = 0

@@ -1,4 +1,4 @@
-"""What every format is made from where there is no result: an error, and who has to act."""
+"""The input of every format where there is no result: an error, and who has to act."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every format is made from: a result with its picture and recordings."""
+"""The input of every format: a result with its picture and recordings."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ class Report:
         return found.run in ({item.run for item in verdict.evidence} or {found.run})
 
     def lines(self, verdict: Verdict) -> list[str]:
-        """Return what was seen, the evidence and the hint, for formats that show plain text."""
+        """Return the rationale, the evidence and the hint, for formats that show plain text."""
         lines = [text.one_line(translate(verdict.rationale))]
         if waited_for := self.waited_for(verdict):
             lines.append(tr("Waits for: {checks}", checks=", ".join(waited_for)))

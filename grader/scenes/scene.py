@@ -46,7 +46,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Introduction:
-    """What a submission's process has to know of a scene before they can communicate.
+    """What a submission's process has to know of a scene to communicate with it.
 
     Attributes:
         nodes: the names and namespaces of the scene's nodes.
@@ -79,7 +79,7 @@ class Hooks:
 
 @dataclass(frozen=True)
 class Forecast:
-    """What will be published in the next ticks if nothing arrives.
+    """The messages of the next ticks if nothing arrives.
 
     Attributes:
         publishers: rclpy's, each of which publishes once in each of these ticks.

@@ -82,7 +82,7 @@ def _paint(
     camera: Camera,
     before: npt.NDArray[np.bool_] | None,
 ) -> None:
-    """Paint some triangles over what is there.
+    """Paint some triangles over the others.
 
     Args:
         before: the triangles that hide these; None for none.
@@ -176,7 +176,7 @@ def ground(camera: Camera, height_m: float) -> Floats:
 
 
 def edge_m(camera: Camera) -> float:
-    """The edge of a square: about an eighth of what is seen."""
+    """Return the edge of a square [m]: about an eighth of the picture."""
     raw = camera.middle_m / 10
     power = 10.0 ** math.floor(math.log10(raw))
     return float(power * next((m for m in (1, 2, 5) if m * power >= raw), 10))

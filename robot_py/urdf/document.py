@@ -1,4 +1,4 @@
-"""A whole URDF: from text to a robot, or to why there is none."""
+"""Parses a whole URDF to a robot, or to the findings why there is none."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class ParsedUrdf:
 
 
 def parse(text: str) -> ParsedUrdf:
-    """Read a URDF; whatever it is, there is an answer.
+    """Parse a URDF; no text raises an exception.
 
     Time and memory grow with the length of the text and no more, and nothing that it names is
     opened: it may come from a stranger.

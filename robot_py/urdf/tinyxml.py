@@ -67,7 +67,7 @@ PASSED_OVER = (
 
 
 class Consequence(StrEnum):
-    """What becomes of the robot."""
+    """The effect of a finding on the robot."""
 
     #: There is no robot: robot_state_publisher ends, or refuses the change.
     REFUSED = "refused"
@@ -79,7 +79,7 @@ class Consequence(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class UrdfFinding:
-    """One line of what urdfdom prints.
+    """A line that urdfdom prints.
 
     Attributes:
         text: without the `Error:` or `Warning:` that stands before it.
@@ -91,7 +91,7 @@ class UrdfFinding:
     line: int = 0
 
     def __str__(self) -> str:
-        """As console_bridge prints it, but for the second line, which names a place in urdfdom."""
+        """Format as console_bridge, without its second line, which names a place in urdfdom."""
         prefix = "Warning: " if self.consequence is Consequence.WARNED else "Error:   "
         return prefix + self.text
 
@@ -105,7 +105,7 @@ class Malformed(ValueError):
         self.line = line
 
     def within(self, text: str) -> Malformed:
-        """Return the same with what the part around it adds."""
+        """Return the fault with the line that the surrounding part adds."""
         return Malformed(*self.texts, text, line=self.line)
 
     def findings(self, consequence: Consequence) -> list[UrdfFinding]:
@@ -139,7 +139,7 @@ class Element:
         return self.attributes.get(attribute)
 
     def malformed(self, *texts: str) -> Malformed:
-        """Return what is wrong here."""
+        """Return the fault of this element."""
         return Malformed(*texts, line=self.line)
 
     def needed(self, attribute: str, missing: str) -> str:

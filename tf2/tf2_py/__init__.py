@@ -1,4 +1,4 @@
-"""A tf2_py for a Python without ROS: the buffer of transforms, and what it raises.
+"""A tf2_py for a Python without ROS: the buffer of transforms, and its exceptions.
 
 That of ROS is made of C++. Installed only where no ROS is sourced.
 """

@@ -189,7 +189,7 @@ class BufferCore:
         return cache.latest()[0] if cache is not None else 0
 
     def _check_frame(self, where: str, frame: str) -> None:
-        """Raise what a lookup ends in that asks for a frame with this name."""
+        """Raise the exception of a lookup if there is no frame with this name."""
         if reason := _cannot_be(frame):
             raise InvalidArgumentException(
                 f'Invalid argument "{frame}" passed to {where} - {reason}'
@@ -222,7 +222,7 @@ def _cannot_be(frame: str) -> str:
 
 
 def _check_texts(*texts: Any, first: int = 1) -> None:
-    """Refuse what is no text as a function written in C does."""
+    """Raise TypeError for what is no text, as a function written in C does."""
     for number, text in enumerate(texts, first):
         if not isinstance(text, str):
             raise TypeError(f"argument {number} must be str, not {type(text).__name__}")
@@ -302,7 +302,7 @@ def _print_lines(level: str, *texts: str) -> None:
 
 
 def _entry(name: str, cache: TimeCache, authority: str) -> str:
-    """Return what `all_frames_as_yaml` has of one frame."""
+    """Return the entry of one frame in `all_frames_as_yaml`."""
     newest_ns, parent = cache.latest()
     oldest_ns = cache.oldest_ns()
     length_ns = newest_ns - oldest_ns

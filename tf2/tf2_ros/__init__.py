@@ -1,4 +1,4 @@
-"""A tf2_ros for a Python without ROS: transforms sent, heard and looked up.
+"""A tf2_ros for a Python without ROS: sends, receives and looks up transforms.
 
 It has all but `BufferClient`, which asks a buffer in another process. ROS's module also has names
 that are not tf2's, which programs import from it: `from tf2_ros import TransformBroadcaster,

@@ -1,4 +1,4 @@
-"""`BufferInterface`: transforms messages from one frame to another, whatever knows the frames.
+"""`BufferInterface`: transforms messages between the frames of any buffer.
 
 Other packages register the function for each type, tf2_geometry_msgs first of all.
 """
@@ -105,7 +105,7 @@ class TransformRegistration:
     _functions: ClassVar[dict[Any, Callable[..., Any]]] = {}
 
     def print_me(self) -> None:
-        """Print what is registered."""
+        """Print the registered types."""
         print(self._functions)
 
     def add(self, key: Any, callback: Callable[..., Any]) -> None:

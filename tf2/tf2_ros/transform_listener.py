@@ -1,4 +1,4 @@
-"""`TransformListener`: what comes on /tf and /tf_static goes into a buffer."""
+"""`TransformListener`: puts the transforms of /tf and /tf_static into a buffer."""
 
 from __future__ import annotations
 
@@ -76,12 +76,12 @@ class TransformListener:
                 self.node.destroy_subscription(getattr(self, subscription))
 
     def callback(self, data: TFMessage) -> None:
-        """Hear of frames that move."""
+        """Store transforms of moving frames."""
         for transform in data.transforms:
             self.buffer.set_transform(transform, AUTHORITY)
 
     def static_callback(self, data: TFMessage) -> None:
-        """Hear of frames that never move."""
+        """Store transforms of static frames."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, AUTHORITY)
 

@@ -59,7 +59,7 @@ class Source(Protocol):
 
 
 class Feed:
-    """A `Source` that collects what happens in an arena.
+    """A `Source` that collects the changes of an arena.
 
     Args:
         deliver: called in the simulator's thread.
@@ -133,7 +133,7 @@ class Feed:
 
 
 def _row(turtle: Turtle, reading: Reading | None) -> Mapping[str, Any]:
-    """Return a turtle as the page gets it: where to draw it [px, rad], and what it publishes."""
+    """Return a turtle as the page gets it: its place [px, rad], and its published values."""
     pen = turtle.pen
     row: dict[str, Any] = {
         "name": turtle.name,

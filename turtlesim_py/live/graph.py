@@ -169,11 +169,11 @@ class Graph:
         return _shown(self.node.get_service_names_and_types())
 
     def publishers(self, topic: str) -> list[str]:
-        """The full names of the nodes that publish on a topic."""
+        """Return the full names of the nodes that publish on a topic."""
         return _names(self.node.get_publishers_info_by_topic(topic))
 
     def subscribers(self, topic: str) -> list[str]:
-        """The full names of the nodes that subscribe to a topic."""
+        """Return the full names of the nodes that subscribe to a topic."""
         return _names(self.node.get_subscriptions_info_by_topic(topic))
 
     def topic_type(self, topic: str) -> str:

@@ -1,4 +1,4 @@
-"""ROS messages as JSON and back, as rosbridge has them, and what a type is made of.
+"""Converts ROS messages to rosbridge's JSON and back, and lists the fields of types.
 
 Bytes (`uint8[]`, `byte[]`) are base64 text; what is no finite number is null, since JSON has none.
 """
@@ -28,7 +28,7 @@ MOST_ITEMS = 100_000
 
 
 class Rejected(ValueError):
-    """A viewer asks for what cannot be done; the text, which is the answer, explains why.
+    """A request of a viewer cannot be served; the text, which is the answer, explains why.
 
     Args:
         key: the text in English, with names in braces for its values; the page's catalogues have

@@ -37,7 +37,7 @@ _MAYBE_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 
 @dataclass
 class Goal:
-    """A goal that has not ended: what the viewer called it, and whether it shall end."""
+    """A goal that has not ended: the viewer's name for it, and whether to cancel it."""
 
     name: str
     is_cancelled: bool = False
@@ -289,7 +289,7 @@ def _is_rosapi(service: str) -> bool:
 
 
 def _rosapi(graph: Graph, service: str, args: object) -> dict[str, Any]:
-    """Answer what there is in the graph, as rosapi's services of these names do."""
+    """Answer a query of the graph, as rosapi's service of this name does."""
     asked = args if isinstance(args, dict) else {}
     match service.rpartition("/")[2]:
         case "topics":

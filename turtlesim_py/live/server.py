@@ -123,7 +123,7 @@ class LiveServer:
         self._thread = threading.Thread(target=self._run, name="live", daemon=True)
 
     def start(self, source: Source) -> None:
-        """Listen, and show what a source delivers.
+        """Listen, and show the news of a source.
 
         Raises:
             OSError: that is not possible, as where the port is in use.
@@ -250,7 +250,7 @@ class LiveServer:
                 self._catch_up(viewer)
 
     def _catch_up(self, viewer: _Viewer) -> None:
-        """Ask for all of the arena as soon as the viewer has read what was sent."""
+        """Request all of the arena as soon as the viewer has read all that was sent."""
         if viewer not in self._watching:
             return
         if viewer.is_slow:

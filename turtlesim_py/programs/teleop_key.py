@@ -151,7 +151,7 @@ class Keyboard:
         self._is_ours = False
 
     def _is_in_front(self) -> bool:
-        """Whether the terminal is ours: in the background it is a shell's or another program's."""
+        """Whether this program has the terminal, which it has not in the background."""
         if not os.isatty(self._file):
             return False  # it is gone
         try:
@@ -183,7 +183,7 @@ class TeleopTurtle(RclcppNode):
         self._goal: Any = None  # the future of its handle
 
     def press(self, key: str) -> None:
-        """Do what a key stands for; nothing for the others."""
+        """Act on a key; keys without a meaning are ignored."""
         if key in DRIVE:
             ahead, left = DRIVE[key]
             twist = Twist()

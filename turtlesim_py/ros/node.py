@@ -60,7 +60,7 @@ PARAMETER_EVENTS_QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_
 
 
 class TurtlesimNode(RclcppNode):
-    """The node `/turtlesim`: owns an arena and serves it; somebody else calls `tick`.
+    """The node `/turtlesim`: owns an arena and serves it; its user calls `tick`.
 
     Args:
         arguments: ROS arguments (`--ros-args ...`) of this node alone; the global ones count too.

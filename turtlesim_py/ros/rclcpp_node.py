@@ -44,7 +44,7 @@ IN_WORDS: dict[type, str] = {
 
 
 class UnusableStart(Exception):
-    """A program cannot start with what it was given; the text explains why."""
+    """A program cannot start with its arguments or parameters; the text explains why."""
 
 
 class UnusableParameter(UnusableStart):

@@ -71,7 +71,7 @@ class RotateAction:
 
     @property
     def known(self) -> int:
-        """How many goals are known: what runs, and what has ended and can still be asked for."""
+        """The number of known goals: running, or ended and with a result that can be requested."""
         return len(self._server._goal_handles)
 
     def feedback(self, event: GoalFeedback) -> None:
@@ -81,7 +81,7 @@ class RotateAction:
         handle.publish_feedback(message)
 
     def finish(self, event: GoalResult) -> None:
-        """End a goal and send its result to those who wait for it."""
+        """End a goal and send its result to waiting clients."""
         handle, awaited = self._running.pop(_key(event))
         if event.status == "SUCCEEDED":
             handle.succeed()
@@ -117,7 +117,7 @@ def _key(event: GoalFeedback | GoalResult) -> bytes:
 
 
 class TurtleEndpoints:
-    """What the graph sees of the turtle `name`, below the topic prefix of the same name.
+    """The endpoints of the turtle `name`, below the topic prefix of the same name.
 
     Attributes:
         pose_publisher: of `pose`.

@@ -37,7 +37,7 @@ SWITCH_S = 0.0005
 
 
 def declare_parameters(node: RclcppNode) -> None:
-    """Declare what a `Window` on this node reads."""
+    """Declare the parameters of a `Window` on this node."""
     node.declare(
         "image_rate",
         DEFAULT_RATE_HZ,
@@ -48,7 +48,7 @@ def declare_parameters(node: RclcppNode) -> None:
 
 
 def declare_page_parameters(node: RclcppNode) -> None:
-    """Declare what `serve_page` reads."""
+    """Declare the parameters of `serve_page`."""
     node.declare(
         "view_port",
         -1,

@@ -226,7 +226,7 @@ class Arena:
         return None if any(t.is_busy for t in turtles) else list(map(copy, turtles))
 
     def sprites(self) -> list[Sprite]:
-        """Where each turtle's picture belongs on the canvas, later ones on top."""
+        """Return the place of each turtle's picture on the canvas, later ones on top."""
         ordered = (self.turtles[name] for name in sorted(self.turtles))
         return [
             Sprite(t.x_m * METER_PX, t.y_down_m * METER_PX, t.heading_rad, t.sprite)

@@ -23,7 +23,7 @@ UNPAINTED = (255, 255, 255, 0)
 
 @dataclass(frozen=True)
 class Pen:
-    """What a turtle draws with. Each value is from 0 to 255, as in the SetPen service.
+    """The pen of a turtle. Each value is from 0 to 255, as in the SetPen service.
 
     Attributes:
         r, g, b: colour; the default is the original's.

@@ -47,7 +47,7 @@ class Pose(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a turtle publishes in a tick: its pose and the colour (r, g, b) under it."""
+    """The values that a turtle publishes in a tick: its pose and the colour (r, g, b) under it."""
 
     pose: Pose
     color: tuple[int, int, int]
@@ -64,7 +64,7 @@ class Teleport(NamedTuple):
 
 @dataclass(slots=True)
 class RotationGoal:
-    """A rotation towards `theta` [rad]; `goal_id` is whatever the caller knows it by."""
+    """A rotation towards `theta` [rad]; `goal_id` is the caller's."""
 
     goal_id: object
     theta: float

@@ -47,7 +47,7 @@ _PAPER_LINES, _PAPER_LIMIT = 25, 4000
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a page shows of a recording alone.
+    """The parts of a page that depend on a recording alone.
 
     Attributes:
         animation, plots: None without a recording.
@@ -141,7 +141,7 @@ def render(report: Report) -> str:
 
 
 def _first_fault(report: Report) -> Diagnosis | Evidence | None:
-    """Return what has the run and time of the first fault; None where they are unknown."""
+    """Return the diagnosis or evidence that locates the first fault; None for neither."""
     found = report.diagnosis
     if found is not None and not found.check:
         return found

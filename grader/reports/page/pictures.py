@@ -42,7 +42,7 @@ def window_uri(report: Report, run: int) -> str:
 
 
 def plane_uri(report: Report, run: int) -> str:
-    """Return the scene's plane, where the window shows something else; '' where there is none."""
+    """Return the scene's plane, where that is not the window; '' where there is none."""
     return _recorded(report, run, "plan")
 
 

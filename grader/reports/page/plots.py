@@ -196,7 +196,7 @@ _LONGEST = 160
 
 @dataclass(frozen=True)
 class Drawn:
-    """What is expected of one curve, as drawn.
+    """The expectation on one curve, as drawn.
 
     Attributes:
         text: in words.
@@ -210,7 +210,7 @@ class Drawn:
 
 
 def expected(report: Report, plots: Plots | None) -> dict[str, Drawn]:
-    """Return what is expected of the nominal run's curves, by the titles of their plots."""
+    """Return the expectations on the nominal run's curves, by the titles of their plots."""
     if plots is None:
         return {}
     wanted = {

@@ -1,4 +1,4 @@
-"""A run in words, for readers who do not see colours: the requests, and the drawing by quadrant.
+"""A run in words, for readers that do not see colours: requests, and the drawing by quadrant.
 
 Quadrants have their numbers of mathematics. A colour is named roughly after its hue, followed by
 its RGB values.
