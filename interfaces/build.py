@@ -40,18 +40,18 @@ AMENT_PREFIX_PTH = (
 )
 
 KINDS = ("msg", "srv", "action")
-# Fast DDS serialises by the first, but looks at every type by the second when it registers it:
+# Fast DDS serialises by the first, but reads every type by the second when it registers it:
 # without introspection a module imports, and the first publisher fails.
 TYPE_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 
 
 def extensions() -> list[Extension]:
-    """What to give to `setup(ext_modules=...)`; the names are those that rclpy imports."""
+    """Return the argument of `setup(ext_modules=...)`, with the names that rclpy imports."""
     return [Extension(f"{name}.{name}_s__rosidl_typesupport_c", sources=[]) for name in PACKAGES]
 
 
 class BuildInterfaces(build_ext):
-    """`build_ext` that writes the sources first, and collects what goes beside the extension."""
+    """A `build_ext` that generates the sources first, and collects the files beside."""
 
     def run(self) -> None:
         """Build all packages and the .pth file that makes the ament index work."""
@@ -61,7 +61,7 @@ class BuildInterfaces(build_ext):
         (lib / "turtlesim_py_ament_prefix.pth").write_text(AMENT_PREFIX_PTH)
 
     def build_extensions(self) -> None:
-        """Build the packages side by side, and collect what each has made.
+        """Build the packages in parallel, and collect their files.
 
         Processes, not the threads of `build_ext --parallel`: to generate is Python's work, and
         half of it all.
@@ -80,7 +80,7 @@ class BuildInterfaces(build_ext):
             self._collect(*self._package(ext))
 
     def _package(self, ext: Extension) -> tuple[str, Path]:
-        """The name of the package, and the folder of what is generated for it."""
+        """Return the name of the package, and the folder of its generated files."""
         package = ext.name.split(".")[0]
         return package, (Path(self.build_temp) / "rosidl" / package).resolve()
 
@@ -100,7 +100,7 @@ class BuildInterfaces(build_ext):
             built_with.write_text(_ros_version())
 
     def _collect(self, package: str, generated: Path) -> None:
-        """Python modules go into the package, `share/` goes to `<prefix>/share`."""
+        """Copy Python modules into the package; `share/` goes to `<prefix>/share`."""
         modules = generated / "rosidl_generator_py" / package
         for path in sorted(modules.rglob("*.py")):
             target = Path(self.build_lib) / package / path.relative_to(modules)
@@ -115,13 +115,13 @@ class BuildInterfaces(build_ext):
 
 
 def _inputs() -> list[Path]:
-    """Everything that decides what is built; pyproject.toml holds the versions of ROS."""
-    own = [path for path in HERE.rglob("*") if path.is_file() and path.suffix != ".pyc"]
-    return [*own, HERE.parent / "pyproject.toml"]
+    """Return the inputs of the build; pyproject.toml has the versions of ROS."""
+    sources = [path for path in HERE.rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    return [*sources, HERE.parent / "pyproject.toml"]
 
 
 def _ros_version() -> str:
-    """Tells the ROS releases apart: environments of several share build/."""
+    """Return a version that differs between ROS releases, which may share build/."""
     return version("ros-rosidl-generator-py")
 
 
@@ -135,7 +135,7 @@ def _configure(ext: Extension, package: str, generated: Path) -> None:
 
     prefix = ros_prefix()
     ext.sources = _unity_sources(generated)
-    # its object file is a package's own: each is compiled with other names, side by side
+    # one object file per package: each is compiled with other names, side by side
     ext.sources.append(str(shutil.copyfile(HERE / "dispatch.c", generated / "dispatch.c")))
     ext.define_macros += [
         (
@@ -175,21 +175,21 @@ def _configure(ext: Extension, package: str, generated: Path) -> None:
         )
     ]
     ext.extra_compile_args += ["-O1", "-g0", "-w"]
-    # Python's own flags have -DNDEBUG. Without it a wrong type in a field aborts, as with the
+    # Python's flags have -DNDEBUG. Without it a wrong type in a field aborts, as with the
     # packages of apt; with it the field silently holds garbage
     ext.extra_compile_args.append("-UNDEBUG")
     ext.extra_link_args += [
         "-Wl,--as-needed",
         "-s",
         # <prefix>/lib, seen from site-packages/<package>. As the older DT_RPATH, because the
-        # libraries there have no path of their own and DT_RUNPATH would not hold for them
+        # libraries there have no path and DT_RUNPATH would not hold for them
         "-Wl,--disable-new-dtags",
         "-Wl,-rpath,$ORIGIN/../../../../lib",
     ]
 
 
 def _unity_sources(generated: Path) -> list[str]:
-    """One C and one C++ file that include the others: compiles in a fifth of the time."""
+    """Write one C and one C++ file that include the others: a fifth of the compile time."""
     sources = []
     for suffix in (".c", ".cpp"):
         found = sorted(generated.rglob(f"*{suffix}"))
@@ -206,7 +206,7 @@ def _unity_sources(generated: Path) -> list[str]:
 
 
 def ros_prefix() -> Path:
-    """The directory whose include/, lib/ and share/ the ROS wheels fill."""
+    """Return the directory whose include/, lib/ and share/ the ROS wheels fill."""
     import rosidl_generator_c
 
     # <prefix>/lib/python3.X/site-packages/rosidl_generator_c/__init__.py

@@ -1,4 +1,4 @@
-"""What compiling the interface packages takes, and the one line that says what of it is missing.
+"""The requirements for compiling the interface packages, and the line on what is missing.
 
 setup.py asks before pip downloads anything. As a program (for scripts/check_setup.sh) this prints
 the line, and fails.
@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 def missing() -> list[str]:
-    """The compilers and headers that this Python's extension modules need and that are not here."""
+    """Return the missing compilers and headers that this Python's extension modules need."""
     found_nowhere = []
     for variable, usual in (("CC", "gcc"), ("CXX", "g++")):
         # with its first options, as in "gcc -pthread"
@@ -26,7 +26,7 @@ def missing() -> list[str]:
 
 
 def complaint() -> str | None:
-    """One line on what is missing and how to get it; None where everything is here."""
+    """Return a line on what is missing and how to get it; None where nothing is."""
     if not (names := missing()):
         return None
     python = f"python{sysconfig.get_python_version()}"

@@ -13,7 +13,7 @@ from launch_ros.actions import Node
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Describe both nodes; the arguments choose the controller, for instance a student's own."""
+    """Describe both nodes; the arguments choose the controller, for instance a student's."""
     return LaunchDescription(
         [
             DeclareLaunchArgument(

@@ -1,4 +1,4 @@
-"""The node joint_state_publisher: /joint_states for joints that nobody moves."""
+"""The node joint_state_publisher: /joint_states for joints without a controller."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ PARAMETERS: tuple[tuple[str, Any, int], ...] = (
 )
 
 
-#: What a parameter that is no number looks like on the command line.
+#: A type -> how its values are written on the command line.
 IN_WORDS: dict[type, str] = {bool: "true or false", list: "a list of topics"}
 
 
@@ -68,7 +68,7 @@ class JointStatePublisher(Node):
     """The node `/joint_state_publisher`.
 
     Args:
-        arguments: the program's own: of these the first may be a file with the description.
+        arguments: without those of ROS; the first may be a file with the description.
 
     Raises:
         UnusableStart: a parameter or the file cannot be used.
@@ -100,10 +100,10 @@ class JointStatePublisher(Node):
         self.create_timer(1.0 / rate, self._on_timer)
 
     def _value(self, name: str) -> Any:
-        """A parameter's value, which may be a whole number or another, as in the original.
+        """Return a parameter's value; a number may be whole or not, as in the original.
 
         Raises:
-            UnusableStart: it is something else, which the original takes for true, or crashes.
+            UnusableStart: it has another type, which the original treats as true, or crashes.
         """
         value = self.get_parameter(name).value
         default = next(default for known, default, _ in PARAMETERS if known == name)

@@ -1,4 +1,4 @@
-"""What joint_state_publisher 2.4.3, Jazzy's, does, without a node.
+"""The behaviour of joint_state_publisher 2.4.3, Jazzy's, without a node.
 
 It reads the description by itself, with other rules than urdfdom: `lower` and `upper` have to be
 there, and much else is not checked. Of the three formats that the original reads, this reads one,
@@ -40,7 +40,7 @@ class Dependence(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True)
 class JointStateOptions:
-    """The node's parameters; what they mean stands in docs/robots.md."""
+    """The node's parameters; docs/robots.md describes them."""
 
     publish_default_positions: bool = True
     publish_default_velocities: bool = False
@@ -90,7 +90,7 @@ class FreeJoint:
 
 
 class JointStates:
-    """Where the joints are that nobody moves, and those that a source moves."""
+    """The positions of joints: at rest, stepped by `delta`, or those of a source."""
 
     def __init__(self, options: JointStateOptions | None = None) -> None:
         self._options = options or JointStateOptions()
@@ -100,7 +100,7 @@ class JointStates:
         self._dependent: dict[str, Dependence] = dict(self._options.dependent_joints)
 
     def configure(self, description: str) -> None:
-        """Take the joints of a description.
+        """Use the joints of a description.
 
         Raises:
             UnusableDescription: it cannot be used; the joints are as they were.
@@ -126,7 +126,7 @@ class JointStates:
         self._order, self._free, self._dependent = order, free, dependent
 
     def hear(self, values: Values) -> None:
-        """Take over a source's values of free joints.
+        """Copy a source's values of free joints.
 
         Raises:
             NodeEnded: one of its arrays is shorter than the names, but not empty.
@@ -143,7 +143,7 @@ class JointStates:
             raise NodeEnded("a source sent an array that is shorter than its names") from None
 
     def tick(self) -> Values | None:
-        """What is published now; None where there are no joints.
+        """Return what is published now; None where there are no joints.
 
         Raises:
             NodeEnded: joints follow each other in a circle, or one that is not there.
@@ -170,7 +170,7 @@ class JointStates:
         return Values(list(self._order), positions, velocities, efforts)
 
     def _source(self, name: str) -> tuple[FreeJoint, float, float]:
-        """The free joint that a joint follows in the end, or is, with factor and offset."""
+        """Return the free joint that a joint follows in the end, or is, with factor and offset."""
         if name in self._free:
             return self._free[name], 1.0, 0.0
         rule = self._dependent[name]
@@ -222,7 +222,7 @@ class JointStates:
 
 
 def dependences(parameters: Mapping[str, object]) -> dict[str, Dependence]:
-    """The parameters below `dependent_joints`, by joint.
+    """Return the parameters below `dependent_joints`, by joint.
 
     Raises:
         ValueError: in the original's words.

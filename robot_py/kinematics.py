@@ -2,7 +2,7 @@
 
 The formulas and their order are those of kdl_parser and KDL: a joint without a usable axis yields
 NaN, as there, and so does a position that is NaN. A transform is an array of 4 x 4 numbers that
-takes a point's coordinates in the child's frame to those in the parent's.
+maps a point's coordinates in the child's frame to those in the parent's.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from robot_py.model import Joint, JointType, Model, Origin, Vector
 
 Transform = NDArray[np.float64]
 
-#: Below this trace KDL takes another way from a matrix to a quaternion.
+#: Below this trace KDL computes a quaternion of a matrix in another way.
 SMALLEST_TRACE = 1e-12
 
 
@@ -65,7 +65,7 @@ def tree(model: Model) -> LinkTree:
 
 
 def _hanging(root: str, holder: Mapping[str, Joint]) -> dict[str, Joint]:
-    """The joints of all links that are held by the root, parents before children."""
+    """Return the joints of all links that are held by the root, parents before children."""
     held: dict[str, list[Joint]] = {}
     for joint in holder.values():
         held.setdefault(joint.parent, []).append(joint)
@@ -122,7 +122,7 @@ def joint_transform(joint: Joint, position: float = 0.0) -> Transform:
 
 
 def forward(model: Model, positions: Mapping[str, float]) -> dict[str, Transform]:
-    """Every link's frame in the root's, parents before children.
+    """Return every link's frame in the root's, parents before children.
 
     Args:
         positions: of joints by name [rad or m]. A joint that is not named is at 0. Mimics are not
@@ -138,7 +138,7 @@ def forward(model: Model, positions: Mapping[str, float]) -> dict[str, Transform
 
 
 def with_mimics(model: Model, positions: Mapping[str, float]) -> dict[str, float]:
-    """The positions, and those of the joints that follow them, as robot_state_publisher finds them.
+    """Return the positions with those of mimicking joints, as robot_state_publisher finds them.
 
     A position that is given is left alone. One pass by the alphabet: the follower of a follower
     gets one only where the follower stands first.
@@ -158,7 +158,7 @@ def translation(transform: Transform) -> Vector:
 
 
 def quaternion(transform: Transform) -> tuple[float, float, float, float]:
-    """How the child's frame is turned: x, y, z, w, as KDL's Rotation::GetQuaternion does it."""
+    """Return the turn of the child's frame: x, y, z, w, as KDL's Rotation::GetQuaternion does."""
     m = [[float(value) for value in row] for row in transform[:3, :3]]
     trace = m[0][0] + m[1][1] + m[2][2]
     if trace > SMALLEST_TRACE:
@@ -212,7 +212,7 @@ def _rotation_rpy(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
 
 
 def _rotation_about(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
-    """A turn [rad] about an axis of length 1, as KDL's Rotation::Rot2."""
+    """Return a turn [rad] about an axis of length 1, as KDL's Rotation::Rot2."""
     c, s = (math.cos(angle), math.sin(angle)) if math.isfinite(angle) else (math.nan, math.nan)
     x, y, z = axis
     v = 1 - c

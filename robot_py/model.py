@@ -17,7 +17,7 @@ BLACK: Colour = (0.0, 0.0, 0.0, 1.0)
 
 
 class JointType(StrEnum):
-    """What a joint lets its child do."""
+    """How a joint lets its child move."""
 
     REVOLUTE = "revolute"
     CONTINUOUS = "continuous"
@@ -76,7 +76,7 @@ class Sphere:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A file of triangles, as the URDF names it (`package://...`), and by what it is stretched."""
+    """A file of triangles, as the URDF names it (`package://...`), and its scale."""
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
@@ -171,7 +171,7 @@ class Model:
     """A robot that urdfdom accepts: `links` and `joints` by name, in the order of the file.
 
     Exactly one link, `root`, is no joint's child. Nothing else is sure: a link may be the child of
-    two joints, and links may go round in a circle. `kinematics.tree` says what hangs where.
+    two joints, and links may go round in a circle. `kinematics.tree` finds the parent of each link.
     """
 
     name: str

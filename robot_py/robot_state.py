@@ -1,4 +1,4 @@
-"""What robot_state_publisher 3.3.4, Jazzy's, does, without a node.
+"""The behaviour of robot_state_publisher 3.3.4, Jazzy's, without a node.
 
 `Robot.of` reads a description, `RobotState` answers each joint state that is heard: what goes to
 /tf, and what is logged. Nothing here knows a clock or a topic: all times are arguments, in
@@ -58,7 +58,7 @@ class NodeLog:
     """A line that a node would log.
 
     Attributes:
-        logger: its logger's name; '' for the node's own.
+        logger: its logger's name; '' for the node's.
     """
 
     severity: Severity
@@ -115,7 +115,7 @@ class Placed:
 
 @dataclass(frozen=True, slots=True)
 class JointState:
-    """What of a JointState message counts here."""
+    """The fields of a JointState message that are used."""
 
     stamp_ns: int
     names: Sequence[str]
@@ -124,7 +124,7 @@ class JointState:
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """What comes of a joint state.
+    """The messages and log lines on a joint state.
 
     Attributes:
         transforms: the message on /tf; None where there is none. It may be empty: then the joint
@@ -137,7 +137,7 @@ class Published:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A description that was accepted, and what urdfdom prints of it."""
+    """An accepted description, and urdfdom's findings on it."""
 
     description: str
     model: Model
@@ -162,7 +162,7 @@ class Robot:
 
     @property
     def logs(self) -> tuple[NodeLog, ...]:
-        """What kdl_parser logs of it."""
+        """The log lines of kdl_parser."""
         texts = []
         if self.model.links[self.model.root].inertial is not None:
             texts.append(ROOT_INERTIA.format(self.model.root))
@@ -172,13 +172,13 @@ class Robot:
         return tuple(NodeLog(Severity.WARN, text, "kdl_parser") for text in texts)
 
     def fixed(self, prefix: str, now_ns: int) -> tuple[Placed, ...]:
-        """The transforms for /tf_static, by the alphabet of their joints' names."""
+        """Return the transforms for /tf_static, by the alphabet of their joints' names."""
         joints = self.tree.fixed.values()
         return tuple(placed(joint, 0.0, now_ns, prefix) for joint in joints)
 
 
 def placed(joint: Joint, position: float, stamp_ns: int, prefix: str) -> Placed:
-    """Where a joint's child is in its parent."""
+    """Return where a joint's child is in its parent."""
     transform = kinematics.joint_transform(joint, position)
     return Placed(
         stamp_ns,
@@ -190,7 +190,7 @@ def placed(joint: Joint, position: float, stamp_ns: int, prefix: str) -> Placed:
 
 
 class StaticFrames:
-    """What a static broadcaster has sent so far: every message has it all.
+    """The transforms that a static broadcaster has sent: every message has all of them.
 
     A frame that was sent before is replaced and keeps its place; none ever goes, not even with the
     robot that had it.
@@ -200,13 +200,13 @@ class StaticFrames:
         self._by_child: dict[str, Placed] = {}
 
     def send(self, transforms: Sequence[Placed]) -> tuple[Placed, ...]:
-        """The whole message for /tf_static."""
+        """Add transforms; return the whole message for /tf_static."""
         self._by_child.update((one.child_frame, one) for one in transforms)
         return tuple(self._by_child.values())
 
 
 class RobotState:
-    """Answers joint states: keeps what was published when.
+    """Answers joint states; remembers when each joint was published.
 
     Attributes:
         parameters: may be replaced at any time.
@@ -225,7 +225,7 @@ class RobotState:
         self._moving = robot.tree.moving
 
     def hear(self, state: JointState, now_ns: int) -> Published:
-        """What is published because of a joint state that arrives now."""
+        """Return what is published when a joint state arrives now."""
         if len(state.names) != len(state.positions):
             return Published(None, (_complaint(state),))
         if state.stamp_ns < 0:

@@ -61,7 +61,7 @@ class RobotStatePublisher(RclcppNode):
     """The node `/robot_state_publisher`.
 
     Args:
-        arguments: the program's own: of these the first may be a file with the description.
+        arguments: without those of ROS; the first may be a file with the description.
 
     Raises:
         UnusableStart: the description or publish_frequency cannot be used.
@@ -94,7 +94,7 @@ class RobotStatePublisher(RclcppNode):
             self._state = RobotState(self._read(description), parameters)
         except RefusedDescription as error:
             raise UnusableStart(str(error)) from None
-        self._tell_description()
+        self._publish_description()
         self.create_subscription(
             JointStateMessage,
             "joint_states",
@@ -102,7 +102,7 @@ class RobotStatePublisher(RclcppNode):
             qos_profile_sensor_data,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
-        self._tell_fixed()
+        self._publish_fixed()
         self.add_on_set_parameters_callback(self._check)
         self.add_post_set_parameters_callback(self._on_parameters)
 
@@ -124,7 +124,7 @@ class RobotStatePublisher(RclcppNode):
         raise UnusableStart(text)
 
     def _read(self, description: str) -> Robot:
-        """Read a description and print of it what urdfdom, urdf and kdl_parser print."""
+        """Read a description; print what urdfdom, urdf and kdl_parser print of it."""
         try:
             robot = Robot.of(description)
         except RefusedDescription as error:
@@ -138,11 +138,11 @@ class RobotStatePublisher(RclcppNode):
         self._log(robot.logs)
         return robot
 
-    def _tell_description(self) -> None:
+    def _publish_description(self) -> None:
         self._description.publish(String(data=self._state.robot.description))
         self.get_logger().info(robot_state.INITIALIZED)
 
-    def _tell_fixed(self) -> None:
+    def _publish_fixed(self) -> None:
         now_ns = self.get_clock().now().nanoseconds
         fixed = self._state.robot.fixed(self._state.parameters.frame_prefix, now_ns)
         self._tf_static.publish(tf_message(self._static_frames.send(fixed)))
@@ -187,8 +187,8 @@ class RobotStatePublisher(RclcppNode):
         self._state.parameters = replace(self._state.parameters, **changed)
         if "robot_description" in new:
             self._state.set_robot(Robot.of(new["robot_description"]))
-            self._tell_description()
-            self._tell_fixed()
+            self._publish_description()
+            self._publish_fixed()
 
     def _log(self, logs: Sequence[NodeLog]) -> None:
         for log in logs:
@@ -201,7 +201,7 @@ class RobotStatePublisher(RclcppNode):
 
 
 def tf_message(transforms: Sequence[Placed]) -> TFMessage:
-    """The transforms as ROS sends them."""
+    """Return the transforms as a ROS message."""
     message = TFMessage()
     for one in transforms:
         sent = TransformStamped(child_frame_id=one.child_frame)

@@ -13,10 +13,10 @@ turtlesim_node has to be running. Stop it with Ctrl-C."""
 
 def main() -> None:
     """Run the node until Ctrl-C; --help prints the usage, and nothing is started."""
-    own = sys.argv[1:]
-    if "--ros-args" in own:
-        own = own[: own.index("--ros-args")]
-    if not {"-h", "--help"}.isdisjoint(own):
+    arguments = sys.argv[1:]
+    if "--ros-args" in arguments:
+        arguments = arguments[: arguments.index("--ros-args")]
+    if not {"-h", "--help"}.isdisjoint(arguments):
         print(ABOUT)
         return
     from turtlesim_challenge import turtle_controller

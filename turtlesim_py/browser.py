@@ -1,4 +1,4 @@
-"""Shows a page in a browser, where there is one, and how else it is reached."""
+"""Opens a page in a browser, or returns how to reach it from another machine."""
 
 from __future__ import annotations
 
@@ -34,5 +34,5 @@ def tunnel(address: str) -> str:
         return ""
     user = os.environ.get("USER") or os.environ.get("LOGNAME") or "you"
     machine, port = ends[2:]
-    own_port = "" if port == "22" else f"-p {port} "
-    return f"ssh {own_port}-L {page.port}:127.0.0.1:{page.port} {user}@{machine}"
+    port_option = "" if port == "22" else f"-p {port} "
+    return f"ssh {port_option}-L {page.port}:127.0.0.1:{page.port} {user}@{machine}"

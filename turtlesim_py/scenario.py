@@ -3,7 +3,7 @@
     python -m turtlesim_py.scenario FILE.json --out DIR
 
 A scenario is a JSON object `{name, description, ticks, events: [{tick, op, ...}]}`, alone or under
-the key `scenario` of a larger one. Tick k (1, 2, ...) takes the events with `tick == k`, in the
+the key `scenario` of a larger one. Tick k (1, 2, ...) applies the events with `tick == k`, in the
 order in which they are listed, and then updates every turtle once. Not-a-number and the
 infinities are the strings "nan", "inf" and "-inf".
 
@@ -72,10 +72,10 @@ class ReplayObserver(Protocol):
     """Follows a replay tick by tick."""
 
     def begin(self, arena: Arena) -> None:
-        """The arena, before the first tick; what is changed in it is where the replay begins."""
+        """Receive the arena before the first tick; the replay begins with changes made here."""
 
     def after_tick(self, arena: Arena, readings: Mapping[str, Reading]) -> None:
-        """The arena after a tick, and what every turtle has published in it."""
+        """Receive the arena after a tick, and what every turtle has published in it."""
 
 
 def replay(scenario: dict[str, Any], observer: ReplayObserver | None = None) -> Replay:
@@ -118,10 +118,10 @@ def events_by_tick(scenario: dict[str, Any]) -> dict[int, list[tuple[int, Event]
 
 
 def apply(arena: Arena, event: Event) -> object:
-    """Do in an arena what an event says; return what the arena answers.
+    """Apply an event to an arena; return the arena's answer.
 
     Raises:
-        ValueError: it says something that cannot be done.
+        ValueError: it cannot be applied.
     """
     named = getattr(event, "turtle", None)
     if named is not None and named not in arena.turtles:
@@ -154,14 +154,14 @@ def apply(arena: Arena, event: Event) -> object:
 
 
 def _wrong_parameter(event: kinds.SetParameter) -> str:
-    """Why the original would not set it; '' where it would."""
+    """Return why the original would not set a parameter; '' where it would."""
     if event.name not in BY_NAME:
         return f"parameter '{event.name}' cannot be set because it was not declared"
     return refusal(BY_NAME[event.name], event.value)
 
 
 class _Player:
-    """One replay: the arena, and what is recorded of it."""
+    """One replay: the arena, and its recording."""
 
     def __init__(self) -> None:
         self.tick = 0
@@ -195,7 +195,7 @@ class _Player:
         return readings
 
     def _apply(self, event: Event) -> dict[str, Any] | None:
-        """Hand an event to the arena; return what its caller is answered, if anything."""
+        """Apply an event, and return the answer to its caller, if there is one."""
         match event:
             case kinds.RotateAbsolute(turtle=turtle) if turtle in self.arena.turtles:
                 self._record_action(event.id, "accepted")

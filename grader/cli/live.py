@@ -153,7 +153,7 @@ class Live:
         assert self._page is not None
         with self._lock:
             self._grading = replace(grading or self._grading, **known)
-            self._page.tell(self._grading)
+            self._page.update(self._grading)
 
 
 def _serve(exercise: Exercise) -> LivePage:

@@ -1,4 +1,4 @@
-"""A result in many formats, one file each; a report knows verdicts, not checks.
+"""Reports on a result, one file per format; a report knows verdicts, not checks.
 
 A format is a `Format`, registered by an entry point of the group `grader.reports`.
 """
@@ -28,10 +28,10 @@ class Format:
     """A format that `grader report --format` knows, by an entry point of `grader.reports`.
 
     Attributes:
-        summary: what it is for, in a few words.
-        render: a result as text.
-        render_error: where there is no result, the error as text.
-        render_all: several results and errors at once; None where a format shows one.
+        summary: its purpose, in a few words.
+        render: renders a result.
+        render_error: renders an error, where there is no result.
+        render_all: renders several results and errors; None where a format shows one.
     """
 
     summary: Message
@@ -41,12 +41,12 @@ class Format:
 
 
 def names() -> Sequence[str]:
-    """The formats that are installed."""
+    """Return the names of the installed formats."""
     return tuple(extensions.points(extensions.REPORTS))
 
 
 def load(name: str) -> Format:
-    """The format of a name that `names` has."""
+    """Load a format by one of `names`."""
     form: Format = extensions.load(extensions.REPORTS, name)
     return form
 
@@ -56,24 +56,24 @@ def read(path: Path, checks: Sequence[str] = (), view: View = "student") -> Repo
 
     Args:
         checks: the names of the exercise's checks, for errors; see `ErrorReport`.
-        view: who looks.
+        view: what of the result its reader may see.
 
     Raises:
-        UsageError: it cannot be read or is neither.
+        UsageError: the file cannot be read or is neither.
     """
     data = json_file.read(path)
     if isinstance(data, dict) and str(data.get("schema")).startswith(error.FAMILY):
-        made = json_file.made(ErrorResult.from_json, path, data)
-        return ErrorReport(made, path.parent, checks, path)
+        failed = json_file.made(ErrorResult.from_json, path, data)
+        return ErrorReport(failed, path.parent, checks, path)
     result = json_file.made(Result.from_file, path, data)
     return Report(result, Beside(result, path.parent), view)
 
 
 def render(name: str, reports: Sequence[Report | ErrorReport]) -> str:
-    """One or several results or errors in a format.
+    """Render one or several results or errors in a format.
 
     Raises:
-        UsageError: the format shows one and there are more, or it lacks something.
+        UsageError: the format shows only one, or something that it needs is missing.
     """
     form = load(name)
     if form.render_all is not None:

@@ -1,4 +1,4 @@
-"""Autolab: the last two lines of an autograder's output. One problem a check, under its name."""
+"""Autolab: the last two lines of an autograder's output. Each check is a problem by its name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _STAGE = "Checks"
 
 
 def render(report: Report) -> str:
-    """Two lines of JSON: how to show the checks, and the scores. Nothing may be printed after."""
+    """Return two lines of JSON: feedback and scores. Nothing may be printed after them."""
     checks: dict[str, Any] = {
         verdict.check: {"passed": True}
         if verdict.passed
@@ -34,11 +34,11 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """0 points for each problem.
+    """Return the two lines with 0 points for each problem.
 
     Raises:
-        UsageError: there is no judgement, or the problems are not known. Autolab takes output that
-            does not end in scores for an autograder that failed.
+        UsageError: nothing was judged, or the problems are not known. For Autolab an autograder
+            has failed if its output does not end with scores.
     """
     if not report.is_judged:
         raise UsageError(

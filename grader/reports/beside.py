@@ -1,4 +1,4 @@
-"""What lies beside a result: the picture, the recordings, and what the node printed."""
+"""The artifacts of a result: the picture, the recordings, and the output of the node."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from grader.text import plain_all
 
 
 class Beside:
-    """What lies beside a result file; read only when it is asked for.
+    """The artifacts beside a result file; each is read when it is first used.
 
     Args:
-        recordings: where the result has just been made of them: nothing has to be read back then.
+        recordings: those of a new result, which then need not be read back.
 
     Attributes:
-        folder: where the result file lies; its artifacts are looked for below.
+        folder: of the result file; artifacts outside it are ignored.
     """
 
     def __init__(self, result: Result, folder: Path, recordings: Recordings | None = None) -> None:
@@ -33,18 +33,18 @@ class Beside:
 
     @cached_property
     def canvas_path(self) -> Path | None:
-        """The picture of the window at the end; None where there is none."""
+        """The path of the final window's picture; None where there is none."""
         path = self._artifact("canvas")
-        return path if path is not None and path.is_file() else None  # a pipe would be waited for
+        return path if path is not None and path.is_file() else None  # reading a pipe would block
 
     @property
     def canvas_file(self) -> Path | None:
-        """The same, if the picture has to be read from there."""
+        """`canvas_path` if the picture has to be read from the file, else None."""
         return None if self._made is not None else self.canvas_path
 
     @cached_property
     def scene(self) -> str:
-        """The name of what ran beside the submission; the first there was, where nothing tells."""
+        """The name of the scene; the default one where there is no recording."""
         if self._made is not None:
             return self._made.nominal.scene
         base = self._artifact("recording")
@@ -52,7 +52,7 @@ class Beside:
 
     @cached_property
     def recordings(self) -> Mapping[int, Recording | Message]:
-        """A recording for each run, 0 nominal, 1, 2, ... varied, or why it cannot be read."""
+        """Run (0 nominal, 1, 2, ... varied) -> its recording, or why that cannot be read."""
         if self._made is not None:
             return dict(enumerate(self._made))
         base = self._artifact("recording")
@@ -68,7 +68,7 @@ class Beside:
 
     @cached_property
     def output(self) -> str:
-        """What the node printed in the nominal run."""
+        """The output of the node in the nominal run."""
         path = None if self._made is not None else self._artifact("output")
         if path is not None and path.is_file():
             return path.read_bytes().decode(errors="replace")
@@ -76,7 +76,7 @@ class Beside:
         return nominal.output if isinstance(nominal, Recording) else ""
 
     def _artifact(self, name: str) -> Path | None:
-        """Where an artifact lies; None if it is not there or not below the result's folder."""
+        """Return the path of an artifact; None if it is missing or outside the result's folder."""
         relative = self._artifacts.get(name)
         if not relative:
             return None

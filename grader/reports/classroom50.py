@@ -1,4 +1,4 @@
-"""Classroom 50's `result.json`: whole points, and what the runner says in the environment."""
+"""Classroom 50's `result.json`: whole points, and the identity from the runner's environment."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _TYPES = ("individual", "group")
 
 
 def render(report: Report) -> str:
-    """The JSON document.
+    """Return the JSON document.
 
     Raises:
-        UsageError: the environment is not the one that Classroom 50 gives to an autograder.
+        UsageError: the environment is not that of a Classroom 50 autograder.
     """
     points = whole_points(report.verdicts)
     tests: list[dict[str, Any]] = [
@@ -51,11 +51,11 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """0 points, with one test that says why.
+    """Return a document with 0 points and one test, which has the reason.
 
     Raises:
-        UsageError: as above, or there is no judgement. Classroom 50 takes an exit code other than 0
-            for that, and no result.json.
+        UsageError: as above, or nothing was judged. Classroom 50 expects an exit code other than 0
+            then, and no result.json.
     """
     if not report.is_judged:
         raise UsageError(
@@ -79,7 +79,7 @@ def _document(points: WholePoints, tests: list[dict[str, Any]]) -> str:
     document = {
         "schema": _SCHEMA,
         **_identity(os.environ),
-        # The runner puts the time of the commit here; this is for whoever calls without it.
+        # The runner puts the time of the commit here; this is for calls without a runner.
         "datetime": now,
         "graded_at": now,
         "score": points.total,
@@ -129,8 +129,8 @@ class WholePoints:
     """Whole points, one of each list per verdict.
 
     Attributes:
-        scores, max_scores: what was earned, and what can be.
-        factor: what everything was multiplied with: 1 wherever the checks are worth whole points.
+        scores, max_scores: the points earned, and the most points.
+        factor: that all points are multiplied by: 1 where the checks are worth whole points.
     """
 
     scores: tuple[int, ...]
@@ -144,7 +144,7 @@ class WholePoints:
 
     @property
     def max_total(self) -> int:
-        """The sum of what can be earned."""
+        """The sum of the most points."""
         return sum(self.max_scores)
 
 
@@ -171,7 +171,7 @@ def whole_points(verdicts: Sequence[Verdict]) -> WholePoints:
 
 
 def zero_points(max_score: float) -> WholePoints:
-    """Nothing of `max_score`, where the parts are not known."""
+    """Return 0 of `max_score` points, where the checks are not known."""
     return WholePoints((0,), (int(_half_up(_decimal(max_score))),), 1)
 
 

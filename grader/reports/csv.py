@@ -1,4 +1,4 @@
-"""CSV: one row a submission, so that the results of a class make one table, for their teacher."""
+"""CSV: one row per submission, so that a teacher gets the results of a class as one table."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from grader.reports.report import Report
 from grader.reports.wording import WORDS
 
 _BEFORE = ("submission", "exercise", "score", "max_score")
-#: Also in the wide letters of Chinese, Japanese and Korean.
+#: Also the full-width characters of Chinese, Japanese and Korean.
 _BEGIN_FORMULAS = (*"=+-@", *"\uff1d\uff0b\uff0d\uff20")
-#: Where a comma is the sign before decimals, spreadsheets cut the line at a semicolon.
+#: With a decimal comma, spreadsheets separate cells at a semicolon.
 _CUT_BEFORE_FORMULA = re.compile(r"(; ?)(?=[=+@\-\uff1d\uff0b\uff0d\uff20])")
-#: What begins like that and yet, without brackets, quotes, `!` and `|`, can call and fetch nothing:
+#: Begins like a formula, but without brackets, quotes, `!` and `|` it can call and fetch nothing:
 #: +41791234567, @anna, -7.
 _HARMLESS = re.compile(r"[+@-]?[\w.@+-]*")
 _HAS_CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
@@ -28,16 +28,16 @@ _AFTER = ("outcome", "first_to_mend", "flags", "trace_sha256", "folder")
 
 
 def render(report: Report | ErrorReport) -> str:
-    """The table of one result, or error."""
+    """Return the table of one result or error."""
     return render_all([report])
 
 
 def render_all(reports: Sequence[Report | ErrorReport]) -> str:
-    """A header and one row a result, or error.
+    """Return a header, and one row per result or error.
 
     Each check has two columns: its points under its name, and its verdict under `NAME verdict`. An
-    exercise's checks that another does not have stay empty, and the points of what was not judged.
-    No student is shown a table of others, so it is whole.
+    exercise's checks that another does not have stay empty, as do points that were not judged.
+    The table is for teachers, so nothing is hidden in it.
     """
     reports = [each.whole if isinstance(each, Report) else each for each in reports]
     results = [report for report in reports if isinstance(report, Report)]
@@ -78,23 +78,23 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
 def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
     score = 0 if report.is_judged else ""
     max_score = "" if report.max_score is None else text.number(report.max_score)
-    what = cell(text.clip(report.message, 300))
+    message = cell(text.clip(report.message, 300))
     return [
         *(cell(report.name), "", score, max_score),
         *[""] * (2 * len(checks)),
-        *(report.state, what, "", "", cell(str(report.file or report.folder))),
+        *(report.state, message, "", "", cell(str(report.file or report.folder))),
     ]
 
 
 def table(rows: Iterable[Sequence[object]]) -> str:
-    r"""The text of a file: commas, quotes where they are needed, `\n` after each row."""
+    r"""Return the text of a file: commas, quotes where they are needed, `\n` after each row."""
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
 
 
 def cell(value: str) -> str:
-    """A text in one line that no spreadsheet takes for a formula, wherever it cuts the line."""
+    """Return a text in one line that no spreadsheet reads as a formula, wherever it is cut."""
     value = text.one_line(text.plain(value))
     value = _CUT_BEFORE_FORMULA.sub(r"\1'", value)
     return f"'{value}" if value.startswith(_BEGIN_FORMULAS) else value
@@ -103,7 +103,7 @@ def cell(value: str) -> str:
 def is_safe_id(value: str) -> bool:
     """Whether an id may stand in a cell as it is.
 
-    A system finds people by it, so that it cannot be mended as a name can.
+    A system finds people by their ids, so an id cannot be quoted as a name can.
     """
     if _HAS_CONTROLS.search(value):
         return False

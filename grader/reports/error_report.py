@@ -1,4 +1,4 @@
-"""What every format is made from where there is no result: an error, and whose turn it is."""
+"""The input of every format where there is no result: an error, and who has to act."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ _WHAT: Final = {
 
 
 class ErrorReport:
-    """An error to be shown. Its texts are plain, as those of a `Report`.
+    """An error to show. Its texts are plain, as those of a `Report`.
 
-    A submission that cannot be used has earned nothing. Any other error is no judgement: there is
-    no score then, and a format must not show one, not even 0.
+    A submission that cannot be used earns 0 points. After any other error nothing is judged: there
+    is no score then, and a format must not show one, not even 0.
 
     Args:
         error: the error.
-        folder: where its file lies.
+        folder: of its file.
         checks: the names of the exercise's checks, for formats that have a score for each.
         file: the error file; None where there is none.
 
     Attributes:
-        is_judged: whether it is the student's turn, so that there is a score: 0.
-        message: what was found, what was expected, what to do; may have several lines.
+        is_judged: whether the student has to act, so that the score is 0.
+        message: found, expected, and what to do; may have several lines.
         max_score: the exercise's points; None where they are not known.
         folder, checks, file: as above.
     """
@@ -60,7 +60,7 @@ class ErrorReport:
 
     @property
     def name(self) -> str:
-        """Whose it may be, among those of a class: alice for alice.json and alice/error.json."""
+        """The name of the submission in a class: alice for alice.json and alice/error.json."""
         if self.file is None:
             return ""
         file = self.file
@@ -68,34 +68,34 @@ class ErrorReport:
 
     @property
     def state(self) -> str:
-        """The same in all languages, for tables."""
+        """The state in English, for tables."""
         return "cannot be graded" if self.is_judged else "not graded"
 
     @property
     def title(self) -> str:
-        """What has happened, in two words."""
+        """The state, in a few words."""
         return tr("Cannot be graded") if self.is_judged else tr("Not graded")
 
     @property
     def score_text(self) -> str:
-        """The points, where there are some: '0 of 100'."""
+        """The points: '0 of 100'."""
         if self.max_score is None:
             return "0"
         return tr("{score} of {max_score}", score="0", max_score=points(self.max_score))
 
     @property
     def before(self) -> str:
-        """The sentence that leads to the message."""
+        """The sentence before the message."""
         if self.is_judged:
             return tr("This cannot be graded, so it has no points:")
         return translate(joined([_WHAT[self.whose], _NOT_YOURS], " "))
 
     @property
     def after(self) -> str:
-        """The sentence that follows it; may be ''."""
+        """The sentence after the message; may be ''."""
         return tr("Mend that, and hand in again.") if self.is_judged else ""
 
     @property
     def paragraphs(self) -> list[str]:
-        """Everything, for formats that show plain text."""
+        """All of it, for formats that show plain text."""
         return [part for part in (self.before, self.message, self.after) if part]

@@ -1,4 +1,4 @@
-"""What GitHub Classroom's autograding reporter read from `<STEP ID>_RESULTS`: base64 of JSON."""
+"""The `<STEP ID>_RESULTS` of GitHub Classroom's autograding reporter: JSON in base64."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from grader.translations import translate
 
 
 def render(report: Report) -> str:
-    """One line of base64."""
+    """Return one line of base64."""
     passed = all(verdict.passed for verdict in report.verdicts) and not report.not_shown
     tests = [
         _test(
@@ -27,14 +27,14 @@ def render(report: Report) -> str:
         )
         for verdict in report.verdicts
     ]
-    if report.not_shown:  # whatever came of them: else all would look passed
+    if report.not_shown:  # as failed, whatever their verdicts: else all would seem to pass
         name = report.not_shown_name
         tests.append(_test(name, name, "fail", 0, [report.not_shown]))
     return _document("pass" if passed else "fail", report.max_score, tests)
 
 
 def render_error(report: ErrorReport) -> str:
-    """One line of base64, with the status `error` where there is no judgement."""
+    """Return one line of base64, with the status `error` where nothing was judged."""
     status = "fail" if report.is_judged else "error"
     test = _test("submission", report.title, status, 0, report.paragraphs)
     return _document(status, report.max_score or 0, [test])

@@ -1,7 +1,7 @@
 """Gradescope's `/autograder/results/results.json`. It knows passed and failed only.
 
-It has its own means to hide a test from students, and hides the total where it hides any; so what
-students are not to see is in the file, for their teachers.
+Gradescope itself hides tests from students, and hides the total where it hides any. So the file
+has the hidden tests as well, for teachers.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _HIDDEN = {"after_due": "after_due_date", "never": "hidden"}
 
 
 def render(report: Report) -> str:
-    """The JSON document; students see the picture and what their node printed above the tests."""
+    """Return the JSON document, with the picture and the node's output above the tests."""
     document = {
         "score": text.number(report.whole.score),
         "execution_time": text.number(report.run.wall_s),
@@ -39,9 +39,9 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """The JSON document; without a score if there is no judgement.
+    """Return the JSON document; without a score if nothing was judged.
 
-    Gradescope takes that for an autograder that failed.
+    For Gradescope the autograder has failed then.
     """
     document: dict[str, Any] = {
         "output": "\n\n".join(report.paragraphs),
@@ -56,7 +56,7 @@ def render_error(report: ErrorReport) -> str:
 
 
 def _tests(report: Report) -> list[dict[str, Any]]:
-    """All tests; each from the report that is for those who see it."""
+    """Return all tests, each from the report for those who see it."""
     is_open = report.view == "whole" or all(v.visible == "now" for v in report.whole.verdicts)
     shown = iter(report.verdicts)
     tests = []
@@ -88,8 +88,7 @@ def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
 
 def _overview(report: Report) -> str:
     parts = [f"<p><strong>{html.escape(report.first_line)}</strong></p>"]
-    said = (*report.advice, *report.handed_in, report.not_shown)
-    parts += [f"<p>{html.escape(line)}</p>" for line in said if line]
+    parts += [f"<p>{html.escape(line)}</p>" for line in (*report.advice, *report.notes)]
     picture = pictures.canvas_uri(report)
     if picture:
         alt = html.escape(tr("The window at the end"))

@@ -17,7 +17,7 @@ from grader.translations import tr, translate
 
 
 def render(report: Report) -> str:
-    """The XML document. Points stand in the suite's properties and in each case's system-out."""
+    """Return the XML document, with points in the suite's properties and each system-out."""
     properties = {
         "submission": report.submission,
         "score": text.points(report.score),
@@ -36,18 +36,16 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """The XML document: a failure of the only case, or an error where there is no judgement."""
+    """Return the XML document: its only case fails, or is an error where nothing was judged."""
     properties = {"whose": str(report.whose)}
     if report.is_judged:
         properties["score"] = "0"
     if report.max_score is not None:
         properties["max_score"] = text.points(report.max_score)
-    case = ElementTree.Element(
-        "testcase", {"classname": "grader", "name": report.title, "time": "0"}
-    )
-    said = {"message": text.one_line(report.message), "type": report.whose}
+    case = _testcase("grader", report.title)
+    attributes = {"message": text.one_line(report.message), "type": report.whose}
     kind = "failure" if report.is_judged else "error"
-    ElementTree.SubElement(case, kind, said).text = "\n\n".join(report.paragraphs)
+    ElementTree.SubElement(case, kind, attributes).text = "\n\n".join(report.paragraphs)
     return _document("grader", 0, properties, [case])
 
 
@@ -73,12 +71,13 @@ def _document(
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'
 
 
-def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
-    name = f"{verdict.check}: {translate(verdict.title)}"
+def _testcase(suite: str, name: str) -> ElementTree.Element:
     # GitLab shows the class as the suite.
-    case = ElementTree.Element(
-        "testcase", {"classname": report.exercise, "name": name, "time": "0"}
-    )
+    return ElementTree.Element("testcase", {"classname": suite, "name": name, "time": "0"})
+
+
+def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
+    case = _testcase(report.exercise, f"{verdict.check}: {translate(verdict.title)}")
     lines = report.led_lines(verdict)
     message = {"message": text.one_line(lines[0] if lines else "")}
     if verdict.status == "failed":
@@ -86,31 +85,29 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
         failure.text = "\n".join(lines)
     elif verdict.status == "not_judged":
         ElementTree.SubElement(case, "skipped", message)
-    said = [tr("{word}, {score} points", word=word(verdict), score=score_text(verdict))]
+    output = [tr("{word}, {score} points", word=word(verdict), score=score_text(verdict))]
     if verdict.status != "failed":
-        said += [_quote(line) for line in lines]
+        output += [_quote(line) for line in lines]
     elif attachment := _canvas_here(report):
-        said.append(f"[[ATTACHMENT|{attachment}]]")
-    ElementTree.SubElement(case, "system-out").text = "\n".join(said)
+        output.append(f"[[ATTACHMENT|{attachment}]]")
+    ElementTree.SubElement(case, "system-out").text = "\n".join(output)
     return case
 
 
 def _not_shown(report: Report) -> ElementTree.Element:
-    """Skipped, whatever came of them: else all would look passed."""
-    case = ElementTree.Element(
-        "testcase", {"classname": report.exercise, "name": report.not_shown_name, "time": "0"}
-    )
+    """Make a skipped case of all hidden checks: else all would seem to pass."""
+    case = _testcase(report.exercise, report.not_shown_name)
     ElementTree.SubElement(case, "skipped", {"message": report.not_shown})
     return case
 
 
 def _quote(line: str) -> str:
-    """A line in which nothing but this module attaches a file."""
+    """Quote a line so that it attaches no file."""
     return line.replace("[[", "[ [")
 
 
 def _canvas_here(report: Report) -> str:
-    """The picture's path as GitLab needs it: relative to the project, where its jobs run."""
+    """Return the picture's path relative to the project, for GitLab; '' where it has none."""
     path = report.beside.canvas_path
     if path is None or not path.is_relative_to(Path.cwd()):
         return ""

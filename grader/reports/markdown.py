@@ -15,22 +15,21 @@ from grader.reports.wording import score_text, title_of, word
 from grader.translations import tr, translate
 
 _SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
-#: What can begin something in Markdown, anywhere or at the start of a line. A backslash before it
-#: takes that away.
+#: Characters with a meaning in Markdown, anywhere or at the start of a line; a backslash escapes.
 _SPECIAL = re.compile(r"([\\`*_\[\]<>#|~&$])")
 _SPECIAL_AT_START = re.compile(r"^(\d*)([-+=.)])")
 _OUTPUT_LIMIT = 10_000
 
 
 def render(report: Report) -> str:
-    """The report, ending with a line break so that it can be appended to a file."""
+    """Return the report; it ends with a line break, to be appended to a file."""
     parts = [
         "## "
         + tr("{title}: {score} points", title=_quote(report.exercise), score=report.score_text),
         tr("Submission: {submission}", submission=_quote(report.submission)),
         _first(report),
         _table(report),
-        *(_quote(said) for said in (*report.handed_in, report.not_shown)),
+        *map(_quote, report.notes),
     ]
     parts += [_seen(report, verdict) for verdict in report.verdicts if verdict.status == "failed"]
     parts += [_run(report), _output(report)]
@@ -38,7 +37,7 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """The error, ending with a line break."""
+    """Return the error, ending with a line break."""
     title = report.title
     if report.is_judged:
         title = tr("{title}: {score} points", title=title, score=report.score_text)
@@ -48,9 +47,9 @@ def render_error(report: ErrorReport) -> str:
 
 
 def _quote(value: str) -> str:
-    """A text in one line that Markdown shows as it is."""
+    """Quote a text, in one line, that Markdown shows as it is."""
     quoted = _SPECIAL_AT_START.sub(r"\1\\\2", _SPECIAL.sub(r"\\\1", text.one_line(value)))
-    # No links from addresses, and nobody is notified: an entity and an invisible joiner.
+    # an entity and an invisible joiner: no address becomes a link, no name notifies anybody
     return quoted.replace("://", "&#58;//").replace("www.", "www&#46;").replace("@", "@\u2060")
 
 
@@ -98,8 +97,7 @@ def _seen(report: Report, verdict: Verdict) -> str:
     if verdict.evidence:
         lines += ["", *(f"- {_quote(str(point))}" for point in report.points_of(verdict))]
     if help_ := report.help_for(verdict):
-        look_at = tr("Look at:")
-        lines += ["", f"**{look_at}** {_quote(help_)}"]
+        lines += ["", "**" + tr("Look at:") + f"** {_quote(help_)}"]
     return "\n".join(lines)
 
 
@@ -110,22 +108,22 @@ def _run(report: Report) -> str:
 
 def _how(report: Report) -> str:
     run = report.run
-    said = {
+    values = {
         "outcome": _quote(wording.outcome(report.outcome(0))),
         "simulated_s": run.simulated_s,
         "clock": wording.clock(run.time),
     }
     if not run.wall_s:
-        return tr("Run: {outcome}, {simulated_s:.1f} s simulated ({clock} time).", **said)
+        return tr("Run: {outcome}, {simulated_s:.1f} s simulated ({clock} time).", **values)
     return tr(
         "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
         wall_s=run.wall_s,
-        **said,
+        **values,
     )
 
 
 def _output(report: Report) -> str:
-    """What the node printed, in a fence that is longer than any in it."""
+    """Return the node's output in a fence that is longer than any in it."""
     output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
     if not output.strip():
         return ""

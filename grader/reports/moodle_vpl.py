@@ -15,14 +15,10 @@ from grader.translations import tr, translate
 
 
 def render(report: Report) -> str:
-    """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
+    """Return what `vpl_execution` prints. The activity's maximum grade has to be max_score."""
     lines = ["<|--", "-" + tr("What to do"), _quote(report.first_line)]
     lines += map(_quote, report.advice)
-    lines += [
-        tr("Also: {said}", said=_quote(said))
-        for said in (*report.handed_in, report.not_shown)
-        if said
-    ]
+    lines += [tr("Also: {said}", said=_quote(note)) for note in report.notes]
     for verdict in report.verdicts:
         lines += _verdict(report, verdict)
     lines += ["--|>", f"Grade :=>> {text.points(report.score)}"]
@@ -30,7 +26,7 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """The same lines; without a grade if none was judged, and then VPL gives none."""
+    """Return these lines for an error; without a grade if nothing was judged."""
     lines = ["<|--", f"-{report.title}", report.before]
     lines += [f"> {_quote(line)}" for line in report.message.splitlines()]
     lines += [line for line in (report.after,) if line]
@@ -41,7 +37,7 @@ def render_error(report: ErrorReport) -> str:
 
 
 def _verdict(report: Report, verdict: Verdict) -> list[str]:
-    # A title that ended with a number in brackets would be taken for a deduction.
+    # VPL reads a title that ends with a number in brackets as a deduction.
     lines = [
         "-"
         + tr(
@@ -62,7 +58,7 @@ def _verdict(report: Report, verdict: Verdict) -> list[str]:
 
 
 def _quote(value: str) -> str:
-    """A text in one line that holds none of VPL's marks; it always follows a word of ours."""
+    """Return a text in one line without VPL's marks; never put it at the start of a line."""
     value = text.one_line(value).replace(":=>>", ": =>>")
     return value.replace("<|--", "< |--").replace("--|>", "-- |>")
 

@@ -1,4 +1,4 @@
-"""What a page that plays runs is made from: recordings, and a report on them where there is one."""
+"""Makes the data of a page that plays runs: of recordings, and a report where there is one."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from grader.translations import tr, translate
 def of(
     name: str, recordings: Recordings, report: Report | None, other: Playback | None = None
 ) -> Playback:
-    """Put it together.
+    """Make a playback of recordings.
 
     Args:
-        name: whose recordings these are, where no report tells it.
-        report: what was judged, for who may see it; None where nobody has judged.
-        other: what it is to be compared with.
+        name: the title of the page, where there is no report.
+        report: on these recordings; None where nothing was judged.
+        other: to compare with.
     """
-    runs = tuple(_take(number, each) for number, each in enumerate(recordings))
+    runs = tuple(_played_run(number, each) for number, each in enumerate(recordings))
     if report is None:
         return Playback(text.one_line(text.plain(name)), "", runs, (), other)
     where = tr("Where: {where}", where=report.where_first) if report.where_first else ""
@@ -36,11 +36,11 @@ def of(
 
 
 def judged(report: Report, runs: int) -> tuple[JudgedCheck, ...]:
-    """What the checks say, with evidence from the first so many runs."""
+    """Return the verdicts as shown, with evidence from the first so many runs."""
     return tuple(_judged(report, verdict, runs) for verdict in report.verdicts)
 
 
-def _take(number: int, recording: Recording) -> PlayedRun:
+def _played_run(number: int, recording: Recording) -> PlayedRun:
     outcome = wording.outcome(recording.run.outcome.replace("_", " "))
     start = recording.start
     if start is not None:
@@ -48,7 +48,7 @@ def _take(number: int, recording: Recording) -> PlayedRun:
     after = recording.run.simulated_s
     return PlayedRun(
         number,
-        tr("Varied run {number}", number=number) if number else tr("Nominal run"),
+        wording.run_name(number),
         tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
         recording.trace,
         start,
@@ -57,9 +57,9 @@ def _take(number: int, recording: Recording) -> PlayedRun:
 
 
 def _sent(recording: Recording) -> tuple[Sent, ...]:
-    """From where things were sent, as the submission's process has told.
+    """Return the lines that sent, as the submission's process has reported.
 
-    Nothing of a name that it has several ends of: nobody knows in which order these sent.
+    A name with several endpoints is left out: the order in which these sent is not known.
     """
     found: dict[str, list[Sent]] = {}
     for end in recording.observations.ends:

@@ -21,7 +21,7 @@ _OUTPUT_LIMIT = 20_000
 
 
 def render(report: Report) -> str:
-    """The JSON document, without the picture or even the explanations if it would be too large."""
+    """Return the JSON document, without picture or even explanations if it would be too large."""
     picture = pictures.canvas_uri(report)
     images = [{"label": tr("The window at the end"), "url": picture}] if picture else []
     for shown, tests_in_full in ((images, True), ([], True), ([], False)):
@@ -32,7 +32,7 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """The JSON document: not gradable, which costs the student no attempt."""
+    """Return the JSON document: not gradable, which costs the student no attempt."""
     document = {"gradable": False, "score": 0, "format_errors": "\n\n".join(report.paragraphs)}
     return json.dumps(document) + "\n"
 
@@ -43,16 +43,11 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
     return {
         "gradable": True,
         "score": _share(report),
-        "message": text.clip("\n".join(_said(report)), 1000),
+        "message": text.clip("\n".join([report.first_line, *report.advice, *report.notes]), 1000),
         "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,
     }
-
-
-def _said(report: Report) -> list[str]:
-    lines = [report.first_line, *report.advice, *report.handed_in, report.not_shown]
-    return [line for line in lines if line]
 
 
 def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A result's parts as anybody reads them: in a language, no text, list or name of no end."""
+"""A result's parts as a report shows them: translated, in one language, and of limited length."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from grader.translations import tr, translate
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
 _TEXT_LIMIT = 2000
-LOOKED_AT = 10 * _TEXT_LIMIT  # of a text as it comes, with what is not shown of it
+RAW_LIMIT = 10 * _TEXT_LIMIT  # of a text before it is made plain, which can shorten it
 _POINTS_LIMIT = 20
 _FLAGS_LIMIT = 50
 
 
 def line(value: Text) -> str:
-    """One line, no longer than anybody reads."""
+    """Return a text as one line of limited length."""
     return text.clip(text.one_line(text.plain(translate(value))), _TEXT_LIMIT)
 
 
 def few(result: Result) -> Result:
-    """A result with no more evidence and flags than anybody reads; the rest need not be read."""
+    """Return a result with a limited number of pieces of evidence and flags."""
     return replace(
         result,
         verdicts=tuple(
@@ -45,12 +45,12 @@ def _few_flags(run: RunSummary) -> RunSummary:
 
 
 def flags(run: RunSummary) -> tuple[str, ...]:
-    """The remarks on a run."""
+    """Return the remarks on a run, clipped."""
     return tuple(_clipped(flag) for flag in run.flags)
 
 
 def of_verdict(verdict: Verdict, name: str) -> Verdict:
-    """A verdict by a name of its own, its texts and evidence in this language and clipped."""
+    """Return a verdict by another name, its texts and evidence translated and clipped."""
     return replace(
         verdict,
         check=name,
@@ -66,11 +66,11 @@ def of_verdict(verdict: Verdict, name: str) -> Verdict:
 
 
 def of_diagnosis(found: Diagnosis) -> Diagnosis:
-    """A diagnosis of single lines, none of them longer than anybody reads."""
+    """Return a diagnosis whose texts are single lines of limited length."""
     key, place = line(found.key), found.place
     if place is not None:
-        file, function, said = map(line, (place.file, place.function, place.text))
-        place = replace(place, file=file, function=function, text=said)
+        file, function, code = map(line, (place.file, place.function, place.text))
+        place = replace(place, file=file, function=function, text=code)
     return replace(
         found,
         key=key,
@@ -82,7 +82,7 @@ def of_diagnosis(found: Diagnosis) -> Diagnosis:
 
 
 def distinct(names: list[str]) -> list[str]:
-    """The names, none empty and no two alike: some systems drop what is called the same."""
+    """Return the names, none empty and no two alike: some systems drop duplicates."""
     seen: Counter[str] = Counter()
     distinct: list[str] = []
     for index, name in enumerate(names, 1):

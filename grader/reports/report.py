@@ -1,4 +1,4 @@
-"""What every format is made from: a result, and the picture and recordings that lie beside it."""
+"""The input of every format: a result with its picture and recordings."""
 
 from __future__ import annotations
 
@@ -45,32 +45,32 @@ class Point:
 
 
 class Report:
-    """A result to be shown, to its student if nothing else is said.
+    """A result to show, by default to its student.
 
     Every text in it is plain (see `text.plain`), so a format only has to quote by its own rules.
 
     Args:
         result: the result.
         beside: the picture, the recordings and the output.
-        view: who looks; what he is not to see is nowhere in the report.
+        view: what its reader may see; all else is left out of the report.
 
     Attributes:
         exercise, submission, max_score, run, varied_runs: those of the result.
         flags: remarks on the nominal run.
-        score: that of the result; after what lateness costs, where no check is left out of it.
-        deducted: what is taken off for that in `score`.
-        verdicts: those of the result, in its order, as they are shown: no text is longer than
-            anybody reads, and no two checks have the same name.
-        origin: sentences about where the result comes from; none where it does not tell.
-        diagnosis: that of the result, with no text longer than anybody reads; None for none.
+        score: that of the result; after a deduction for lateness, where no check is left out.
+        deducted: this deduction, where `score` has it.
+        verdicts: those of the result, in its order, with texts of limited length; no two checks
+            have the same name.
+        origin: sentences on the provenance of the result; empty where that is unknown.
+        diagnosis: that of the result, with texts of limited length; None for none.
         not_shown: a sentence on the checks that are left out; '' for none.
-        not_shown_name: what formats call them that know only checks.
-        handed_in: sentences on whose it is, and what lateness costs; none where nobody has said it.
+        not_shown_name: the name of these as one check, for formats that know only checks.
+        notes: sentences on whose attempt it is, the deduction for lateness, and `not_shown`.
         beside, view: as above.
     """
 
     def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
-        shown: Result = text.plain_all(readable.few(as_seen(result, view)), readable.LOOKED_AT)
+        shown: Result = text.plain_all(readable.few(as_seen(result, view)), readable.RAW_LIMIT)
         self._result = result
         self.beside = beside
         self.view = view
@@ -87,7 +87,8 @@ class Report:
         )
         self._left_out = shown.not_shown
         self.not_shown = wording.not_shown(shown.not_shown)
-        self.handed_in = list(map(readable.line, wording.handed_in(shown)))
+        attempt = map(readable.line, wording.attempt(shown))
+        self.notes = list(filter(None, (*attempt, self.not_shown)))
         self.verdicts = tuple(map(readable.of_verdict, shown.verdicts, names))
         self.diagnosis = None if shown.diagnosis is None else readable.of_diagnosis(shown.diagnosis)
         self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))
@@ -96,16 +97,16 @@ class Report:
     def of(
         cls, result: Result, folder: Path, recordings: Recordings, view: View = "student"
     ) -> Self:
-        """The report of a result that has just been made, and goes into a folder."""
+        """Make the report of a new result, which will be in a folder."""
         return cls(result, Beside(result, folder, recordings), view)
 
     @cached_property
     def whole(self) -> Report:
-        """The same for a teacher."""
+        """The report for a teacher."""
         return self if self.view == "whole" else Report(self._result, self.beside, "whole")
 
     def seen_by_students(self, verdict: Verdict) -> str:
-        """For a teacher, what of a verdict students see; '' for all of it, and for students."""
+        """Return, for a teacher, what students see of a verdict; '' for all, and for students."""
         return (
             translate(wording.SEEN_BY_STUDENTS.get(verdict.visible, NOTHING))
             if self.view == "whole"
@@ -114,7 +115,7 @@ class Report:
 
     @property
     def folder(self) -> Path:
-        """Where the result file lies."""
+        """The folder of the result file."""
         return self.beside.folder
 
     @property
@@ -130,12 +131,12 @@ class Report:
         return tuple(Point(number, *one) for number, one in enumerate(listed, 1))
 
     def points_of(self, verdict: Verdict) -> tuple[Point, ...]:
-        """The evidence of one verdict."""
+        """Return the evidence of one verdict."""
         index = self.verdicts.index(verdict)
         return tuple(point for point in self.points if point.verdict == index)
 
     def waited_for(self, verdict: Verdict) -> tuple[str, ...]:
-        """What has to pass before it can be judged; nothing, if it was judged."""
+        """Return the checks that have to pass before it is judged; none if it was judged."""
         return self._waits[verdict.check]
 
     @property
@@ -150,25 +151,25 @@ class Report:
         return found
 
     def help_for(self, verdict: Verdict) -> str:
-        """What to look at: for formats in which the diagnosis stands above, where there is one.
+        """Return the hint on a verdict, for formats that show the diagnosis above the verdicts.
 
-        A check sees only what came of a cause that the diagnosis knows: its advice may contradict.
-        The first of these verdicts points to the diagnosis, the others say nothing.
+        A check knows only the effects of the diagnosed cause, so its hint may contradict the
+        diagnosis. The first of these verdicts points to the diagnosis, the others have no hint.
         """
-        led = [each for each in self.verdicts if each.help and self._comes_of_the_first(each)]
+        led = [each for each in self.verdicts if each.help and self._is_diagnosed(each)]
         if verdict not in led:
             return translate(verdict.help)
         return translate(SEE_FIRST) if verdict is led[0] else ""
 
-    def _comes_of_the_first(self, verdict: Verdict) -> bool:
-        """Whether a run's own diagnosis may be behind it: not if it is all about other runs."""
+    def _is_diagnosed(self, verdict: Verdict) -> bool:
+        """Whether the diagnosis may explain it: not if its evidence is all of other runs."""
         found = self.diagnosis
         if found is None or found.check or verdict.status != "failed":
             return False
         return found.run in ({item.run for item in verdict.evidence} or {found.run})
 
     def lines(self, verdict: Verdict) -> list[str]:
-        """What was seen, where, and what to look at: for formats that show plain text."""
+        """Return the rationale, the evidence and the hint, for formats that show plain text."""
         lines = [text.one_line(translate(verdict.rationale))]
         if waited_for := self.waited_for(verdict):
             lines.append(tr("Waits for: {checks}", checks=", ".join(waited_for)))
@@ -178,9 +179,9 @@ class Report:
         return [line for line in lines if line]
 
     def led_lines(self, verdict: Verdict) -> list[str]:
-        """The same, led by the diagnosis: for formats with no place for that but the checks.
+        """Return the lines with the diagnosis first, for formats that have no other place for it.
 
-        It leads the first that did not pass, unless that one says it itself.
+        It leads the first check that did not pass, unless the diagnosis repeats that check.
         """
         lines, found = self.lines(verdict), self.diagnosis
         first = next((each for each in self.verdicts if not each.passed), None)
@@ -192,7 +193,7 @@ class Report:
     def first_to_mend(self) -> Verdict | None:
         """The verdict that the diagnosis repeats; else the first that failed.
 
-        Failing that, the first that could not be given; None without any.
+        If none failed, the first that was not judged; None if all passed.
         """
         named = self.diagnosis.check if self.diagnosis is not None else ""
         of_diagnosis = next((v for v in self.verdicts if named and v.check == named), None)
@@ -203,7 +204,7 @@ class Report:
 
     @property
     def headline(self) -> str:
-        """One line: the cause of lost points, or what to mend first."""
+        """The cause of lost points, in one line."""
         if self.diagnosis is not None:
             return translate(self.diagnosis.cause)
         first = self.first_to_mend
@@ -213,20 +214,20 @@ class Report:
 
     @property
     def first_line(self) -> str:
-        """The headline, with what it is before it."""
+        """The headline, introduced as a fault if it is one."""
         lost = self.diagnosis is not None or self.first_to_mend is not None
         return tr("Fix this first: {headline}", headline=self.headline) if lost else self.headline
 
     @property
     def first_key(self) -> str:
-        """In a word what the headline is about: a check's name, or the diagnosis's key."""
+        """The subject of the headline: a check's name, or the diagnosis's key."""
         if self.diagnosis is not None:
             return self.diagnosis.check or self.diagnosis.key
         return self.first_to_mend.check if self.first_to_mend is not None else ""
 
     @property
     def advice(self) -> list[str]:
-        """What belongs to the diagnosis, below the headline: where, and what to do."""
+        """The lines of the diagnosis below the headline: where, and what to do."""
         found = self.diagnosis
         if found is None:
             return []
@@ -235,7 +236,7 @@ class Report:
 
     @property
     def where_first(self) -> str:
-        """Where the diagnosis points to: 'drive.py, line 39, in on_pose: time.sleep(0.2)'."""
+        """The place of the diagnosis: 'drive.py, line 39, in on_pose: time.sleep(0.2)'."""
         place = self.diagnosis.place if self.diagnosis is not None else None
         if place is None:
             return ""
@@ -249,14 +250,14 @@ class Report:
         )
 
     def outcome(self, run: int) -> str:
-        """How a run ended, in a word or two: a key of `wording.OUTCOMES`."""
+        """Return how a run ended, as a key of `wording.OUTCOMES`."""
         summary = self.varied_runs[run - 1] if run else self.run
         if summary.outcome == "time_limit" and self._never_moved(run):
             return NOTHING_MOVED
         return summary.outcome.replace("_", " ")
 
     def _never_moved(self, run: int) -> bool:
-        """Whether a recording is there that shows all things where they were at its start."""
+        """Whether there is a recording, and nothing moved in it."""
         recording = self.recordings.get(run)
         if recording is None:
             return False
@@ -266,20 +267,20 @@ class Report:
 
     @cached_property
     def recordings(self) -> dict[int, Recording]:
-        """The recordings that there are, by run: 0 nominal, 1, 2, ... varied."""
+        """Run (0 nominal, 1, 2, ... varied) -> its recording, where there is one."""
         found = self.beside.recordings
         return {run: r for run, r in found.items() if isinstance(r, Recording)}
 
     @cached_property
     def subject(self) -> Subject:
-        """What the runs are of; where it is not installed any more, the usual scene."""
+        """The subject of the runs; the default scene where that is not installed any more."""
         try:
             return load_subject(self.beside.scene)
         except KeyError:
             return load_subject(DEFAULT_SCENE)
 
     def no_recording(self, run: int) -> str:
-        """Why a run has no recording."""
+        """Return why a run has no recording."""
         reason = self.beside.recordings.get(run)
         if not isinstance(reason, Message):
             return tr("no recording lies beside it")
@@ -287,12 +288,12 @@ class Report:
 
     @cached_property
     def output(self) -> str:
-        """What the node printed in the nominal run."""
+        """The output of the node in the nominal run."""
         return text.plain(self.beside.output)
 
 
 def _waits(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
-    """For each verdict, what it waited for."""
+    """Return for each verdict the checks that it waited for."""
     status = {verdict.check: verdict.status for verdict in verdicts}
     return [
         tuple(name for name in verdict.depends_on if status.get(name, "passed") != "passed")

@@ -1,4 +1,4 @@
-"""The verdicts for a terminal; the first line is the first thing to mend."""
+"""The verdicts for a terminal; the first line is the first thing to fix."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _MARKS = {
 
 
 def render(report: Report) -> str:
-    """The same as plain text, for a file."""
+    """Return the report as plain text, for a file."""
     return _captured(lambda console: show(report, console))
 
 
 def render_error(report: ErrorReport) -> str:
-    """The error as plain text."""
+    """Return the error as plain text."""
     return _captured(lambda console: show_error(report, console))
 
 
@@ -84,8 +84,8 @@ def show(report: Report, console: Console) -> None:
     )
     for flag in report.flags:
         console.print(_text(tr("Note: {flag}", flag=flag)))
-    for said in filter(None, (*report.handed_in, report.not_shown)):
-        console.print(_text(said))
+    for note in report.notes:
+        console.print(_text(note))
     console.print(_score(report))
 
 
@@ -94,7 +94,7 @@ def _score(report: Report | ErrorReport) -> Text:
 
 
 def show_with_page(report: Report, page: Path | None) -> None:
-    """Print the report of a new result, and where its page is, if one was written."""
+    """Print the report of a new result, and the path of its page, if one was written."""
     console = _PatientConsole()
     try:
         show(report, console)
@@ -106,17 +106,17 @@ def show_with_page(report: Report, page: Path | None) -> None:
 
 
 class _PatientConsole(Console):
-    """A console that goes on where its reader has seen enough, as `| head -1` does."""
+    """A console that survives the end of its reader, such as `| head -1`."""
 
     def on_broken_pipe(self) -> None:
-        """Print nothing more: the exit code tells of the score, not of who reads."""
+        """Print nothing more: the exit code depends on the score, not on the reader."""
         self.quiet = True
         with Path(os.devnull).open("wb") as nowhere:
             os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
 def show_nominal(report: Report, console: Console) -> None:
-    """Print what the nominal run decides while the varied ones still go."""
+    """Print the verdicts of the nominal run while the varied ones go on."""
     console.print(_text(tr("The nominal run is over, the others still go."), "bold"))
     if report.verdicts:
         _checks(report, console)
@@ -129,7 +129,7 @@ def show_nominal(report: Report, console: Console) -> None:
 
 
 def _lead(report: Report, console: Console) -> None:
-    """The first thing to mend; each line whole in a file, and wrapped at words in a terminal."""
+    """Print the first thing to fix; in a terminal, lines are wrapped at words."""
     whole = not console.is_terminal
     console.print(_text(report.first_line, "bold"), soft_wrap=whole)
     for line in report.advice:
@@ -141,7 +141,7 @@ def _text(value: str, style: str = "") -> Text:
 
 
 def _checks(report: Report, console: Console) -> None:
-    """A line for each check that was judged, and one for all that wait for the same."""
+    """Print a line for each judged check, and one for all that wait for the same checks."""
     judged = [verdict for verdict in report.verdicts if not report.waited_for(verdict)]
     if judged:
         console.print(_table(report, judged, console.width))
@@ -150,7 +150,7 @@ def _checks(report: Report, console: Console) -> None:
         since, *more = (tr("“{title}”", title=title) for title in titles)
         for title in more:
             since = tr("{those} and {last}", those=since, last=title)
-        said = tr_many(
+        waiting = tr_many(
             "not judged, since {titles} did not pass: {names} ({worth} points)",
             "not judged, since {titles} did not pass: {names} ({worth} points)",
             len(titles),
@@ -159,14 +159,14 @@ def _checks(report: Report, console: Console) -> None:
             worth=wording.points(sum(verdict.max_score for verdict in verdicts)),
         )
         grid = Table.grid(padding=(0, 1))
-        grid.add_row(Text(f" {sign}", color), _text(said, color))
+        grid.add_row(Text(f" {sign}", color), _text(waiting, color))
         console.print(grid)
 
 
 def _table(report: Report, verdicts: Sequence[Verdict], width: int) -> Table:
-    """A check's name and notes stand beside its title, or are left out where there is no room.
+    """Return a table with names and notes beside the titles, or without them for lack of room.
 
-    Where there is none for the titles either, they are behind it: all is wrapped then.
+    If there is no room for the titles either, the notes follow them and lines are wrapped.
     """
     rows = [_row(verdict, report.seen_by_students(verdict)) for verdict in verdicts]
     widest = [max(cell.cell_len for cell in column) for column in zip(*rows, strict=True)]
@@ -175,10 +175,10 @@ def _table(report: Report, verdicts: Sequence[Verdict], width: int) -> Table:
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True, justify="right")
-    for said, score, title, notes in rows:
+    for status, score, title, notes in rows:
         behind = Text.assemble(title, " (", notes, ")") if notes and not alone else title
         cells = [title, notes] if beside else [behind]
-        table.add_row(said, score, *cells)
+        table.add_row(status, score, *cells)
     return table
 
 
@@ -189,9 +189,8 @@ def _row(verdict: Verdict, seen: str) -> tuple[Text, Text, Text, Text]:
         notes.append(_text(tr("partial credit"), "yellow"))
     if seen:
         notes.append(_text(seen, "dim"))
-    said = Text(f" {sign} {word(verdict)}", color)
     return (
-        said,
+        Text(f" {sign} {word(verdict)}", color),
         _text(score_text(verdict)),
         _text(title_of(verdict), "bold"),
         Text(", ").join(notes),
@@ -200,11 +199,11 @@ def _row(verdict: Verdict, seen: str) -> tuple[Text, Text, Text, Text]:
 
 def _explanation(report: Report, verdict: Verdict) -> Group:
     sign, color = _MARKS[verdict.status]
-    said = {"title": title_of(verdict), "score": score_text(verdict)}
+    values = {"title": title_of(verdict), "score": score_text(verdict)}
     if verdict.is_partial:
-        head = tr("{title}: {score} (partial credit)", **said)
+        head = tr("{title}: {score} (partial credit)", **values)
     else:
-        head = tr("{title}: {score}", **said)
+        head = tr("{title}: {score}", **values)
     lines: list[RenderableType] = [Text(), _text(f"{sign} {head}", f"bold {color}")]
     lines.append(Padding(_text(" ".join(translate(verdict.rationale).split())), (0, 0, 0, 2)))
     lines += [_indented("•", str(point)) for point in report.points_of(verdict)]

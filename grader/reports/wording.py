@@ -1,4 +1,4 @@
-"""How verdicts and their points are put into words, the same in all formats."""
+"""The words for verdicts, points and runs, the same in all formats."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ WORDS: Final = {
     "failed": msg("failed"),
     "not_judged": msg("not judged"),
 }
-#: What a teacher is told of a verdict that students do not see, or not all of.
+#: For teachers: what students see of a verdict that they do not see, or not all of.
 SEEN_BY_STUDENTS: Final = {
     "after_due": msg("students see it when the exercise is over"),
     "points_only": msg("students see its points alone"),
     "never": msg("students never see it"),
 }
-#: What stands in place of a check's advice where the first line knows the cause.
+#: In place of a check's hint where the first line has the cause.
 SEE_FIRST: Final = msg("See the first line.")
-#: What a run says of itself that ended because nothing had moved.
+#: The outcome of a run that ended because nothing had moved.
 NOTHING_MOVED: Final = "nothing moved"
-#: How a run ended, by what `Report.outcome` says.
+#: How a run ended, by `Report.outcome`.
 OUTCOMES: Final = {
     "finished": msg("finished"),
     "exited": msg("exited"),
@@ -37,9 +37,9 @@ OUTCOMES: Final = {
     "not run": msg("not run"),
     NOTHING_MOVED: msg("nothing moved"),
 }
-#: The clock that a submission lived by.
+#: The clock of a run.
 CLOCKS: Final = {"virtual": msg("virtual"), "real": msg("real")}
-#: How a run was confined and kept apart; a result file puts it together from these.
+#: How a run was confined and isolated; a result file combines these.
 CONFINED: Final = {
     "namespaces": in_context("namespaces", "of a run"),
     "limits": in_context("limits", "of a run"),
@@ -54,12 +54,12 @@ _CONFINED: Final = re.compile("|".join(CONFINED))
 
 
 def word(verdict: Verdict) -> str:
-    """The verdict in words."""
+    """Return a verdict's status in words."""
     return translate(WORDS[verdict.status])
 
 
 def so_many(status: str, count: int) -> str:
-    """How many verdicts are of a kind: '6 passed'."""
+    """Count the verdicts of a status: '6 passed'."""
     if status == "passed":
         return tr_many("{n} passed", "{n} passed", count)
     if status == "failed":
@@ -68,42 +68,47 @@ def so_many(status: str, count: int) -> str:
 
 
 def outcome(key: str) -> str:
-    """How a run ended, for people."""
+    """Return how a run ended, for people."""
     return translate(OUTCOMES.get(key, key))
 
 
 def clock(time: str) -> str:
-    """The clock of a run, for people: the word before "time"."""
+    """Return the clock of a run, for people: the word before "time"."""
     return translate(CLOCKS.get(time, time))
 
 
 def isolation(name: str) -> str:
-    """How a run was confined and kept apart, for people; see `grader.run.run_context`."""
+    """Return how a run was confined and isolated, for people; see `grader.run.run_context`."""
     return _CONFINED.sub(lambda found: translate(CONFINED[found[0]]), name)
 
 
 def points(value: float) -> str:
-    """Points for people: '12.5'."""
+    """Format points for people: '12.5'."""
     return number(text.points(value))
 
 
+def run_name(number: int) -> str:
+    """Name a run; 0 is the nominal one."""
+    return tr("Varied run {number}", number=number) if number else tr("Nominal run")
+
+
 def title_of(verdict: Verdict) -> str:
-    """What its check asks for; its name where that has no title."""
+    """Return the title of a verdict's check; its name where it has no title."""
     return translate(verdict.title) or verdict.check
 
 
 def score_text(verdict: Verdict) -> str:
-    """The points: '12.5 / 30'."""
+    """Format the points of a verdict: '12.5 / 30'."""
     return f"{points(verdict.score)} / {points(verdict.max_score)}"
 
 
 def all_passed(checks: int) -> str:
-    """That nothing is to be mended: 'all 7 checks passed.'."""
+    """Return 'all 7 checks passed.'."""
     return tr_many("the only check passed.", "all {n} checks passed.", checks)
 
 
 def where(evidence: Evidence) -> str:
-    """Time and place: 'at 12.34 s, at (5.54, 7.20)'."""
+    """Return time and place of evidence: 'at 12.34 s, at (5.54, 7.20)'."""
     if evidence.place is None:
         if not evidence.run:
             return tr("at {time_s:.2f} s", time_s=evidence.time_s)
@@ -120,7 +125,7 @@ def where(evidence: Evidence) -> str:
 
 
 def nothing_to_mend(passed: int, left_out: NotShown | None) -> str:
-    """The headline where all verdicts that are shown passed."""
+    """Return the headline where all shown verdicts passed."""
     if left_out is None:
         return tr("Nothing to fix: {all_passed}", all_passed=all_passed(passed))
     others = tr_many("{n:,} check is not shown", "{n:,} checks are not shown", left_out.checks)
@@ -131,48 +136,48 @@ def nothing_to_mend(passed: int, left_out: NotShown | None) -> str:
 
 
 def not_shown(left_out: NotShown | None) -> str:
-    """That there are more checks than those that are shown; '' where there are none."""
+    """Return the sentence on the checks that are not shown; '' where there are none."""
     if left_out is None:
         return ""
     checks, later = left_out.checks, left_out.until_due
-    said = tr_many(
+    sentence = tr_many(
         "{n:,} check worth {points} points is not shown here, nor counted in this score",
         "{n:,} checks worth {points} points are not shown here, nor counted in this score",
         checks,
         points=points(left_out.max_score),
     )
     if not later:
-        return tr("{said}.", said=said)
+        return tr("{said}.", said=sentence)
     if later == checks:
-        return tr("{said}; shown when the exercise is over.", said=said)
+        return tr("{said}; shown when the exercise is over.", said=sentence)
     return tr_many(
         "{said}; {n} of them is shown when the exercise is over.",
         "{said}; {n} of them are shown when the exercise is over.",
         later,
-        said=said,
+        said=sentence,
     )
 
 
-def handed_in(result: Result) -> list[str]:
-    """Whose a result is, and what it costs that it came late; nothing where nobody has said it."""
-    found = result.handed_in
-    if found is None:
+def attempt(result: Result) -> list[str]:
+    """Return whose attempt a result is, and the deduction for lateness; [] where it is unknown."""
+    info = result.handed_in
+    if info is None:
         return []
-    who = {"who": found.name or found.id, "attempt": found.attempt}
-    if found.at:
-        when = found.at.isoformat(" ")
-        said = [tr("{who}, attempt {attempt}, handed in {when}.", **who, when=when)]
+    who = {"who": info.name or info.id, "attempt": info.attempt}
+    if info.at:
+        when = info.at.isoformat(" ")
+        sentence = tr("{who}, attempt {attempt}, handed in {when}.", **who, when=when)
     else:
-        said = [tr("{who}, attempt {attempt}.", **who)]
-    if found.late_s <= 0:
-        return said
-    late = duration(found.late_s)
-    if not found.deducted:
-        return [*said, tr("Handed in {late} late, which costs no points.", late=late)]
-    less = points(found.deducted)
-    if result.not_shown is not None:  # of a total from which what is hidden could be told
+        sentence = tr("{who}, attempt {attempt}.", **who)
+    if info.late_s <= 0:
+        return [sentence]
+    late = duration(info.late_s)
+    if not info.deducted:
+        return [sentence, tr("Handed in {late} late, which costs no points.", late=late)]
+    less = points(info.deducted)
+    if result.not_shown is not None:  # the total would reveal the points of hidden checks
         return [
-            *said,
+            sentence,
             tr(
                 "Handed in {late} late: {less} points less in the total of all checks.",
                 late=late,
@@ -180,7 +185,7 @@ def handed_in(result: Result) -> list[str]:
             ),
         ]
     return [
-        *said,
+        sentence,
         tr(
             "Handed in {late} late: {less} points less; {final} instead of {score}.",
             late=late,
@@ -192,7 +197,7 @@ def handed_in(result: Result) -> list[str]:
 
 
 def duration(seconds: float) -> str:
-    """A time that people count in days, hours and minutes: '1 day 3 h', '2 h 10 min', '40 s'."""
+    """Format a duration in days, hours and minutes: '1 day 3 h', '2 h 10 min', '40 s'."""
     if seconds < 60:
         return tr("{seconds:.0f} s", seconds=max(seconds, 1))
     minutes = int(seconds // 60)
@@ -205,12 +210,12 @@ def duration(seconds: float) -> str:
     return " ".join(part for part in parts if part)
 
 
-#: So many digits of a hash tell one from another; the result file has all.
+#: So many digits of a hash are shown; the result file has all.
 _DIGITS = 12
 
 
 def provenance(origin: ResultProvenance) -> list[str]:
-    """When and with what it was run and judged, and of what."""
+    """Return when, with which versions, and of which inputs a result was made."""
     judged, recorded = origin.judged, origin.recorded
     found = []
     if recorded is not None:
@@ -239,7 +244,7 @@ def provenance(origin: ResultProvenance) -> list[str]:
 
 
 def _when(date: str) -> str:
-    """'2026-11-21T23:52:52Z' for people."""
+    """Format a date like '2026-11-21T23:52:52Z' for people."""
     day, _, time = date.partition("T")
     year, _, rest = day.partition("-")
     month, _, of_month = rest.partition("-")

@@ -1,4 +1,4 @@
-"""What runs beside a submission, a folder a scene."""
+"""Scenes, which run beside a submission: a folder each."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ if TYPE_CHECKING:
 
 
 def load_scene(name: str) -> Scene:
-    """The scene of this name.
+    """Load the scene of this name.
 
     Raises:
         KeyError: there is none.
     """
-    # here: what examines a package sees little of the grader
+    # here: the process that examines a package has few of the grader's modules
     from grader.recording.subject import load_subject
     from grader.scenes.scene import Scene
 

@@ -1,4 +1,4 @@
-"""What a page is that shows runs while they go on, and what it is told of their grading."""
+"""The interface of a page that shows runs live, and the state of a grading that it shows."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from grader.recording.playback import JudgedCheck
 
 @dataclass(frozen=True)
 class Grading:
-    """What is known of a grading at a moment.
+    """The state of a grading.
 
     Attributes:
-        heading: whose submission, to which exercise.
-        run: which run is to be seen, and how fast it goes.
+        heading: the submission and the exercise.
+        run: the run that is shown, and its speed.
         score: in words; '' while it is not known.
-        first: the first thing to mend; '' while it is not known.
-        judged: what the checks say that have been decided.
-        is_over: whether all is known.
+        first: the first thing to fix; '' while it is not known.
+        judged: the verdicts up to now.
+        is_over: whether this is the final state.
     """
 
     heading: str
@@ -31,23 +31,23 @@ class Grading:
 
 
 class LivePage(Protocol):
-    """A page in a browser, served by this process; its viewers can do nothing but look."""
+    """A page in a browser, served by this process; viewers can only watch."""
 
     @property
     def address(self) -> str:
-        """What to open."""
+        """The address to open."""
 
     def await_viewer(self, patience_s: float) -> bool:
-        """Wait until somebody looks; whether anybody has."""
+        """Wait for a viewer; return whether one has come."""
 
-    def tell(self, grading: Grading) -> None:
-        """Show what is known now."""
+    def update(self, grading: Grading) -> None:
+        """Show the state of the grading."""
 
     def begin(self) -> None:
-        """Show the scene as it is before a run."""
+        """Show the scene before a run."""
 
     def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
-        """Show what `grader.scenes.scene.Hooks.tell` has got, in order."""
+        """Show the news that `grader.scenes.scene.Hooks.send_news` has received, in order."""
 
     def close(self) -> None:
-        """Show no more: who looks keeps what he sees."""
+        """Stop serving; open pages keep their content."""

@@ -1,9 +1,9 @@
-"""What a scene is: whatever runs beside a submission, and everything that only it can know.
+"""The interface of a scene, which runs beside a submission.
 
-A scene has nodes, a tick, a place where things start, something that it records, and a rule for
-when a run is over. Runs in real and in virtual time know it by `Scene` alone, recordings and
-reports by `grader.recording.subject.Subject`. What it does in the simulator's process is its
-`Simulation`; the rest needs no ROS. A scene knows nothing of exercises, submissions and results.
+A scene has nodes, a tick, places to start, a trace that it records, and a rule that ends a run.
+Runs in real and in virtual time use it by `Scene` alone, recordings and reports by
+`grader.recording.subject.Subject`. Its part in the simulator's process is a `Simulation`; the rest
+needs no ROS. A scene knows nothing of exercises, submissions and results.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from grader.message import Message
 from grader.recording.subject import Start, Subject, Trace
 from grader.scenes.live import LivePage
 
-#: Why a run is over: it came to rest, all that there is to see was seen, nothing ever moved, the
-#: submission is gone, time is up.
+#: Why a run is over: it came to rest, it was seen to its end, nothing ever moved, the submission
+#: is gone, time is up.
 Reason = Literal["", "rest", "seen", "no_motion", "gone", "time_limit"]
 
 #: How often `Simulation.tick` is called [simulated ns].
@@ -33,9 +33,9 @@ class Limits:
     """When a run ends, in simulated seconds.
 
     Attributes:
-        first_motion_s: nothing has moved by then.
-        rest_s: something has driven and then rested for so long; who has not yet left the place
-            may pause for as long as `first_motion_s`.
+        first_motion_s: if nothing has moved by then.
+        rest_s: after a rest of this length, once something has driven; before that, a rest may be
+            as long as `first_motion_s`.
         total_s: in any case.
     """
 
@@ -46,15 +46,15 @@ class Limits:
 
 @dataclass(frozen=True)
 class Introduction:
-    """What of a scene a submission's process has to know before it can talk with it.
+    """What a submission's process has to know of a scene to communicate with it.
 
     Attributes:
         nodes: the names and namespaces of the scene's nodes.
-        topics, services: names that a submission drives the scene by, and that are there from the
+        topics, services: names that a submission drives the scene by, and that exist from the
             start. In real time its publishers and clients of these wait until they are connected;
             those of names that end like them, for a while.
-        compares_stamps: whether it matters that two stamps are one. In virtual time a callback
-            takes no time; a node's clock then tells those apart for which it was asked twice.
+        compares_stamps: whether equal stamps matter. In virtual time a callback takes no time; a
+            node's clock then returns a later time when it is read again.
     """
 
     nodes: tuple[tuple[str, str], ...]
@@ -65,25 +65,25 @@ class Introduction:
 
 @dataclass(frozen=True)
 class Hooks:
-    """How a run takes part in a simulation.
+    """The connections of a run with its simulation.
 
     Attributes:
         has_unread: whether anything has arrived; while nothing has, a node need not be served.
-        tell: gets what somebody who looks on is to see, as plain data that its scene's live page
-            (`grader.scenes.live`) takes, after each tick; None where nobody does.
+        send_news: receives after each tick what viewers see, as plain data for the live page of
+            the scene (`grader.scenes.live`); None where there is no audience.
     """
 
     has_unread: Callable[[], bool] = lambda: True
-    tell: Callable[[Mapping[str, Any]], None] | None = None
+    send_news: Callable[[Mapping[str, Any]], None] | None = None
 
 
 @dataclass(frozen=True)
 class Forecast:
-    """What will be published in the next ticks if nothing arrives.
+    """The messages of the next ticks if nothing arrives.
 
     Attributes:
         publishers: rclpy's, each of which publishes once in each of these ticks.
-        ticks: for each, what they publish, in their order, in CDR.
+        ticks: for each tick the messages, in the order of the publishers, in CDR.
     """
 
     publishers: tuple[Any, ...]
@@ -91,14 +91,14 @@ class Forecast:
 
 
 class Simulation(ABC):
-    """A scene at work, in the simulator's process, when ROS is up there.
+    """A scene at work, in the simulator's process, where ROS is up.
 
-    Obligatory are a node, how many ticks were recorded, what a tick does, and the trace.
+    Abstract are `node`, `ticks`, `tick` and `trace`.
 
     Attributes:
-        node: to ask what others publish, an `rclpy.node.Node`.
-        records: whether ticks are recorded; inputs are from the beginning.
-        gone_tick: after which the submission's process had ended; None while it lives.
+        node: an `rclpy.node.Node`, to query the graph.
+        records: whether ticks are recorded; inputs always are.
+        gone_tick: the last tick before the end of the submission's process; None while it lives.
     """
 
     node: Any
@@ -110,29 +110,28 @@ class Simulation(ABC):
     @property
     @abstractmethod
     def ticks(self) -> int:
-        """How many ticks were recorded, each of `STEP_NS`."""
+        """The number of recorded ticks, each of `STEP_NS`."""
 
     @abstractmethod
     def tick(self, now_ns: int | None = None) -> Reason:
-        """Serve what has arrived, let a tick pass; why the run is over, or ''.
+        """Serve what has arrived and let a tick pass; return why the run is over, or ''.
 
         Args:
-            now_ns: the time on the clock of the run [ns], where somebody knows; else a node's
-                clock is asked.
+            now_ns: the time on the clock of the run [ns]; without it, a node's clock is read.
         """
 
     @abstractmethod
     def trace(self) -> Trace:
-        """Everything recorded up to now."""
+        """Return the recording up to now."""
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether what is driven has moved, and does not now."""
+        """Whether the driven thing has moved, and rests now."""
         return False
 
     @property
     def flags(self) -> tuple[Message, ...]:
-        """Remarks for the result: what the submission asked for and did not get."""
+        """Remarks for the result: requests of the submission that were refused."""
         return ()
 
     def record(self) -> None:
@@ -140,26 +139,26 @@ class Simulation(ABC):
         self.records = True
 
     def submission_gone(self) -> None:
-        """The submission's process has ended."""
+        """Note that the submission's process has ended."""
         self.gone_tick = self.ticks
 
     def foresee(self, most: int) -> Forecast:
-        """The next ticks, so many at most: as far as they are certain if nothing arrives.
+        """Return at most so many of the next ticks that are certain if nothing arrives.
 
-        None where the run might end, a node is to be served, or something other than publishing
-        would happen. A scene that foresees nothing is asked for every tick, which takes longer.
+        There is none where the run might end, a node is to be served, or something other than
+        publishing would happen. If a scene foresees nothing, `tick` is called each time: slower.
         """
         return Forecast((), [])
 
     def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
-        """As `tick`, in a tick that was foreseen: publishes nothing, returns what it would have."""
+        """Let a foreseen tick pass without publishing; return as `tick`, and the messages."""
         raise NotImplementedError("a scene that foresees ticks has to let them pass")
 
     def over(self, tick: int, limits: Limits, has_begun: bool) -> Reason:
-        """Why a run ends after a tick, or '': where what was begun is never done.
+        """Return why a run ends after a tick, or ''; for scenes that never come to rest.
 
         Args:
-            has_begun: whether the submission has done anything that the scene is about.
+            has_begun: whether the submission has acted on the scene.
         """
         if self.gone_tick is not None and tick - self.gone_tick >= GRACE_TICKS:
             return "gone"
@@ -172,77 +171,77 @@ class Simulation(ABC):
 
 
 def arrived(subscription: Any) -> Iterator[Any]:
-    """Take all messages that have arrived, without an executor: nothing here waits."""
-    while (taken := subscription.handle.take_message(subscription.msg_type, False)) is not None:
-        yield taken[0]
+    """Receive all messages that have arrived, without an executor and without waiting."""
+    while (found := subscription.handle.take_message(subscription.msg_type, False)) is not None:
+        yield found[0]
 
 
 class Scene(Subject):
-    """A kind of scene; all of it but `simulate` works without ROS.
+    """A kind of scene; all but `simulate` works without ROS.
 
-    Obligatory are a name, the words for what is driven, `simulate`, and how a trace is kept and
-    read back; see `Subject`.
+    Required are a name, the words for the driven thing, `simulate`, and how a trace is written and
+    read; see `Subject`.
     """
 
-    #: What a submission's process has to know of it.
+    #: For a submission's process.
     introduction: ClassVar[Introduction] = Introduction((), (), ())
-    #: So far from the usual place something can start and still has room on every side [m].
+    #: The farthest start from the usual place that leaves room on every side [m].
     farthest_start_m: ClassVar[float] = 0.0
 
     @abstractmethod
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
     ) -> Simulation:
-        """Make the nodes and everything else; ROS is up, in the simulator's process.
+        """Make the simulation, in the simulator's process; ROS is up.
 
         Args:
             interfaces: from `interfaces_for`; '' for the usual ones.
-            setting: what the exercise sets it up with; see `wrong_setting`.
+            setting: of the exercise; see `wrong_setting`.
         """
 
     def preload(self) -> None:
-        """Import and make what is the same in every simulation; nothing of ROS is up."""
+        """Import and make what all simulations share; ROS is not up."""
         return
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
-        """Where varied runs start, so far from the usual place; the same for the same seed.
+        """Return starts for varied runs, so far from the usual place; the same for the same seed.
 
-        None where nothing can be varied.
+        There are none where nothing can be varied.
         """
         return []
 
     def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
-        """Which of its interfaces a submission was written for; '' where there is no choice.
+        """Return which interfaces a submission was written for; '' where there is no choice.
 
         Args:
-            surely, perhaps: the modules that the submission imports whenever it is run, and those
-                that it may import, each with the place of the first import, in the order of these.
+            surely, perhaps: modules that the submission always imports, and those that it may
+                import, each with the place of its first import, in the order of these.
 
         Raises:
-            SubmissionError: it cannot have been written for any.
+            SubmissionError: it fits none of them.
         """
         return ""
 
     def live_page(self, port: int) -> LivePage | None:
-        """A page on which runs are seen while they go on; None where there is none.
+        """Serve a page that shows runs live; None where the scene has none.
 
         Args:
             port: 0 for any that is free.
 
         Raises:
-            OSError: it cannot be served.
+            OSError: the page cannot be served.
         """
         return None
 
 
 def command_by_hand(program: str, package: str) -> str:
-    """The command that starts a student's node by hand as it is graded, for exercise sheets.
+    """Return the command that starts a node by hand as it is graded, for exercise sheets.
 
-    A package's own modules are found by the package's name.
+    A file in a package is run as a module, so that it can import the package by its name.
 
     Args:
-        program: the node's file, below the folder that is handed in.
-        package: which it is in; '' for none.
+        program: the node's file, relative to the submission's folder.
+        package: of the file; '' for none.
     """
     path = PurePath(program)
     if package and len(path.parts) > 1:

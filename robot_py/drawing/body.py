@@ -1,6 +1,6 @@
 """A robot in its place: its shapes as triangles, where the links stand.
 
-Sines are Python's own, which are the same on every processor.
+Sines are those of Python's math, which are the same on every processor.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from robot_py.model import Box, Colour, Cylinder, Geometry, Mesh, Model, Sphere,
 
 Floats = npt.NDArray[np.float64]
 
-#: What has no place stands at the origin, white, as in RViz.
+#: Of a shape without a place, which stands at the origin, as in RViz.
 WHITE: Colour = (1.0, 1.0, 1.0, 1.0)
-#: What has no material: RViz takes red.
+#: Of a shape without a material, as in RViz.
 RED: Colour = (1.0, 0.0, 0.0, 1.0)
 #: Nothing is drawn beyond [m].
 FARTHEST = 1e6
@@ -41,7 +41,7 @@ class Triangles:
 
     Attributes:
         corners: float64 (n, 3, 3): of each triangle three points x, y, z [m].
-        normals: float64 (n, 3, 3): of each of these the direction in which the surface looks.
+        normals: float64 (n, 3, 3): of each of these the direction of the surface.
     """
 
     corners: Floats
@@ -55,7 +55,7 @@ NOTHING = Triangles(np.empty((0, 3, 3)), np.empty((0, 3, 3)))
 
 
 def triangles(shape: Geometry, around: int = 32) -> Triangles:
-    """A shape's surface; nothing for a mesh, whose file nobody has read.
+    """Return a shape's surface; nothing for a mesh, whose file has not been read.
 
     Args:
         around: edges of what is round.
@@ -70,9 +70,9 @@ def triangles(shape: Geometry, around: int = 32) -> Triangles:
 
 
 def flat(corners: Floats) -> Triangles:
-    """Triangles that are not round: each looks in one direction.
+    """Return flat triangles: the normals of each are parallel.
 
-    Those without an area are left out.
+    Triangles without an area are left out.
     """
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     across = np.cross(b - a, c - a)
@@ -101,12 +101,14 @@ def _cylinder(radius: float, length: float, around: int) -> Triangles:
     ring, half = _ring(around), np.array((0.0, 0.0, length / 2))
     a, b = ring[:-1], ring[1:]
     mantle = _strip(a * radius - half, b * radius - half, b * radius + half, a * radius + half)
-    looks = _strip(a, b, b, a)
+    normals = _strip(a, b, b, a)
     middle = np.zeros_like(a)
     top = np.stack((middle + half, a * radius + half, b * radius + half), axis=1)
     bottom = np.stack((middle - half, b * radius - half, a * radius - half), axis=1)
     caps = flat(np.concatenate((top, bottom)))
-    return Triangles(np.concatenate((mantle, caps.corners)), np.concatenate((looks, caps.normals)))
+    return Triangles(
+        np.concatenate((mantle, caps.corners)), np.concatenate((normals, caps.normals))
+    )
 
 
 def _sphere(radius: float, around: int) -> Triangles:
@@ -114,14 +116,14 @@ def _sphere(radius: float, around: int) -> Triangles:
     tilts = [math.pi * k / rows - math.pi / 2 for k in range(rows + 1)]
     up = np.array((0.0, 0.0, 1.0))
     layers = [ring * math.cos(tilt) + up * math.sin(tilt) for tilt in tilts]
-    looks = np.concatenate(
+    normals = np.concatenate(
         [_strip(low[:-1], low[1:], high[1:], high[:-1]) for low, high in pairwise(layers)]
     )
-    return Triangles(looks * radius, looks)
+    return Triangles(normals * radius, normals)
 
 
 def _strip(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
-    """Quadrilaterals as two triangles each."""
+    """Return quadrilaterals as two triangles each."""
     return np.concatenate((np.stack((a, b, c), axis=1), np.stack((a, c, d), axis=1)))
 
 
@@ -138,8 +140,8 @@ class Body:
         links: int64 (n,): of which of `names`.
         names: of the robot's links.
         lost: those that have no place.
-        left_out: meshes that nobody has read, and what is too much or too far to be drawn; each
-            once, as the URDF names it.
+        left_out: meshes that have not been read, and shapes that are too many or too far to be
+            drawn; each once, as the URDF names it.
     """
 
     corners: Floats
@@ -171,11 +173,11 @@ def body(
     frames: Mapping[str, Floats],
     meshes: Mapping[str, Floats] | None = None,
 ) -> Body:
-    """A robot whose links have their places.
+    """Return the triangles of a robot whose links are in their places.
 
     Args:
-        frames: of each link its transform into the world, 4 x 4. Whoever is not among them, or has
-            one that is no number, has no place.
+        frames: of each link its transform into the world, 4 x 4. A link that is missing, or has
+            a transform that is not finite, has no place.
         meshes: by the name that the URDF gives: triangles, float64 (n, 3, 3), not yet scaled.
     """
     names = tuple(model.links)
@@ -192,13 +194,13 @@ def body(
         there = _moved(surface, (np.eye(4) if place is None else place), matrix(visual.origin))
         colour = WHITE if place is None else colour_of(visual)
         if not len(there) or count + len(there) > _MOST_TRIANGLES:
-            left_out[_told(visual, names[number])] = None
+            left_out[_label(visual, names[number])] = None
             continue
         lowest, highest = there.corners.min(axis=1), there.corners.max(axis=1)
         covers = covered + float(np.square((highest - lowest).max(axis=1)).sum())
         below, above = np.minimum(low, lowest.min(axis=0)), np.maximum(high, highest.max(axis=0))
         if covers > _MOST_COVERED * float((above - below).max()) ** 2:
-            left_out[_told(visual, names[number])] = None
+            left_out[_label(visual, names[number])] = None
         elif colour[3] > 0:
             parts.append((there, colour, number))
             count, covered, low, high = count + len(there), covers, below, above
@@ -220,14 +222,14 @@ def is_place(frame: Floats) -> bool:
 
 
 def colour_of(visual: Visual) -> Colour:
-    """What RViz shows; a texture's colour is not known."""
+    """Return the colour that RViz shows; a texture's colour is not known."""
     if visual.material is None:
         return RED
     return WHITE if visual.material.texture else visual.material.rgba
 
 
 def _visuals(model: Model) -> Iterator[tuple[int, Visual]]:
-    """Every visual with the number of its link."""
+    """Yield every visual with the number of its link."""
     for number, link in enumerate(model.links.values()):
         for visual in link.visuals:
             yield number, visual
@@ -243,13 +245,13 @@ def _surface(visual: Visual, meshes: Mapping[str, Floats], around: int) -> Trian
     return triangles(shape, around)
 
 
-def _told(visual: Visual, link: str) -> str:
+def _label(visual: Visual, link: str) -> str:
     shape = visual.geometry
     return shape.filename if isinstance(shape, Mesh) else f"a shape of {link}"
 
 
 def _moved(surface: Triangles, *frames: Floats) -> Triangles:
-    """Through all frames, the last first; nothing where it ends too far away."""
+    """Move a surface through all frames, the last first; nothing where it ends too far away."""
     corners, normals = surface.corners, surface.normals
     with np.errstate(all="ignore"):
         for frame in reversed(frames):
@@ -262,6 +264,6 @@ def _moved(surface: Triangles, *frames: Floats) -> Triangles:
 
 
 def _turned(points: Floats, rotation: Floats) -> Floats:
-    """Term by term: a matrix product may add in another order on another processor."""
+    """Rotate term by term: a matrix product may add in another order on another processor."""
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
     return np.stack([x * row[0] + y * row[1] + z * row[2] for row in rotation], axis=-1)

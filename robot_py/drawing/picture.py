@@ -1,4 +1,4 @@
-"""A robot drawn: a camera that sees all that matters, a z-buffer, light, edges and the ground."""
+"""Draws a robot: a camera that sees all of it, a z-buffer, light, edges and the ground."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ GROUND, LINES, SKY = (236.0, 239.0, 243.0), (150.0, 160.0, 172.0), (206.0, 216.0
 SHADOW = 0.78
 #: Where the light comes from.
 LIGHT = np.array((0.35, 0.1, 0.93))
-#: From the left in front of a robot, which looks along x, and from above [rad].
+#: From the left in front of a robot, whose front is along x, and from above [rad].
 AZIMUTH, ELEVATION = math.radians(40), math.radians(24)
 #: Half of what is seen from edge to edge of the picture, as a tangent.
 HALF_WIDTH = 0.32
@@ -46,7 +46,7 @@ def picture(
     ways: Sequence[Floats] = (),
     labels: Sequence[str] = (),
 ) -> Pixels:
-    """Draw it, uint8 (size, size, 3).
+    """Draw a robot, uint8 (size, size, 3).
 
     Args:
         height_m: of the ground.
@@ -82,7 +82,7 @@ def _paint(
     camera: Camera,
     before: npt.NDArray[np.bool_] | None,
 ) -> None:
-    """Paint some triangles over what is there.
+    """Paint some triangles over the others.
 
     Args:
         before: the triangles that hide these; None for none.
@@ -116,7 +116,7 @@ def _light(normals: Floats, camera: Camera) -> Floats:
 
 
 def _edges(found: Ints, links: Ints) -> Floats:
-    """Darker where one link ends and another begins, or nothing."""
+    """Return the brightness of pixels: darker where a link ends."""
     link = np.where(found >= 0, links[np.maximum(found, 0)], -1)
     edge = np.zeros(link.shape, dtype=bool)
     edge[:, 1:] |= link[:, 1:] != link[:, :-1]
@@ -176,14 +176,14 @@ def ground(camera: Camera, height_m: float) -> Floats:
 
 
 def edge_m(camera: Camera) -> float:
-    """The edge of a square: about an eighth of what is seen."""
+    """Return the edge of a square [m]: about an eighth of the picture."""
     raw = camera.middle_m / 10
     power = 10.0 ** math.floor(math.log10(raw))
     return float(power * next((m for m in (1, 2, 5) if m * power >= raw), 10))
 
 
 def shadow(camera: Camera, corners: Floats, height_m: float) -> npt.NDArray[np.bool_]:
-    """Where triangles above the ground throw their shadow, bool (size, size)."""
+    """Return where triangles above the ground throw their shadow, bool (size, size)."""
     above = corners[..., 2:] - height_m
     fallen = corners - LIGHT / LIGHT[2] * np.maximum(above, 0)
     pixels, ahead = camera.seen(fallen)
@@ -202,7 +202,7 @@ class Camera:
     Attributes:
         eye: where it stands [m].
         right, up, ahead: unit vectors.
-        middle_m: how far away is what it looks at.
+        middle_m: the distance of the middle of the picture.
         size_px: the picture's edge.
     """
 
@@ -215,7 +215,7 @@ class Camera:
 
     @classmethod
     def at(cls, points: Floats, size_px: int) -> Self:
-        """One that sees all points, float64 (n, 3), at least one."""
+        """Return a camera that sees all points, float64 (n, 3), at least one."""
         sin, cos = math.sin(AZIMUTH), math.cos(AZIMUTH)
         flat, high = math.cos(ELEVATION), math.sin(ELEVATION)
         ahead = np.array((-cos * flat, -sin * flat, -high))
@@ -229,7 +229,7 @@ class Camera:
             wide = np.abs(offsets[:, :2]).max(axis=1) / (HALF_WIDTH * _FILLED)
             needed = np.maximum(wide - offsets[:, 2], -1.25 * offsets[:, 2])
             away = max(_NEAREST, float(needed.max()))
-            # what is near looks larger: so the middle of the picture is not that of the things
+            # near things appear larger: so the middle of the picture is not that of the things
             flat_ = offsets[:, :2] / (away + offsets[:, 2:])
             middle[:2] += (flat_.min(axis=0) + flat_.max(axis=0)) / 2 * away
         away = round(away, 6)
@@ -238,11 +238,11 @@ class Camera:
 
     @property
     def focal_px(self) -> float:
-        """Pixels of what is a metre wide, a metre away."""
+        """The width [px] of a metre, a metre away."""
         return self.size_px / 2 / HALF_WIDTH
 
     def seen(self, points: Floats) -> tuple[Floats, Floats]:
-        """Points (..., 3) as pixels (..., 2), y down, and how far ahead they are (...,) [m]."""
+        """Return points (..., 3) as pixels (..., 2), y down, and their distances (...,) [m]."""
         offsets = points - self.eye
         ahead = _along(offsets, self.ahead)
         with np.errstate(all="ignore"):
@@ -253,7 +253,7 @@ class Camera:
         return np.stack((x, y), axis=-1).round(4), ahead
 
     def rays(self) -> Floats:
-        """Of each pixel the direction, as far as one metre ahead: float64 (size, size, 3)."""
+        """Return the direction of each pixel, one metre ahead: float64 (size, size, 3)."""
         steps = (np.arange(self.size_px) + 0.5 - self.size_px / 2) / self.focal_px
         rays: Floats = (
             self.ahead
@@ -270,7 +270,7 @@ def _along(points: Floats, axis: Floats) -> Floats:
 
 
 def nearest(pixels: Floats, ahead: Floats, size_px: int) -> tuple[Ints, Floats]:
-    """Of each pixel the number of the triangle that is seen there, -1 for none.
+    """Return for each pixel the number of the triangle that is seen there, -1 for none.
 
     Args:
         pixels: the corners in the picture, float64 (n, 3, 2).
@@ -295,7 +295,7 @@ def nearest(pixels: Floats, ahead: Floats, size_px: int) -> tuple[Ints, Floats]:
 
 
 def barycentric(corners: Floats, column: Ints, row: Ints) -> Floats:
-    """How much of each corner is in the middle of a pixel: float64 (n, 3), all >= 0 inside."""
+    """Return the weight of each corner at a pixel's middle: float64 (n, 3), all >= 0 inside."""
     x, y = column.astype(np.float64) + 0.5, row.astype(np.float64) + 0.5
     (ax, ay), (bx, by), (cx, cy) = (corners[:, k].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
@@ -308,7 +308,7 @@ def barycentric(corners: Floats, column: Ints, row: Ints) -> Floats:
 
 
 def _candidates(pixels: Floats, size_px: int) -> Iterator[tuple[Ints, Ints, Ints]]:
-    """Triangles with the pixels of the boxes around them: number, x, y."""
+    """Yield triangles with the pixels of the boxes around them: number, x, y."""
     low = np.clip(np.floor(pixels.min(axis=1)), 0, size_px).astype(np.int64)
     high = np.clip(np.ceil(pixels.max(axis=1)), 0, size_px).astype(np.int64)
     wide, tall = (high - low).T

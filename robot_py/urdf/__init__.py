@@ -1,4 +1,4 @@
-"""Reads a URDF as urdfdom 4.0.2 reads it, and finds what urdfdom prints: `parse`."""
+"""Parses a URDF as urdfdom 4.0.2 does, with the findings that urdfdom prints: `parse`."""
 
 from robot_py.urdf.document import ParsedUrdf, parse
 from robot_py.urdf.tinyxml import Consequence

@@ -1,4 +1,4 @@
-"""A whole URDF: from text to a robot, or to why there is none."""
+"""Parses a whole URDF to a robot, or to the findings why there is none."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from robot_py.urdf.tinyxml import Consequence, Element, Malformed, UrdfFinding
 
 #: A longer text is refused unread [characters]. The largest published robots have 1 % of it.
 LONGEST = 32_000_000
-#: What C takes for a whole number at the begin of a text.
+#: A whole number at the begin of a text, as C parses it.
 VERSION_NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?[0-9]+")
 
 
@@ -32,7 +32,7 @@ class ParsedUrdf:
 
 
 def parse(text: str) -> ParsedUrdf:
-    """Read a URDF; whatever it is, there is an answer.
+    """Parse a URDF; no text raises an exception.
 
     Time and memory grow with the length of the text and no more, and nothing that it names is
     opened: it may come from a stranger.
@@ -112,7 +112,7 @@ def _links(robot: Element, materials: dict[str, Material], report: Report) -> di
 
 
 def _link(element: Element, materials: dict[str, Material], report: Report) -> Link:
-    """A link; where one of its parts is malformed, without that part and all that follow it."""
+    """Parse a link; where a part is malformed, that part and all that follow are left out."""
     name = element.get("name")
     inert: Inertial | None = None
     visuals: list[tuple[Visual, str]] = []
@@ -141,7 +141,7 @@ def _link(element: Element, materials: dict[str, Material], report: Report) -> L
 def _dressed(
     visual: Visual, named: str, materials: dict[str, Material], link: str, report: Report
 ) -> Visual:
-    """The visual in the robot's material of that name, or in its own, which others then may use."""
+    """Return the visual with the material of that name; a new one is added to `materials`."""
     if not named:
         return visual
     if named in materials:
@@ -165,7 +165,7 @@ def _joints(robot: Element) -> dict[str, Joint]:
 
 
 def _root(links: Mapping[str, Link], joints: Mapping[str, Joint]) -> str:
-    """The only link that is no child; urdfdom looks at joints and links by the alphabet."""
+    """Return the only link that is no child; urdfdom visits joints and links by the alphabet."""
     for name in sorted(joints):
         parent, child = joints[name].parent, joints[name].child
         if why := _problem_with_links(name, parent, child, links):

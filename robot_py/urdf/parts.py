@@ -1,4 +1,4 @@
-"""The parts of a URDF's robot: materials, what a link is made of, joints, with urdfdom's checks.
+"""Parses the parts of a URDF's robot: materials, links' shapes, joints, with urdfdom's checks.
 
 Each reader raises `Malformed` where urdfdom gives its part up: something is missing, or no number.
 """
@@ -152,7 +152,7 @@ def collision(element: Element) -> Collision:
 
 
 def inertial(element: Element) -> Inertial:
-    """Return what a link weighs."""
+    """Return the mass and inertia of a link."""
     origin = element.origin()
     mass, inertia = element.first("mass"), element.first("inertia")
     if mass is None:
@@ -239,7 +239,7 @@ def _axis(element: Element, kind: JointType, name: str) -> Vector:
 
 
 def _attribute(element: Element, name: str, missing: str = "", default: str = "0") -> float:
-    """Return a number; `Malformed` with the text `missing`, if there is one, where it is absent."""
+    """Return a number; if it is absent, raise `Malformed` with the text `missing`, if any."""
     text = element.needed(name, missing) if missing else element.attributes.get(name, default)
     return element.number(text, f"{name} value ({text}) is not a valid float")
 

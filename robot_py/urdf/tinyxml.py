@@ -7,7 +7,7 @@ of strangers: a document type is skipped, nothing is ever expanded but the five 
 numbered ones, nothing is loaded, and depth is bounded. Time and memory grow with the length only.
 
 An `Element` reads its attributes as urdfdom does: a comma, a line break or a unit is no number.
-What is wrong is a `Malformed` in tinyxml2's or urdfdom's own words.
+A fault is a `Malformed` in the words of tinyxml2 or urdfdom.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ LINE_END = re.compile("\r\n|\n\r|\r")
 REFERENCE = re.compile("&(?:(quot|amp|apos|lt|gt)|#x([0-9a-fA-F]+)|#([0-9]+));")
 NAMED = {"quot": '"', "amp": "&", "apos": "'", "lt": "<", "gt": ">"}
 #: A C++ stream skips blanks before a number; nothing may stand behind it. Nothing is tried twice
-#: (`++`): a million digits and a letter would else take hours.
+#: (`++`): a million digits and a letter would else need hours.
 NUMBER = re.compile(
     r"[ \t\n\v\f\r]*+([+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?)"
 )
@@ -67,7 +67,7 @@ PASSED_OVER = (
 
 
 class Consequence(StrEnum):
-    """What becomes of the robot."""
+    """The effect of a finding on the robot."""
 
     #: There is no robot: robot_state_publisher ends, or refuses the change.
     REFUSED = "refused"
@@ -79,7 +79,7 @@ class Consequence(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class UrdfFinding:
-    """One line of what urdfdom prints.
+    """A line that urdfdom prints.
 
     Attributes:
         text: without the `Error:` or `Warning:` that stands before it.
@@ -91,7 +91,7 @@ class UrdfFinding:
     line: int = 0
 
     def __str__(self) -> str:
-        """As console_bridge prints it, but for the second line, which names a place in urdfdom."""
+        """Format as console_bridge, without its second line, which names a place in urdfdom."""
         prefix = "Warning: " if self.consequence is Consequence.WARNED else "Error:   "
         return prefix + self.text
 
@@ -105,7 +105,7 @@ class Malformed(ValueError):
         self.line = line
 
     def within(self, text: str) -> Malformed:
-        """Return the same with what the part around it adds."""
+        """Return the fault with the line that the surrounding part adds."""
         return Malformed(*self.texts, text, line=self.line)
 
     def findings(self, consequence: Consequence) -> list[UrdfFinding]:
@@ -127,19 +127,19 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def first(self, name: str) -> Element | None:
-        """The first child of that name."""
+        """Return the first child of that name."""
         return next(self.all(name), None)
 
     def all(self, name: str) -> Iterator[Element]:
-        """All children of that name."""
+        """Return all children of that name."""
         return (child for child in self.children if child.name == name)
 
     def get(self, attribute: str) -> str | None:
-        """An attribute's value; None where it is not given."""
+        """Return an attribute's value; None where it is not given."""
         return self.attributes.get(attribute)
 
     def malformed(self, *texts: str) -> Malformed:
-        """Return what is wrong here."""
+        """Return the fault of this element."""
         return Malformed(*texts, line=self.line)
 
     def needed(self, attribute: str, missing: str) -> str:
@@ -265,7 +265,7 @@ class _XmlReader:
 
     def _close(self, name: str) -> bool:
         if len(self._open) == 1:
-            return False  # nothing is open: tinyxml2 takes this for the end
+            return False  # nothing is open: for tinyxml2 this is the end
         element = self._open.pop()
         if element.name != name:
             where = f"XMLElement name={element.name}"
@@ -314,7 +314,7 @@ class _XmlReader:
 
 
 def _meant(raw: str) -> str:
-    """An attribute's value, with one kind of line end and without references."""
+    """Return an attribute's value with one kind of line end and without references."""
     return REFERENCE.sub(_referred, LINE_END.sub("\n", raw))
 
 

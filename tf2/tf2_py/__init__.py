@@ -1,6 +1,6 @@
-"""A tf2_py for a Python without ROS: the buffer of transforms, and what it raises.
+"""A tf2_py for a Python without ROS: the buffer of transforms, and its exceptions.
 
-ROS's own is made of C++. Installed only where no ROS is sourced.
+That of ROS is made of C++. Installed only where no ROS is sourced.
 """
 
 from .buffer_core import BufferCore

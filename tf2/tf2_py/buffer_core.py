@@ -39,7 +39,7 @@ class BufferCore:
     def __init__(self, cache_time: Any = None, /) -> None:
         length_ns = CACHE_TIME_NS if cache_time is None else _nanoseconds(cache_time, "duration")
         self._frames = Frames(length_ns)
-        # a TransformListener may have a thread of its own
+        # a TransformListener may have a separate thread
         self._lock = threading.RLock()
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
@@ -153,12 +153,12 @@ class BufferCore:
         return Time(nanoseconds=time_ns)
 
     def all_frames_as_string(self) -> str:
-        """Each frame and its parent."""
+        """Return each frame and its parent, as text."""
         with self._lock:
             return self._frames.describe()
 
     def all_frames_as_yaml(self) -> str:
-        """Each frame, its parent, who sends it and how often; `ros2 run tf2_tools` reads it."""
+        """Return each frame, its parent, sender and rate; `ros2 run tf2_tools` reads it."""
         with self._lock:
             frames = self._frames
             if not frames.caches:
@@ -189,7 +189,7 @@ class BufferCore:
         return cache.latest()[0] if cache is not None else 0
 
     def _check_frame(self, where: str, frame: str) -> None:
-        """Raise what a lookup ends in that asks for a frame with this name."""
+        """Raise the exception of a lookup if there is no frame with this name."""
         if reason := _cannot_be(frame):
             raise InvalidArgumentException(
                 f'Invalid argument "{frame}" passed to {where} - {reason}'
@@ -200,7 +200,7 @@ class BufferCore:
     def _first_problem(
         self, names: dict[str, str], ways: list[tuple[str, str, int]]
     ) -> tuple[int, str]:
-        """Why one of several lookups would fail; the words differ from those of the lookup."""
+        """Return why one of several lookups would fail, in other words than the lookup."""
         for argument, frame in names.items():
             unknown = "" if frame in self._frames.caches else "frame does not exist"
             if reason := _cannot_be(frame) or unknown:
@@ -215,21 +215,21 @@ class BufferCore:
 
 
 def _cannot_be(frame: str) -> str:
-    """Why no frame has this name."""
+    """Return why no frame can have this name; '' where one can."""
     if not frame:
         return "in tf2 frame_ids cannot be empty"
     return "in tf2 frame_ids cannot start with a '/'" if frame.startswith("/") else ""
 
 
 def _check_texts(*texts: Any, first: int = 1) -> None:
-    """Refuse what is no text as a function written in C does."""
+    """Raise TypeError for what is no text, as a function written in C does."""
     for number, text in enumerate(texts, first):
         if not isinstance(text, str):
             raise TypeError(f"argument {number} must be str, not {type(text).__name__}")
 
 
 def _nanoseconds(time: Any, what: str) -> int:
-    """A time or duration of rclpy or of a message."""
+    """Return a time or duration of rclpy or of a message in nanoseconds."""
     if hasattr(time, "sec") and hasattr(time, "nanosec"):
         return int(time.sec) * 10**9 + int(time.nanosec)
     if hasattr(time, "nanoseconds"):
@@ -302,7 +302,7 @@ def _print_lines(level: str, *texts: str) -> None:
 
 
 def _entry(name: str, cache: TimeCache, authority: str) -> str:
-    """Return what `all_frames_as_yaml` has of one frame."""
+    """Return the entry of one frame in `all_frames_as_yaml`."""
     newest_ns, parent = cache.latest()
     oldest_ns = cache.oldest_ns()
     length_ns = newest_ns - oldest_ns

@@ -1,6 +1,6 @@
 """The frames that a buffer knows: their poses over time, and the way from one to another.
 
-A frame has one parent at a time. What is known of it is kept under its own name, so whoever sends a
+A frame has one parent at a time. What is known of it is kept under its name, so whoever sends a
 frame under another parent moves it there. Times are nanoseconds; 0 stands for the latest. What has
 no answer ends in one of tf2's six exceptions, by their names in Python.
 """
@@ -39,7 +39,7 @@ class InvalidArgumentException(TransformException):
 
 
 class TimeoutException(TransformException):
-    """Raised by no lookup: what has not come in time is one of the others."""
+    """Raised by no lookup: a transform that is late raises one of the others."""
 
 
 class FrameSample(NamedTuple):
@@ -146,7 +146,7 @@ class StaticCache(TimeCache):
         return self._samples[0]._replace(stamp_ns=time_ns)
 
     def clear(self) -> None:
-        """Keep it: a static pose stays, whatever the clock does."""
+        """Do nothing: a static pose stays, whatever the clock does."""
 
 
 def seconds(time_ns: int) -> str:
@@ -156,7 +156,7 @@ def seconds(time_ns: int) -> str:
 
 
 class Frames:
-    """All frames, in the order in which they were first heard of.
+    """All frames, in the order of their first mention.
 
     Args:
         length_ns: for how long poses that change are kept.
@@ -191,7 +191,7 @@ class Frames:
                 cache.clear()
 
     def describe(self) -> str:
-        """A line for each frame that has a parent."""
+        """Return a line for each frame that has a parent."""
         lines = []
         for name, cache in self.caches.items():
             if cache is not None:
@@ -284,7 +284,7 @@ class Frames:
 
 
 def _product(poses: list[FramePose]) -> FramePose:
-    """The pose of the first frame of a way in the last."""
+    """Return the pose of the first frame of a path in the last."""
     whole = IDENTITY
     for pose in poses:
         whole = compose(pose, whole)
@@ -292,7 +292,7 @@ def _product(poses: list[FramePose]) -> FramePose:
 
 
 def _earliest(found: list[tuple[int, str]]) -> int:
-    """The earliest stamp; a static pose has none."""
+    """Return the earliest stamp; a static pose has none."""
     return min((stamp_ns for stamp_ns, _ in found if stamp_ns), default=0)
 
 

@@ -1,6 +1,6 @@
 """Rotations as unit quaternions (x, y, z, w), and poses: a rotation, then a translation [m].
 
-A pose of a child frame in its parent takes the coordinates of a point in the child to those in the
+A pose of a child frame in its parent maps the coordinates of a point in the child to those in the
 parent.
 """
 

@@ -1,9 +1,8 @@
-"""A tf2_ros for a Python without ROS: transforms sent, heard and looked up.
+"""A tf2_ros for a Python without ROS: sends, receives and looks up transforms.
 
-What ROS's own has but for `BufferClient`, which asks a buffer in another process. Names that are
-not tf2's stand here too because they do there, and programs import them from here:
-`from tf2_ros import TransformBroadcaster, TransformStamped`. Installed only where no ROS is
-sourced.
+It has all but `BufferClient`, which asks a buffer in another process. ROS's module also has names
+that are not tf2's, which programs import from it: `from tf2_ros import TransformBroadcaster,
+TransformStamped`. Installed only where no ROS is sourced.
 """
 
 # ruff: noqa: F401

@@ -29,7 +29,7 @@ Lookup = Callable[[], TransformStamped]
 
 
 class Buffer(BufferCore, BufferInterface):
-    """The transforms that a TransformListener hears.
+    """The transforms that a TransformListener receives.
 
     Args:
         cache_time: for how long transforms are kept; 10 s.

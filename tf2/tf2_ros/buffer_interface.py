@@ -1,4 +1,4 @@
-"""`BufferInterface`: transforms messages from one frame to another, whatever knows the frames.
+"""`BufferInterface`: transforms messages between the frames of any buffer.
 
 Other packages register the function for each type, tf2_geometry_msgs first of all.
 """
@@ -100,16 +100,16 @@ def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:  # noqa: N802
 
 
 class TransformRegistration:
-    """Type -> the function that takes an object and a transform, and returns it transformed."""
+    """Type -> the function (object, transform) -> the object, transformed."""
 
     _functions: ClassVar[dict[Any, Callable[..., Any]]] = {}
 
     def print_me(self) -> None:
-        """Print what is registered."""
+        """Print the registered types."""
         print(self._functions)
 
     def add(self, key: Any, callback: Callable[..., Any]) -> None:
-        """Say how a type is transformed."""
+        """Register how a type is transformed."""
         self._functions[key] = callback
 
     def get(self, key: Any) -> Callable[..., Any]:
@@ -125,15 +125,15 @@ class ConvertRegistration:
     _convert: ClassVar[dict[Any, Callable[..., Any]]] = {}
 
     def add_from_msg(self, key: Any, callback: Callable[..., Any]) -> None:
-        """Say how a type is made of a message."""
+        """Register how a type is made of a message."""
         self._from_msg[key] = callback
 
     def add_to_msg(self, key: Any, callback: Callable[..., Any]) -> None:
-        """Say how a type becomes a message."""
+        """Register how a type becomes a message."""
         self._to_msg[key] = callback
 
     def add_convert(self, key: Any, callback: Callable[..., Any]) -> None:
-        """Say how one type becomes another; `key` is the two."""
+        """Register how one type becomes another; `key` is the two."""
         self._convert[key] = callback
 
     def get_from_msg(self, key: Any) -> Callable[..., Any]:

@@ -31,7 +31,7 @@ class TransformBroadcaster:
 
 
 def as_list(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
-    """One transform or several, as a list."""
+    """Return one transform or several as a list."""
     if isinstance(transform, list):
         return transform
     return list(transform) if isinstance(transform, Iterable) else [transform]

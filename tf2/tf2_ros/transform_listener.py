@@ -1,4 +1,4 @@
-"""`TransformListener`: what comes on /tf and /tf_static goes into a buffer."""
+"""`TransformListener`: puts the transforms of /tf and /tf_static into a buffer."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class TransformListener:
     Args:
         buffer: gets what is heard.
         node: what listens.
-        spin_thread: spin the node in a thread of its own.
+        spin_thread: spin the node in a separate thread.
         qos, static_qos: a quality of service, or the depth of one.
         tf_topic, tf_static_topic: where to listen.
     """
@@ -76,12 +76,12 @@ class TransformListener:
                 self.node.destroy_subscription(getattr(self, subscription))
 
     def callback(self, data: TFMessage) -> None:
-        """Hear of frames that move."""
+        """Store transforms of moving frames."""
         for transform in data.transforms:
             self.buffer.set_transform(transform, AUTHORITY)
 
     def static_callback(self, data: TFMessage) -> None:
-        """Hear of frames that never move."""
+        """Store transforms of static frames."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, AUTHORITY)
 

@@ -1,1 +1,1 @@
-"""The turtles in a browser: a page, what it is fed with, and the way from it to the ROS graph."""
+"""The turtles in a browser: a page, its feed, and its connection to the ROS graph."""

@@ -1,4 +1,4 @@
-"""What viewers are sent of an arena: the whole picture once, then strokes and moves.
+"""The news of an arena for viewers: the whole picture once, then strokes and moves.
 
 Runs in the simulator's thread, after each tick, and delivers plain data; it never waits. While
 nobody watches, nothing is collected.
@@ -55,11 +55,11 @@ class Source(Protocol):
     is_watched: bool
 
     def ask(self, viewer: object) -> None:
-        """Have all of the arena delivered for a viewer; from any thread."""
+        """Request all of the arena for a viewer; from any thread."""
 
 
 class Feed:
-    """A `Source` that collects what happens in an arena.
+    """A `Source` that collects the changes of an arena.
 
     Args:
         deliver: called in the simulator's thread.
@@ -80,11 +80,11 @@ class Feed:
         arena.listeners.append(self._on_notice)
 
     def ask(self, viewer: object) -> None:
-        """Have all of the arena delivered for a viewer after the next tick; from any thread."""
+        """Request all of the arena for a viewer, after the next tick; from any thread."""
         self._asking.append(viewer)
 
     def after_tick(self, readings: Mapping[str, Reading]) -> None:
-        """Deliver what there is; `readings` is what the tick has published."""
+        """Deliver the news up to now; `readings` is what the tick has published."""
         canvas = self._arena.canvas
         if not (self.is_watched or self._asking):
             if canvas.watcher is not None:
@@ -133,7 +133,7 @@ class Feed:
 
 
 def _row(turtle: Turtle, reading: Reading | None) -> Mapping[str, Any]:
-    """Return a turtle as the page gets it: where to draw it [px, rad], and what it publishes."""
+    """Return a turtle as the page gets it: its place [px, rad], and its published values."""
     pen = turtle.pen
     row: dict[str, Any] = {
         "name": turtle.name,

@@ -1,8 +1,8 @@
-"""The ROS graph for viewers of the page: a node that does what they ask for.
+"""The ROS graph for viewers of the page: a node that publishes and calls for them.
 
-The simulator's node serves the turtles and nothing else; what viewers publish and call goes the way
-that every program's messages go, so that `ros2 topic echo` shows it as well. The node's name begins
-with an underscore: `ros2 node list` leaves it out.
+The simulator's node serves only the turtles. Messages and calls of viewers go over the graph like
+those of any program, so that `ros2 topic echo` shows them as well. The node's name begins with an
+underscore: `ros2 node list` leaves it out.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Graph:
     # Topics -----------------------------------------------------------------------------------
 
     def subscribe(self, topic: str, type_name: str, on_message: OnMessage) -> Subscription:
-        """Subscribe to a topic; '' as type takes the one that it has.
+        """Subscribe to a topic; '' as type means the type that it has.
 
         Raises:
             Rejected: there is no such topic, or no such type.
@@ -87,7 +87,7 @@ class Graph:
         )
 
     def advertise(self, topic: str, type_name: str) -> Publisher:
-        """Return a publisher; '' as type takes the one that the topic has.
+        """Return a publisher; '' as type means the type that the topic has.
 
         Raises:
             Rejected: there is no such topic, or no such type.
@@ -98,7 +98,7 @@ class Graph:
     # Services and actions ---------------------------------------------------------------------
 
     async def call(self, service: str, type_name: str, args: object) -> dict[str, Any]:
-        """Call a service and return what it answers; '' as type takes the one that it has.
+        """Call a service and return its answer; '' as type means the type that it has.
 
         Raises:
             Rejected: it cannot be called so.
@@ -169,20 +169,20 @@ class Graph:
         return _shown(self.node.get_service_names_and_types())
 
     def publishers(self, topic: str) -> list[str]:
-        """The full names of the nodes that publish on a topic."""
+        """Return the full names of the nodes that publish on a topic."""
         return _names(self.node.get_publishers_info_by_topic(topic))
 
     def subscribers(self, topic: str) -> list[str]:
-        """The full names of the nodes that subscribe to a topic."""
+        """Return the full names of the nodes that subscribe to a topic."""
         return _names(self.node.get_subscriptions_info_by_topic(topic))
 
     def topic_type(self, topic: str) -> str:
-        """The type of a topic; Rejected where nobody has it."""
+        """Return the type of a topic; Rejected where there is no such topic."""
         missing = Rejected("there is no topic {name}", name=f"{topic!r:.80}")
         return _type(topic, self.node.get_topic_names_and_types(), missing)
 
     def service_type(self, service: str) -> str:
-        """The type of a service; Rejected where nobody has it."""
+        """Return the type of a service; Rejected where there is no such service."""
         missing = Rejected("there is no service {name}", name=f"{service!r:.80}")
         return _type(service, self.node.get_service_names_and_types(), missing)
 
@@ -206,13 +206,13 @@ def _shown(there: list[tuple[str, list[str]]]) -> dict[str, str]:
 
 
 def _names(endpoints: list[Any]) -> list[str]:
-    """The nodes of endpoints, but those of viewers."""
+    """Return the names of the endpoints' nodes, without those of viewers."""
     full = {f"{each.node_namespace.rstrip('/')}/{each.node_name}" for each in endpoints}
     return sorted(name for name in full if "/_" not in name)
 
 
 async def _until(is_ready: Callable[[], bool], otherwise: Rejected) -> None:
-    """Wait until a server is there; the graph needs some time to find it."""
+    """Wait until a server is ready; its discovery takes some time."""
     for _ in range(round(PATIENCE_S / _PAUSE_S)):
         if is_ready():
             return
@@ -221,7 +221,7 @@ async def _until(is_ready: Callable[[], bool], otherwise: Rejected) -> None:
 
 
 async def _result(future: Any) -> Any:
-    """Wait for the result of a future of rclpy's."""
+    """Wait for the result of an rclpy future."""
     while not future.done():
         await asyncio.sleep(_PAUSE_S)
     if (error := future.exception()) is not None:

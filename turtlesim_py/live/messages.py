@@ -1,4 +1,4 @@
-"""ROS messages as JSON and back, as rosbridge has them, and what a type is made of.
+"""Converts ROS messages to rosbridge's JSON and back, and lists the fields of types.
 
 Bytes (`uint8[]`, `byte[]`) are base64 text; what is no finite number is null, since JSON has none.
 """
@@ -23,12 +23,12 @@ _TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
 _BYTES = frozenset(("uint8", "octet", "byte", "char"))
 _FLOATS = frozenset(("float", "double", "float32", "float64", "long double"))
 _INTS = {f"{sign}int{bits}": (sign, bits) for sign in ("", "u") for bits in (8, 16, 32, 64)}
-#: A list that a stranger sends may have so many items.
+#: A list from a viewer may have so many items.
 MOST_ITEMS = 100_000
 
 
 class Rejected(ValueError):
-    """A viewer asks for what cannot be done; the text, which is the answer, explains why.
+    """A request of a viewer cannot be served; the text, which is the answer, explains why.
 
     Args:
         key: the text in English, with names in braces for its values; the page's catalogues have
@@ -81,7 +81,7 @@ def _is_of_interfaces(package: str, kind: str) -> bool:
 
 
 def fields_of(message_type: Any) -> list[Field]:
-    """The fields of a message type, in order."""
+    """Return the fields of a message type, in order."""
     fields = []
     for name, text in message_type.get_fields_and_field_types().items():
         if match := _ARRAY.fullmatch(text):
@@ -144,7 +144,7 @@ def from_json(message_type: Any, content: object, where: str = "") -> Any:
             path = f"{where}.{name}" if where else name
             try:
                 setattr(message, name, _read_field(value, fields[name], path))
-            except AssertionError:  # ROS's own check: a bound of the type
+            except AssertionError:  # of ROS's setters: a bound of the type
                 raise _misfit(
                     "{field}: {found} is not what {kind} holds", path, value, kind=fields[name].kind
                 ) from None

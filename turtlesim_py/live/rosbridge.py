@@ -1,4 +1,4 @@
-"""What a viewer may ask for, as JSON: a part of the rosbridge protocol, version 2.
+"""The requests of viewers, as JSON: a part of the rosbridge protocol, version 2.
 
     advertise, unadvertise, publish, subscribe, unsubscribe, call_service,
     send_action_goal, cancel_action_goal
@@ -37,7 +37,7 @@ _MAYBE_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 
 @dataclass
 class Goal:
-    """A goal that has not ended: what the viewer called it, and whether it shall end."""
+    """A goal that has not ended: the viewer's name for it, and whether to cancel it."""
 
     name: str
     is_cancelled: bool = False
@@ -208,7 +208,7 @@ class Session:
                 goal.is_cancelled = True
 
     def _begin(self, work: Coroutine[Any, Any, None], goal: Goal | None = None) -> None:
-        """Let work that takes time go on beside the next frames."""
+        """Start work that runs beside the next frames."""
         try:
             _check_room(self._tasks)
         except Rejected:
@@ -254,14 +254,14 @@ def _refuse(constant: str) -> Any:
 
 
 def _why(error: Exception, name: str) -> dict[str, Any]:
-    """The answer to a frame that cannot be followed: its text, of this name, and its sentence."""
+    """Return the answer to a refused frame: its text, by this name, and its sentence."""
     if isinstance(error, Rejected):
         return {name: str(error), "sentence": {"key": error.key, "values": error.values}}
     return {name: f"{type(error).__name__}: {error!s:.200}"}
 
 
 def _id_of(frame: Mapping[str, Any]) -> dict[str, Any]:
-    """The id that an answer repeats, where a frame has one."""
+    """Return the id that an answer repeats, where a frame has one."""
     return {} if frame.get("id") is None else {"id": frame["id"]}
 
 
@@ -289,7 +289,7 @@ def _is_rosapi(service: str) -> bool:
 
 
 def _rosapi(graph: Graph, service: str, args: object) -> dict[str, Any]:
-    """Answer what there is in the graph, as rosapi's services of these names do."""
+    """Answer a query of the graph, as rosapi's service of this name does."""
     asked = args if isinstance(args, dict) else {}
     match service.rpartition("/")[2]:
         case "topics":

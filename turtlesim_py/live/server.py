@@ -1,4 +1,4 @@
-"""Serves the page and its viewers, in a thread of its own.
+"""Serves the page and its viewers, in a separate thread.
 
 Nothing here makes the simulator wait: what it delivers is plain data, put on this thread's queue,
 and a viewer that cannot follow loses changes, and gets the whole picture when it can follow again.
@@ -50,13 +50,13 @@ class Settings:
     """Where and for whom the page is served.
 
     Attributes:
-        port: 0 takes any that is free.
+        port: 0 for any free one.
         host: the address to listen at.
         is_read_only: whether viewers can only watch.
         token: '' makes one.
         needs_token: whether nobody comes in without; elsewhere than at 127.0.0.1 nobody does.
         has_graph: whether viewers may see the topics and services of a ROS graph.
-        language: what the page speaks; '' for what a viewer's browser prefers.
+        language: of the page; '' for the one that a viewer's browser prefers.
     """
 
     port: int
@@ -81,7 +81,7 @@ class _Viewer:
         return self._connection.transport.get_write_buffer_size() > MOST_WAITING
 
     def send(self, content: str | Mapping[str, Any]) -> bool:
-        """Send text or JSON, unless too much is unread already; whether it was sent."""
+        """Send text or JSON, unless too much is unread already; return whether it was sent."""
         if self.is_slow:
             self.is_behind = True
             return False
@@ -94,7 +94,7 @@ class LiveServer:
     """The page and its viewers.
 
     Args:
-        about: what the page has to know of the node: its name, its namespace, its messages.
+        about: the node, for the page: its name, its namespace, its package of messages.
 
     Attributes:
         address: where the page is; with the token where nobody comes in without.
@@ -123,10 +123,10 @@ class LiveServer:
         self._thread = threading.Thread(target=self._run, name="live", daemon=True)
 
     def start(self, source: Source) -> None:
-        """Listen, and show what a source delivers.
+        """Listen, and show the news of a source.
 
         Raises:
-            OSError: that cannot be, as where another one listens.
+            OSError: that is not possible, as where the port is in use.
         """
         self._source = source
         self._thread.start()
@@ -135,7 +135,7 @@ class LiveServer:
             raise self._failure
 
     def stop(self) -> None:
-        """Send everybody away, and end the thread."""
+        """Disconnect all viewers, and end the thread."""
         if self._failure is None and self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._end.set)
             self._thread.join(PATIENCE_S)
@@ -250,7 +250,7 @@ class LiveServer:
                 self._catch_up(viewer)
 
     def _catch_up(self, viewer: _Viewer) -> None:
-        """Ask for all of the arena as soon as the viewer has read what was sent."""
+        """Request all of the arena as soon as the viewer has read all that was sent."""
         if viewer not in self._watching:
             return
         if viewer.is_slow:

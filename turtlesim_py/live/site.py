@@ -1,8 +1,8 @@
-"""The page as a web site: what a request gets, and who is let in.
+"""The page as a web site: the answers to requests, and which requests are let in.
 
-A page of somebody else's in the user's own browser must not reach a simulator on the user's own
-machine: browsers say in `Origin` whose page asks, and in `Host` by which name. A name that leads to
-127.0.0.1 for a while (DNS rebinding) is one in `Host` that is not this machine's.
+An external page in the user's browser must not reach a simulator on the user's machine. Browsers
+send the origin of the requesting page in `Origin`, and the requested name in `Host`. With DNS
+rebinding, `Host` has a name that is not this machine's, although it resolves to 127.0.0.1.
 """
 
 from __future__ import annotations
@@ -58,9 +58,9 @@ class Site:
             path = urlsplit(request.path).path
         except ValueError:  # as //[x]
             return plain(404, "There is no such page.")
-        # behind a proxy the page may lie below a prefix that is handed on, or not
+        # behind a proxy the page may have a prefix, which the proxy keeps or removes
         name = path.rpartition("/")[2] or "index.html"
-        # the page's own parts are no secret, and are asked for without what the address says
+        # the parts of the page are no secret, and are requested without the token of the address
         if is_viewer or name == "index.html":
             refusal = self.refusal(request.path, headers)
             if refusal:
@@ -118,7 +118,7 @@ def is_loopback(address: str) -> bool:
 
 
 def _sprites() -> bytes:
-    """Name -> the pixels of a turtle's picture, RGBA, row after row, in base64."""
+    """Serialise name -> the pixels of a turtle's picture, RGBA, row after row, in base64."""
     pictures = {
         name: base64.b64encode(picture.sprite(name).tobytes()).decode() for name in picture.NAMES
     }

@@ -39,7 +39,7 @@ ANSWERED_WITHIN = 125
 
 
 class Square:
-    """Decides what to do next: ahead, stop, turn, stop, and so on.
+    """Decides the next command: ahead, stop, turn, stop, and so on.
 
     Attributes:
         corners: how many sides it has finished.

@@ -1,4 +1,4 @@
-"""Let one turtle do what another does: the original's mimic.
+"""Lets one turtle copy another: the original's mimic.
 
 mimic --ros-args -r input/pose:=turtle1/pose -r output/cmd_vel:=turtle2/cmd_vel
 """

@@ -75,7 +75,7 @@ class Keyboard:
     """A context in which a terminal gives every key at once and shows none of them.
 
     Ctrl-Z gives the terminal back for the pause. SIGHUP and SIGQUIT, which would end the program
-    on the spot, only close the keyboard; SIGINT and SIGTERM are the program's own affair.
+    on the spot, only close the keyboard; SIGINT and SIGTERM are left to the program.
 
     Attributes:
         closed: nothing more will come.
@@ -100,14 +100,14 @@ class Keyboard:
             signal.SIGHUP: self._close,
             signal.SIGQUIT: self._close,
             signal.SIGTSTP: self._pause,
-            signal.SIGCONT: self._take_over,
+            signal.SIGCONT: self._acquire,
         }
         self._handlers = {number: signal.signal(number, do) for number, do in handlers.items()}
-        self._take_over()
+        self._acquire()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._give_back()
+        self._release()
         for number, handler in self._handlers.items():
             signal.signal(number, handler)
 
@@ -138,20 +138,20 @@ class Keyboard:
             self.closed = True  # the terminal is gone
         return read
 
-    def _take_over(self, *_: object) -> None:
+    def _acquire(self, *_: object) -> None:
         if self._is_in_front():
             ours = termios.tcgetattr(self._file)
             ours[3] &= ~(termios.ICANON | termios.ECHO)  # Ctrl-C and Ctrl-Z stay signals
             termios.tcsetattr(self._file, termios.TCSANOW, ours)
             self._is_ours = True
 
-    def _give_back(self) -> None:
+    def _release(self) -> None:
         if self._is_ours and self._is_in_front():
             termios.tcsetattr(self._file, termios.TCSANOW, self._found)
         self._is_ours = False
 
     def _is_in_front(self) -> bool:
-        """Whether the terminal is ours: in the background it is a shell's or another program's."""
+        """Whether this program has the terminal, which it has not in the background."""
         if not os.isatty(self._file):
             return False  # it is gone
         try:
@@ -163,11 +163,11 @@ class Keyboard:
         self.closed = True
 
     def _pause(self, number: int, _: object) -> None:
-        self._give_back()
+        self._release()
         handler = signal.signal(number, signal.SIG_DFL)
         signal.raise_signal(number)  # here the program stands still
         signal.signal(number, handler)
-        self._take_over()
+        self._acquire()
 
 
 class TeleopTurtle(RclcppNode):
@@ -183,7 +183,7 @@ class TeleopTurtle(RclcppNode):
         self._goal: Any = None  # the future of its handle
 
     def press(self, key: str) -> None:
-        """Do what a key stands for; nothing for the others."""
+        """Act on a key; keys without a meaning are ignored."""
         if key in DRIVE:
             ahead, left = DRIVE[key]
             twist = Twist()

@@ -32,7 +32,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _free_port() -> int:
-    """The usual one; 0 for any where somebody has that."""
+    """Return the usual port; 0, for any, where it is in use."""
     with socket.socket() as tried:
         tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -1,1 +1,1 @@
-"""The ROS face of the world: node, topics, services, action, and what makes it tick."""
+"""The ROS side of the simulator: node, topics, services, action, and its clock."""

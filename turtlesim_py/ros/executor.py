@@ -32,9 +32,9 @@ class Arrivals:
     """Counts what arrives, so that entities are polled only when something has.
 
     To poll all entities of a node is the dearest part of a tick in which nothing arrives, and
-    mostly nothing does. rcl takes a C function that the middleware's threads call, with a pointer
+    mostly nothing does. rcl accepts a C function that the middleware's threads call, with a pointer
     that we choose. libc's `sem_post(semaphore)` fits: where nobody waits for the semaphore it only
-    counts. A Python function needs the interpreter's lock, while the middleware holds its own.
+    counts. A Python function needs the interpreter's lock, while the middleware holds a lock.
 
     Raises:
         OSError: the libraries of rcl cannot be found by their names.
@@ -84,7 +84,7 @@ class TickExecutor:
     that is what they `wake` when an entity appears or disappears.
 
     Args:
-        on_failure: called with the exception of a callback, or of what takes a message for it;
+        on_failure: called with the exception of a callback, or of the read of its message;
             without one, it is raised in `spin_some`.
     """
 
@@ -111,7 +111,7 @@ class TickExecutor:
         self.wake()
 
     def spin_some(self) -> None:
-        """Take at most one message or request from every entity that has one.
+        """Serve at most one message or request of every entity that has one.
 
         In rclcpp's order: subscriptions, services, waitables (actions and QoS events), those of a
         kind as they were created. A burst of commands is therefore consumed one a tick, as in the
@@ -133,23 +133,23 @@ class TickExecutor:
         # What is not in these dictionaries belongs to an action.
         for pointer in subscriptions:
             if pointer in self._subscriptions:
-                self._serve(_take_message, self._subscriptions[pointer])
+                self._guard(_serve_message, self._subscriptions[pointer])
         for pointer in services:
             if pointer in self._services:
-                self._serve(_take_request, self._services[pointer])
+                self._guard(_serve_request, self._services[pointer])
         for waitable in ready:
-            self._serve(_take_data, waitable)
+            self._guard(_serve_waitable, waitable)
 
-    def _serve(self, take: Callable[[Any], None], entity: Any) -> None:
+    def _guard(self, serve: Callable[[Any], None], entity: Any) -> None:
         try:
-            take(entity)
+            serve(entity)
         except Exception as error:
             if self._on_failure is None:
                 raise
             self._on_failure(_name(entity), error)
 
     def _something_may_have_arrived(self) -> bool:
-        # after a poll that found something: it takes one of each only, there may be more
+        # after a poll that found something: only one of each was served, there may be more
         return self._arrivals is None or self._found_something or self._arrivals.any_new()
 
     def wait_for(self, topic: str, patience_ns: int) -> None:
@@ -163,20 +163,20 @@ class TickExecutor:
                 wait_set.clear_entities()
                 wait_set.add_subscription(subscription.handle)
                 wait_set.wait(patience_ns)
-                self._serve(_take_message, subscription)
+                self._guard(_serve_message, subscription)
                 return
 
     def wake(self) -> None:
-        """The node's entities have changed."""
+        """Note that the node's entities have changed."""
         self._wait_set = None
         self._found_something = True
 
     def add_node(self, node: Node) -> None:
-        """Called by the node that sets this executor as its own."""
+        """Called by the node when this executor becomes its executor."""
         assert node is self._node, "this executor serves one node"
 
     def _polled(self, waitables: list[Waitable]) -> Any:
-        """A wait set that knows what is ready now."""
+        """Return a wait set that knows what is ready now."""
         wait_set = self._wait_set
         # rcl forgets, in each wait, what was not ready
         wait_set.clear_entities()
@@ -223,17 +223,17 @@ def _name(entity: Any) -> str:
 # What a callback of the same tick has destroyed raises InvalidHandle and is left alone.
 
 
-def _take_message(subscription: Subscription) -> None:
+def _serve_message(subscription: Subscription) -> None:
     try:
         with subscription.handle:
-            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+            received = subscription.handle.take_message(subscription.msg_type, subscription.raw)
     except InvalidHandle:
         return
-    if taken is not None:
-        subscription.callback(taken[0])
+    if received is not None:
+        subscription.callback(received[0])
 
 
-def _take_request(service: Service) -> None:
+def _serve_request(service: Service) -> None:
     try:
         with service.handle:
             request, header = service.handle.service_take_request(service.srv_type.Request)
@@ -248,7 +248,7 @@ def _take_request(service: Service) -> None:
                 service.send_response(response, header)
 
 
-def _take_data(waitable: Waitable) -> None:
+def _serve_waitable(waitable: Waitable) -> None:
     try:
         with waitable:
             data = waitable.take_data()

@@ -32,7 +32,7 @@ class Interfaces:
 
     @classmethod
     def of(cls, package: str) -> Self:
-        """Import them.
+        """Import the modules of a package.
 
         Raises:
             ModuleNotFoundError: the package is not installed.
@@ -41,18 +41,18 @@ class Interfaces:
 
 
 def installed() -> tuple[str, ...]:
-    """Which of the packages can be imported here; nothing of them is run to find out."""
+    """Return which of the packages can be imported here, without running any of them."""
     specs = ((name, find_spec(name)) for name in NAMES)
     # without an origin it is no more than a folder of that name
     return tuple(name for name, spec in specs if spec is not None and spec.origin)
 
 
 def of_release(ros_distro: str) -> str:
-    """The package's name in a ROS 2 release, which is named as in `ROS_DISTRO`."""
+    """Return the package's name in a ROS 2 release, which is named as in `ROS_DISTRO`."""
     return NEWER if ros_distro >= FIRST_OF_NEWER else OLDER
 
 
 def usual() -> str:
-    """Which to serve where nobody chooses: that of the sourced ROS, else the older."""
+    """Return the default package: that of the sourced ROS, else the older."""
     name = of_release(os.environ.get("ROS_DISTRO", ""))
     return name if name in installed() else OLDER

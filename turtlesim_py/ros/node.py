@@ -1,4 +1,4 @@
-"""The ROS face of an arena: topics, services, action, parameters, logs."""
+"""The node of an arena: topics, services, action, parameters, logs."""
 
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ parameters:
 #: The longest name that rotate_absolute's hidden services add to a turtle's.
 LONGEST_SUFFIX = "/rotate_absolute/_action/cancel_goal"
 #: So much of an exception's text is logged [characters]: it may quote a whole request.
-LONGEST_COMPLAINT = 500
+LONGEST_REASON = 500
 #: How the original listens to changes of parameters.
 PARAMETER_EVENTS_QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class TurtlesimNode(RclcppNode):
-    """The node `/turtlesim`: owns an arena and serves it; somebody else calls `tick`.
+    """The node `/turtlesim`: owns an arena and serves it; its user calls `tick`.
 
     Args:
         arguments: ROS arguments (`--ros-args ...`) of this node alone; the global ones count too.
@@ -178,9 +178,9 @@ class TurtlesimNode(RclcppNode):
         self.arena.now_ns = now_ns + self._set_back_ns
 
     def on_failure(self, what: str, error: Exception) -> None:
-        """A message or request could not be served: that ends nothing."""
-        found = f"{type(error).__name__}: {error}"
-        self.get_logger().error(f"Cannot serve [{what}]: {found[:LONGEST_COMPLAINT]}")
+        """Log that a message or request could not be served; the node goes on."""
+        reason = f"{type(error).__name__}: {error}"
+        self.get_logger().error(f"Cannot serve [{what}]: {reason[:LONGEST_REASON]}")
 
     # Parameters -------------------------------------------------------------------------------
 
@@ -238,7 +238,7 @@ class TurtlesimNode(RclcppNode):
     # Helpers ----------------------------------------------------------------------------------
 
     def _problem_with_name(self, name: str) -> str:
-        """Why no topics can carry this turtle name; '' where they can."""
+        """Return why no topic can have this turtle name; '' where it can."""
         if not name:
             return ""
         try:

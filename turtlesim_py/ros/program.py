@@ -1,4 +1,4 @@
-"""What every program of this package does around its node, and what makes a simulator tick."""
+"""Runs a node as a program, and lets a simulator tick by a clock."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ AnyNode = TypeVar("AnyNode", bound=Node)
 
 #: Exit code where the arguments cannot be used.
 UNUSABLE = 2
-#: What the ROS clock has jumped ahead beyond this is not made up for [ns]: no command lives longer.
+#: Longer jumps ahead of the ROS clock are not made up for [ns]: no command lives longer.
 LONGEST_CATCH_UP_NS = 1_000_000_000
 
 
@@ -71,9 +71,9 @@ def run(
 
 
 def asks_for_help(argv: list[str]) -> bool:
-    """Whether a word of the program's own, not one of ROS's, asks for help."""
-    own = argv[1 : argv.index("--ros-args")] if "--ros-args" in argv else argv[1:]
-    return not {"-h", "--help"}.isdisjoint(own)
+    """Whether an argument asks for help; those behind --ros-args do not count."""
+    arguments = argv[1 : argv.index("--ros-args")] if "--ros-args" in argv else argv[1:]
+    return not {"-h", "--help"}.isdisjoint(arguments)
 
 
 def spin(node: Node, stopped: Callable[[], bool]) -> None:

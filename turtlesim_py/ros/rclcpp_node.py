@@ -1,4 +1,4 @@
-"""A node with the messages of rclcpp's nodes, where rclpy words the same thing differently."""
+"""A node with rclcpp's texts for refusals and warnings, where rclpy's differ."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ NO_MESSAGES = "No messages will be sent to it. Last incompatible policy: {}_QOS_
 TYPES = frozenset(kind.value for kind in Parameter.Type)
 UNKNOWN_TYPE = "Unknown type: {}"
 
-#: What a value of a type looks like on the command line.
+#: A type -> how its values are written on the command line.
 IN_WORDS: dict[type, str] = {
     bool: "true or false",
     int: "a whole number",
@@ -44,7 +44,7 @@ IN_WORDS: dict[type, str] = {
 
 
 class UnusableStart(Exception):
-    """A program cannot start with what it was given; the text explains why."""
+    """A program cannot start with its arguments or parameters; the text explains why."""
 
 
 class UnusableParameter(UnusableStart):
@@ -59,7 +59,7 @@ class RclcppNode(Node):
 
     def __init__(self, name: str, **more: Any) -> None:
         super().__init__(name, **more)
-        # rclpy's own raise an exception over a value of a type that ROS does not have
+        # those of rclpy raise an exception for a value of a type that ROS does not have
         setters = {SetParameters: self._on_set, SetParametersAtomically: self._on_set_atomically}
         for service in self.services:
             service.callback = setters.get(service.srv_type, service.callback)
@@ -156,11 +156,11 @@ class RclcppNode(Node):
     # Quality of service -----------------------------------------------------------------------
 
     def warn_subscribers(self, topic: str) -> PublisherEventCallbacks:
-        """For a publisher: it warns of subscribers that it cannot serve."""
+        """Return callbacks by which a publisher warns of subscribers that it cannot serve."""
         return PublisherEventCallbacks(incompatible_qos=self._warner(REQUESTED, topic))
 
     def warn_publishers(self, topic: str) -> SubscriptionEventCallbacks:
-        """For a subscription: it warns of publishers from which it gets nothing."""
+        """Return callbacks by which a subscription warns of publishers that cannot serve it."""
         return SubscriptionEventCallbacks(incompatible_qos=self._warner(OFFERED, topic))
 
     def _warner(self, text: str, topic: str) -> Callable[[Any], None]:
@@ -174,7 +174,7 @@ class RclcppNode(Node):
 
 
 def _refusal(parameter: Parameter, descriptor: ParameterDescriptor, check_read_only: bool) -> str:
-    """Why a parameter is not set; rclcpp asks in this order."""
+    """Return why a parameter is not set; rclcpp checks in this order."""
     if check_read_only and descriptor.read_only:
         return f"parameter '{parameter.name}' cannot be set because it is read-only"
     if parameter.type_ == Parameter.Type.NOT_SET:

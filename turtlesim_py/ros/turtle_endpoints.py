@@ -31,16 +31,16 @@ RESULT_TIMEOUT_S = 10
 
 
 def pose_bytes(pose: Pose) -> bytes:
-    """A pose in CDR."""
+    """Serialise a pose as CDR."""
     return POSE_BYTES.pack(CDR, *pose)
 
 
 class RotateAction:
-    """Passes goals and cancel requests on to the arena, and what comes of them to the clients.
+    """Passes goals and cancel requests on to the arena, and feedback and results to the clients.
 
-    Every request is accepted, and every goal where nobody says otherwise. In rclpy an execute
-    callback turns a goal into a result; here the world does, in the middle of its ticks, so there
-    is no such callback, and `finish` sets the state and the waiting result itself.
+    Every cancel request is accepted, and every goal that `accepts` does not refuse. In rclpy an
+    execute callback turns a goal into a result; here the world does, in the middle of its ticks, so
+    there is no such callback, and `finish` sets the state and the waiting result itself.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class RotateAction:
         turtle: str,
         accepts: Callable[[], bool],
     ) -> None:
-        """`accepts` is asked before each goal."""
+        """`accepts` is called before each goal."""
         self._type = interfaces.action.RotateAbsolute
         self._arena = arena
         self._turtle = turtle
@@ -71,17 +71,17 @@ class RotateAction:
 
     @property
     def known(self) -> int:
-        """How many goals are known: what runs, and what has ended and can still be asked for."""
+        """The number of known goals: running, or ended and with a result that can be requested."""
         return len(self._server._goal_handles)
 
     def feedback(self, event: GoalFeedback) -> None:
-        """Tell a goal's client how far it still is."""
+        """Send a goal's client the remaining angle."""
         message = self._type.Feedback(remaining=event.remaining_rad)
         handle, _ = self._running[_key(event)]
         handle.publish_feedback(message)
 
     def finish(self, event: GoalResult) -> None:
-        """End a goal and send its result to those who wait for it."""
+        """End a goal and send its result to waiting clients."""
         handle, awaited = self._running.pop(_key(event))
         if event.status == "SUCCEEDED":
             handle.succeed()
@@ -97,7 +97,7 @@ class RotateAction:
         awaited.set_result(response)
 
     def destroy(self) -> None:
-        """Take the action off the graph."""
+        """Remove the action from the graph."""
         self._server.destroy()
 
     def _on_goal(self, handle: ServerGoalHandle) -> None:
@@ -117,7 +117,7 @@ def _key(event: GoalFeedback | GoalResult) -> bytes:
 
 
 class TurtleEndpoints:
-    """What the graph sees of the turtle `name`, below the topic prefix of the same name.
+    """The endpoints of the turtle `name`, below the topic prefix of the same name.
 
     Attributes:
         pose_publisher: of `pose`.
@@ -161,7 +161,7 @@ class TurtleEndpoints:
         self._color_publisher.publish(COLOR_BYTES.pack(CDR, *reading.color))
 
     def destroy(self) -> None:
-        """Take everything off the graph."""
+        """Remove everything from the graph."""
         self.action.destroy()
         for service in self._services:
             self._node.destroy_service(service)

@@ -37,7 +37,7 @@ SWITCH_S = 0.0005
 
 
 def declare_parameters(node: RclcppNode) -> None:
-    """Declare what a `Window` on this node reads."""
+    """Declare the parameters of a `Window` on this node."""
     node.declare(
         "image_rate",
         DEFAULT_RATE_HZ,
@@ -48,7 +48,7 @@ def declare_parameters(node: RclcppNode) -> None:
 
 
 def declare_page_parameters(node: RclcppNode) -> None:
-    """Declare what `serve_page` reads."""
+    """Declare the parameters of `serve_page`."""
     node.declare(
         "view_port",
         -1,
@@ -149,7 +149,7 @@ def _compressed_image(pixels: NDArray[np.uint8]) -> CompressedImage:
 
 
 def _reserve_next(folder: Path) -> Path:
-    """Make canvas_001.png, or the first number that is not taken yet; a link is taken too."""
+    """Create canvas_001.png, or that of the first number not in use, not even by a link."""
     number = 1
     while True:
         path = folder / f"canvas_{number:03}.png"
@@ -168,7 +168,7 @@ def serve_page(node: RclcppNode, arena: Arena, interfaces: str) -> tuple[LiveSer
         interfaces: the package of turtlesim's messages.
 
     Raises:
-        UnusableParameter: it cannot be served so.
+        UnusableParameter: the page cannot be served with these parameters.
     """
     port, host, token, is_read_only = (
         node.get_parameter(f"view_{name}").value for name in ("port", "host", "token", "read_only")

@@ -1,1 +1,1 @@
-"""What is true about the turtles: no ROS, no clock, no files, no threads."""
+"""The world of the turtles: no ROS, no clock, no files, no threads."""

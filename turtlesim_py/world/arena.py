@@ -15,7 +15,7 @@ from turtlesim_py.world.floats import float32, printf_f
 from turtlesim_py.world.picture import NAMES, Sprite
 from turtlesim_py.world.turtle import METER_PX, SIZE_M, Reading, Teleport, Turtle
 
-#: A tick's length on a clock of its own [ns].
+#: A tick's length on the arena's clock [ns].
 TICK_NS = 16_000_000
 DEFAULT_BACKGROUND = (69, 86, 255)
 
@@ -226,7 +226,7 @@ class Arena:
         return None if any(t.is_busy for t in turtles) else list(map(copy, turtles))
 
     def sprites(self) -> list[Sprite]:
-        """Where each turtle's picture belongs on the canvas, later ones on top."""
+        """Return the place of each turtle's picture on the canvas, later ones on top."""
         ordered = (self.turtles[name] for name in sorted(self.turtles))
         return [
             Sprite(t.x_m * METER_PX, t.y_down_m * METER_PX, t.heading_rad, t.sprite)

@@ -23,7 +23,7 @@ UNPAINTED = (255, 255, 255, 0)
 
 @dataclass(frozen=True)
 class Pen:
-    """What a turtle draws with. Each value is from 0 to 255, as in the SetPen service.
+    """The pen of a turtle. Each value is from 0 to 255, as in the SetPen service.
 
     Attributes:
         r, g, b: colour; the default is the original's.
@@ -49,7 +49,7 @@ class Pen:
 
 
 class Canvas:
-    """An image that starts transparent and takes strokes; x to the right, y down, both in pixels.
+    """An image that starts transparent, for strokes; x to the right, y down, both in pixels.
 
     A pixel is painted wholly or not at all, and later strokes cover earlier ones. The turtles and
     the background are not in it: see `picture`.

@@ -208,7 +208,7 @@ SomeEvent = TypeVar("SomeEvent", bound=Event)
 
 
 def to_json(event: Event) -> dict[str, Any]:
-    """The event as a scenario holds it: `{"tick", "op", ...}` in the order of the fields."""
+    """Return the event as in a scenario: `{"tick", "op", ...}` in the order of the fields."""
     words: dict[str, Any] = {"tick": event.tick, "op": event.op}
     for name in _FIELDS[event.op]:
         words[name] = _json_value(getattr(event, name))
@@ -218,10 +218,10 @@ def to_json(event: Event) -> dict[str, Any]:
 
 
 def from_json(words: Mapping[str, Any]) -> Event:
-    """The event that a scenario's object means.
+    """Parse an event of a scenario.
 
     Raises:
-        EventError: it means none.
+        EventError: it is none.
     """
     tick, op = words.get("tick"), words.get("op")
     if type(tick) is not int:
@@ -244,7 +244,7 @@ def from_json(words: Mapping[str, Any]) -> Event:
 
 
 def _json_value(value: object) -> Any:
-    """What JSON can hold: goal ids of ROS as hexadecimal."""
+    """Return a value as JSON can hold it: goal ids of ROS as hexadecimal."""
     if isinstance(value, float):
         return json_number(value, 17)
     if isinstance(value, tuple):

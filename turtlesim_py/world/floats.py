@@ -60,7 +60,7 @@ def fuzzy_equal(p: float, q: float) -> bool:
 
 
 def json_number(value: float, digits: int = 9) -> float | int | str:
-    """A value as JSON files hold it: `digits` significant digits, NaN and inf as strings."""
+    """Return a value for JSON: `digits` significant digits, NaN and inf as strings."""
     if not math.isfinite(value):
         return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
     # 17 digits tell every double from its neighbours

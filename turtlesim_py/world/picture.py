@@ -35,7 +35,7 @@ class Sprite:
     Attributes:
         x_px, y_px: its centre on the canvas, y down. Where one is not finite, the edge of the
             turtle's picture lies on the edge of the window, as in the original.
-        heading_rad: 0 looks to the right, positive turns to the left. A turtle whose heading is
+        heading_rad: 0 is to the right, positive turns to the left. A turtle whose heading is
             not finite is invisible, as in the original.
         name: one of `NAMES`.
     """
@@ -93,7 +93,7 @@ def _rotated(name: str, clockwise_deg: float) -> NDArray[np.uint8]:
     """Turn a picture whose head is up, without smoothing.
 
     The result is the smallest box around the turned square, as QImage.transformed makes it: each
-    pixel takes the colour at the place where its centre comes from.
+    pixel gets the colour at the place where its centre comes from.
     """
     upright = sprite(name)
     size = upright.shape[0]
@@ -114,8 +114,8 @@ def _rotated(name: str, clockwise_deg: float) -> NDArray[np.uint8]:
 
 # The turtles' pictures ----------------------------------------------------------------------------
 #
-# Eleven of our own, drawn by code, under the names of turtlesim 1.8.4: a turtle seen from above,
-# its head up, 45 x 45 pixels, since the original takes the height of its pictures as the length of
+# Eleven pictures drawn by code, under the names of turtlesim 1.8.4: a turtle seen from above,
+# its head up, 45 x 45 pixels, since the original uses the height of its pictures as the length of
 # a metre. Shapes are judged at 8 x 8 points in each pixel, by IEEE sums, products and square roots
 # only, so that the pictures are the same bytes on every machine.
 

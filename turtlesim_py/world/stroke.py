@@ -1,6 +1,6 @@
 """The pixels of one pen stroke: what `QPainter.drawLine` of Qt 5.15 paints, pixel for pixel.
 
-The original turtlesim draws every step of a turtle as a line of its own: on a raster image, without
+The original turtlesim draws every step of a turtle as a separate line: on a raster image, without
 antialiasing, with square caps and a pen of whole pixels. Qt fills such a line in fixed point, so
 ideal geometry misses edge pixels now and then; the rule below misses none. `docs/strokes.md`
 explains it step by step, under the names of the functions here. (It is one rule, and so one module,
@@ -342,7 +342,7 @@ def _tilted_rectangle(
 def _fill(
     top: Point, left: Point, right: Point, bottom: Point, image_width: int, image_height: int
 ) -> list[Span]:
-    """Go down row by row and take the pixels from the left side to the right one."""
+    """Go down row by row and fill the pixels from the left side to the right one."""
     first_row = _first_beyond(top[1])
     last_row = _last_before(bottom[1])
     if last_row >= image_height:

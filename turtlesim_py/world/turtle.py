@@ -47,7 +47,7 @@ class Pose(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a turtle publishes in a tick: its pose and the colour (r, g, b) under it."""
+    """The values that a turtle publishes in a tick: its pose and the colour (r, g, b) under it."""
 
     pose: Pose
     color: tuple[int, int, int]
@@ -64,7 +64,7 @@ class Teleport(NamedTuple):
 
 @dataclass(slots=True)
 class RotationGoal:
-    """A rotation towards `theta` [rad]; `goal_id` is whatever the caller knows it by."""
+    """A rotation towards `theta` [rad]; `goal_id` is the caller's."""
 
     goal_id: object
     theta: float
@@ -108,7 +108,7 @@ class Turtle:
     # Inputs -----------------------------------------------------------------------------------
 
     def command(self, linear_x: float, linear_y: float | None, angular: float, now_ns: int) -> None:
-        """Take a velocity command [m/s, rad/s].
+        """Obey a velocity command [m/s, rad/s].
 
         A sideways speed of None leaves the old one acting, as the original does when it is not
         holonomic. Any command aborts a running rotation goal.
@@ -142,14 +142,14 @@ class Turtle:
         self.goal = RotationGoal(goal_id, theta, self.heading_rad)
 
     def abandon_goal(self) -> None:
-        """Cancel a running goal without a word, as when the turtle disappears."""
+        """Cancel a running goal without a log line, as when the turtle disappears."""
         if self.goal is not None:
             self._end_goal("CANCELED", 0.0)
 
     # A tick -----------------------------------------------------------------------------------
 
     def update(self, canvas: Canvas, now_ns: int) -> Reading:
-        """Live through one tick and draw on the canvas; return what is published."""
+        """Update for one tick and draw on the canvas; return what is published."""
         for teleport in self._teleports:
             self._jump(teleport, canvas)
         self._teleports.clear()
@@ -172,7 +172,7 @@ class Turtle:
         return bool(self._teleports) or self.goal is not None
 
     def foresee(self, now_ns: int) -> Pose | None:
-        """Live through a tick without drawing; None where the turtle hits a wall.
+        """Update for one tick without drawing; None where the turtle hits a wall.
 
         For a copy of a turtle that is not busy.
         """

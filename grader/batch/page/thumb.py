@@ -111,11 +111,11 @@ def _picture(recording: Recording) -> str:
 
 
 def _path(recording: Recording) -> tuple[Piece, ...]:
-    film = draw(recording).film  # the page of the student has drawn it already
-    if film is None or not film.tracks:
+    animation = draw(recording).animation  # the page of the student has drawn it already
+    if animation is None or not animation.tracks:
         return ()
     scale = UNITS / load_subject(recording.scene).plane.size_px
-    track = film.tracks[0]
+    track = animation.tracks[0]
     whole = pieces(track.x * scale, track.y * scale)[:_MOST_PIECES]
     return tuple(_whole_numbers(piece) for piece in _few(whole))
 

@@ -1,7 +1,7 @@
 """One self-contained HTML page: no network, no files beside it, and useful without its script.
 
-The template is `templates/page.html`; everything that goes into it is escaped by jinja2, and a
-content security policy lets nothing run but the page's own script.
+The template is `templates/page.html`; jinja2 escapes all values in it, and a content security
+policy lets only the scripts of the page run.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from grader.reports.page import templating
 from grader.reports.page.parts import DrawnTree, Turnable, drawn, turnable
 from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, plane_uri, window_uri
 from grader.reports.page.plots import HEIGHT, WIDTH, Drawn, Plots, expected, plots
-from grader.reports.page.tracks import Film, film
+from grader.reports.page.tracks import Animation, animation
 from grader.reports.report import Report
 from grader.result.result import RunSummary
 from grader.scenes.scene import Scene
@@ -41,21 +41,21 @@ from grader.translations import current, number, tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
-#: On paper, of what a node printed, so many lines and characters: the last tell how it ended.
+#: Printed on paper: so many of the last lines and characters of a node's output.
 _PAPER_LINES, _PAPER_LIMIT = 25, 4000
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a page shows of a recording by itself.
+    """The parts of a page that depend on a recording alone.
 
     Attributes:
-        film, plots: None without a recording.
-        turnable: the window at the end, to be turned, where the scene has that.
-        trees, tables: what else there is to see.
+        animation, plots: None without a recording.
+        turnable: the final window as a solid to turn, where the scene has one.
+        trees, tables: the other parts of the view.
     """
 
-    film: Film | None = None
+    animation: Animation | None = None
     plots: Plots | None = None
     turnable: Turnable | None = None
     trees: tuple[DrawnTree, ...] = ()
@@ -68,14 +68,14 @@ class RunView(Drawing):
 
     Attributes:
         number: 0 for the nominal one.
-        title: what it is.
-        facts: how it went, as in the result file.
+        title: its name, with the start of a varied run.
+        facts: its summary in the result file.
         picture: the scene's plane at the end as data URI, or ''.
         still: the window at the end, where that is not the plane, as data URI, or ''.
-        still_words: what it shows.
-        expected: what checks want of curves, by their titles.
+        still_words: the same in words.
+        expected: what checks expect of curves, by their titles.
         pins: the evidence in the plane.
-        output: what the node printed.
+        output: of the node.
         on_paper: whether it is printed: there is a fault in it, or in no run at all.
     """
 
@@ -92,19 +92,19 @@ class RunView(Drawing):
 
     @property
     def output_end(self) -> str:
-        """The last lines of what the node printed."""
+        """The last lines of the node's output."""
         return "\n".join(self.output.splitlines()[-_PAPER_LINES:])[-_PAPER_LIMIT:]
 
     @property
     def can_be_seen(self) -> bool:
-        """Whether there is anything to show in the plane."""
+        """Whether the plane has anything to show."""
         if self.still and not self.plots:
-            return bool(self.film and self.film.tracks)
-        return bool(self.picture or self.film or self.pins)
+            return bool(self.animation and self.animation.tracks)
+        return bool(self.picture or self.animation or self.pins)
 
 
 def render(report: Report) -> str:
-    """The page."""
+    """Return the page."""
     plane = report.subject.plane
     numbers = range(len(report.varied_runs) + 1)
     on_paper = _faulty_runs(report).intersection(numbers) or {0}
@@ -116,11 +116,11 @@ def render(report: Report) -> str:
         .render(
             report=report,
             runs=runs,
-            films={run.number: _film_data(run.film) for run in runs if run.film is not None},
+            animations={r.number: _script_data(r.animation) for r in runs if r.animation},
             pinned={pin.point.number for run in runs if run.can_be_seen for pin in run.pins},
             has_parts=any(run.still or run.trees or run.tables for run in runs),
             has_solids=any(run.turnable for run in runs),
-            is_looked_at=not isinstance(report.subject, Scene),
+            has_no_scene=not isinstance(report.subject, Scene),
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
             places={verdict.check: index for index, verdict in enumerate(report.verdicts)},
@@ -141,7 +141,7 @@ def render(report: Report) -> str:
 
 
 def _first_fault(report: Report) -> Diagnosis | Evidence | None:
-    """What tells the run and the time of the first thing to mend; None where nothing does."""
+    """Return the diagnosis or evidence that locates the first fault; None for neither."""
     found = report.diagnosis
     if found is not None and not found.check:
         return found
@@ -150,7 +150,7 @@ def _first_fault(report: Report) -> Diagnosis | Evidence | None:
 
 
 def _faulty_runs(report: Report) -> set[int]:
-    """The runs in which something is to be mended; what no evidence shows is of the nominal run."""
+    """Return the runs with a fault; one without evidence belongs to the nominal run."""
     found = report.diagnosis
     diagnosed = {found.run} if found is not None and not found.check else set()
     return diagnosed | {
@@ -175,7 +175,7 @@ def _outcomes(subject: Subject) -> dict[str, str]:
 
 
 def _script_words() -> dict[str, str]:
-    """What the page's script writes."""
+    """Return the words that the page's script writes."""
     return {
         "play": tr("Play"),
         "pause": tr("Pause"),
@@ -186,7 +186,7 @@ def _script_words() -> dict[str, str]:
 
 
 def render_error(report: ErrorReport) -> str:
-    """A page with the error."""
+    """Return a page with the error."""
     return _environment().get_template("error.html").render(report=report)
 
 
@@ -202,7 +202,7 @@ def _environment() -> jinja2.Environment:
         see_first=wording.SEE_FIRST,
         place=text.place,
         word=wording.word,
-        run_name=_name,
+        run_name=wording.run_name,
         so_many=wording.so_many,
         clock=wording.clock,
         outcome_word=wording.outcome,
@@ -213,12 +213,12 @@ def _environment() -> jinja2.Environment:
     return made
 
 
-#: By language.
+#: Recording -> language -> drawing.
 _drawings: WeakKeyDictionary[Recording, dict[str, Drawing]] = WeakKeyDictionary()
 
 
 def draw(recording: Recording) -> Drawing:
-    """Draw a recording, once: ahead of the page, while other runs go, or for it."""
+    """Draw a recording once: for the page, or before it while other runs go on."""
     drawings = _drawings.setdefault(recording, {})
     drawing = drawings.get(current())
     if drawing is None:
@@ -226,7 +226,7 @@ def draw(recording: Recording) -> Drawing:
         duration_ns = recording.trace.duration_ns
         solids = [part for part in view.parts if isinstance(part, Solid)]
         drawing = Drawing(
-            film(view, duration_ns),
+            animation(view, duration_ns),
             plots(view, duration_ns),
             turnable(solids[0]) if solids else None,
             tuple(drawn(part) for part in view.parts if isinstance(part, Tree)),
@@ -260,18 +260,14 @@ def _view(report: Report, number: int, on_paper: bool) -> RunView:
 def _still_words(drawing: Drawing) -> str:
     if drawing.turnable is not None:
         return translate(drawing.turnable.solid.text)
-    shown = drawing.film.drawn if drawing.film is not None else ()
-    return "; ".join(shown) or tr("The window at the end")
-
-
-def _name(number: int) -> str:
-    return tr("Varied run {number}", number=number) if number else tr("Nominal run")
+    drawn_parts = drawing.animation.drawn if drawing.animation is not None else ()
+    return "; ".join(drawn_parts) or tr("The window at the end")
 
 
 def _title(report: Report, number: int) -> str:
     start = report.varied_runs[number - 1].start if number else None
     if start is None:
-        return _name(number)
+        return wording.run_name(number)
     return tr(
         "Varied run {number}: from {place}, heading {heading:.0f}°",
         number=number,
@@ -280,8 +276,8 @@ def _title(report: Report, number: int) -> str:
     )
 
 
-def _film_data(shown: Film) -> dict[str, Any]:
-    """A film as the script reads it; the names are short because the lists are long."""
+def _script_data(shown: Animation) -> dict[str, Any]:
+    """Return an animation as the script reads it; short names, because the lists are long."""
     return {
         "t": shown.times.round(2).tolist(),
         "cleared": list(shown.cleared),

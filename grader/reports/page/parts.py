@@ -1,4 +1,4 @@
-"""The parts of a view that a page draws in their own way: trees as rows, solids to be turned."""
+"""The parts of a view for a page: trees as rows, solids that can be turned."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from grader import text
 from grader.recording.view import Placing, Shape, Solid, Tree, TreeNode
 from grader.translations import tr, translate
 
-#: The drawing's width, a row's height, a step to the right [px]; deeper ones stay where they are.
+#: The drawing's width, a row's height, the indent of a level [px], the deepest indented level.
 WIDTH, ROW, STEP, DEEPEST = 360, 38, 18, 8
 _LEFT, _DOT = 9, 16
-#: So many letters there are room for, in bold and in small ones.
+#: The width of a letter [px], in bold and in small type.
 _NAME_PX, _TEXT_PX = 8.2, 6.2
 _MOST_WORDS = 40
 
@@ -23,10 +23,10 @@ class DrawnNode:
 
     Attributes:
         x, y: of its dot [px].
-        name, text: as far as there is room.
-        full: all that it says.
+        name, text: clipped to the width.
+        full: both in full.
         mark: as in `TreeNode`.
-        path: the `d` of an SVG path to what it hangs on; '' for none.
+        path: the `d` of an SVG path to its parent; '' for none.
     """
 
     x: int
@@ -40,11 +40,11 @@ class DrawnNode:
 
 @dataclass(frozen=True)
 class DrawnTree:
-    """A tree in its places.
+    """A tree with the places of its nodes.
 
     Attributes:
         height: [px].
-        words: the tree for who cannot see it.
+        words: the tree as text, for screen readers.
     """
 
     tree: Tree
@@ -54,7 +54,7 @@ class DrawnTree:
 
 
 def drawn(tree: Tree) -> DrawnTree:
-    """Where everything of a tree is."""
+    """Lay out a tree."""
     nodes: list[DrawnNode] = []
     last: dict[int, tuple[int, int]] = {}  # by depth, the dot of the node above
     for row, node in enumerate(tree.nodes):
@@ -71,29 +71,29 @@ def drawn(tree: Tree) -> DrawnTree:
 
 
 def _node(node: TreeNode, x: int, y: int, path: str) -> DrawnNode:
-    room, said = WIDTH - x - 12, translate(node.text)
+    room, description = WIDTH - x - 12, translate(node.text)
     return DrawnNode(
         *(x, y),
         text.clip(node.name, int(room / _NAME_PX)),
-        text.clip(said, int(room / _TEXT_PX)),
-        tr("{name}: {text}", name=node.name, text=said),
+        text.clip(description, int(room / _TEXT_PX)),
+        tr("{name}: {text}", name=node.name, text=description),
         node.mark,
         path,
     )
 
 
 def _words(node: TreeNode) -> str:
-    said = {"name": "- " * node.depth + node.name, "text": translate(node.text)}
+    values = {"name": "- " * node.depth + node.name, "text": translate(node.text)}
     if node.mark == "lost":
-        return tr("{name} (no place): {text}", **said)
+        return tr("{name} (no place): {text}", **values)
     if node.mark == "wrong":
-        return tr("{name} (wrong): {text}", **said)
-    return tr("{name}: {text}", **said)
+        return tr("{name} (wrong): {text}", **values)
+    return tr("{name}: {text}", **values)
 
 
 # Solids -----------------------------------------------------------------------------------------
 
-#: What is smaller is not seen [digits of a metre, of a quaternion].
+#: Kept decimals: of a place [m], of a quaternion, of a size [m].
 _PLACE, _TURN, _SIZE = 4, 4, 5
 _KINDS = {"box": 0, "cylinder": 1, "sphere": 2, "triangles": 3}
 
@@ -103,7 +103,7 @@ class Turnable:
     """A solid in a page.
 
     Attributes:
-        solid: what it is made of.
+        solid: its frames and shapes.
         data: for the script: `t` the times [s], `frames` each its parent and placings, `shapes`
             each its kind, frame, placing, sizes, colour and alpha, `ground` and `way`.
     """
@@ -113,7 +113,7 @@ class Turnable:
 
 
 def turnable(solid: Solid) -> Turnable:
-    """A solid of a recording."""
+    """Prepare a solid of a recording for the page."""
     data = {
         "t": [round(time_ns / 1e9, 2) for time_ns in solid.times_ns],
         "frames": [

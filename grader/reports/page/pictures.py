@@ -1,6 +1,6 @@
-"""Pictures inside a document: PNG as data URI, small enough for the systems that take them.
+"""Pictures inside a document: PNG as data URI, small enough for the systems that accept them.
 
-In them evidence is shown as numbered pins, placed so that no pin hides another.
+Evidence is shown in them as numbered pins, placed so that no pin hides another.
 """
 
 from __future__ import annotations
@@ -15,34 +15,34 @@ from PIL import Image, UnidentifiedImageError
 
 from grader.reports.report import Point, Report
 
-#: A picture above this is reduced to 256 colours. Only noise is: a spiral has some 20 kB.
+#: A larger picture is reduced to 256 colours. Only noise is larger: a spiral has some 20 kB.
 _LIMIT_BYTES = 150_000
-#: One that only who has no script and who prints the page gets to see.
+#: Of a picture that is shown only without script and on paper.
 _STILL_LIMIT_BYTES = 30_000
 
 
 def canvas_uri(report: Report) -> str:
-    """The window at the end of the nominal run; '' where no picture lies beside the result."""
+    """Return the final window of the nominal run; '' where there is no picture."""
     limit = _limit(report)
     path = report.beside.canvas_file
     if path is not None:
         try:
             with Image.open(path, formats=["PNG"]) as image:
                 if max(image.size) <= report.subject.plane.size_px:
-                    # anew, and without anything else that the file may hold
+                    # encoded again, without anything else in the file
                     return _uri(_png(image.convert("RGB")), limit)
         except (OSError, UnidentifiedImageError):
-            pass  # a damaged picture; the recording may hold it whole
+            pass  # a damaged picture; the recording may have a good one
     return window_uri(report, 0)
 
 
 def window_uri(report: Report, run: int) -> str:
-    """The window at the end of a run, as its recording holds it; '' without a recording."""
+    """Return the final window of a run from its recording; '' without a recording."""
     return _recorded(report, run, "window")
 
 
 def plane_uri(report: Report, run: int) -> str:
-    """The scene's plane, where the window shows something else; '' where there is none."""
+    """Return the scene's plane, where that is not the window; '' where there is none."""
     return _recorded(report, run, "plan")
 
 
@@ -92,7 +92,7 @@ class Pin:
 
 
 def pins(report: Report, run: int) -> tuple[Pin, ...]:
-    """The pins of one run: those of failed checks have the first choice of a place."""
+    """Place the pins of one run, those of failed checks first."""
     plane = report.subject.plane
     places = {
         p.number: _inside(*plane.to_px(*p.evidence.place), plane.size_px)
@@ -116,7 +116,7 @@ def _inside(x: float, y: float, size_px: int) -> tuple[float, float]:
 def _free_place(
     x: float, y: float, others: Sequence[Pin], places: Sequence[tuple[float, float]], size_px: int
 ) -> tuple[float, float]:
-    """The nearest place for a head that is in the picture and covers nothing; or the best."""
+    """Return the nearest place for a head in the picture that covers nothing, or the best."""
     best, most_room = (x, y), -math.inf
     for distance in _DISTANCES_PX:
         for direction in range(_DIRECTIONS):
@@ -136,6 +136,6 @@ def _free_place(
 
 
 def _turned(direction: int) -> float:
-    """0, 1 step left, 1 step right, 2 steps left, ..."""
+    """Return the angle of 0, 1 step left, 1 step right, 2 steps left, ..."""
     steps = (direction + 1) // 2 * (1 if direction % 2 else -1)
     return 2 * math.pi / _DIRECTIONS * steps

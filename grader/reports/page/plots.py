@@ -1,6 +1,6 @@
-"""Plots over time as SVG: curves are thinned out, so a plot has some kB however long the run.
+"""Plots over time as SVG: curves are thinned out to some kB, however long the run.
 
-What checks want of a curve is drawn in its plot: a band to stay in, lines to go beyond.
+What checks expect of a curve is drawn in its plot: a band to stay in, lines to go beyond.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Plot:
     """A curve over time.
 
     Attributes:
-        title, unit: what it shows.
+        title, unit: of the curve.
         path: the `d` of an SVG path in a box of WIDTH x HEIGHT.
         ticks: of the value axis.
         summary: the plot in words.
@@ -72,7 +72,7 @@ class Calls:
     Attributes:
         name: the service's.
         count: how many there were.
-        marks: all of them, as far as they can be told apart.
+        marks: all that can be distinguished in the plot.
         rows: the first of them.
     """
 
@@ -83,12 +83,12 @@ class Calls:
 
     @property
     def has_text(self) -> bool:
-        """Whether a row says what was asked for."""
+        """Whether a row has a text: what was asked for."""
         return any(row.text for row in self.rows)
 
     @property
     def has_place(self) -> bool:
-        """Whether a row says where it happened."""
+        """Whether a row has a place."""
         return any(row.where for row in self.rows)
 
 
@@ -103,7 +103,7 @@ class Plots:
 
 
 def plots(view: View, duration_ns: int) -> Plots | None:
-    """The plots of a view; None if there is nothing in it.
+    """Return the plots of a view; None if there is nothing in it.
 
     Args:
         duration_ns: how long was recorded.
@@ -137,7 +137,7 @@ def _plot(curve: Curve, x: Floats) -> Plot:
 
 
 def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """At most four points a column: its first, lowest, highest and last; nothing is smoothed."""
+    """Keep at most four points a column: its first, lowest, highest and last; none is smoothed."""
     if len(x) <= 2 * _COLUMNS:
         return x, y
     # a row of a table for each column of the plot; those of the first are one longer, if need be
@@ -151,7 +151,7 @@ def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     lowest = first[:, 0] + np.argmin(np.where(counts, values, np.inf), axis=1)
     highest = first[:, 0] + np.argmax(np.where(counts, values, -np.inf), axis=1)
     rows = np.unique(np.concatenate((edges[:-1], lowest, highest, edges[1:] - 1)))
-    # In the middle of a straight stretch a point says nothing.
+    # A point in the middle of a level line adds nothing.
     inner = (y[rows[1:-1]] == y[rows[:-2]]) & (y[rows[1:-1]] == y[rows[2:]])
     rows = rows[~np.concatenate(([False], inner, [False]))]
     return x[rows], y[rows]
@@ -174,13 +174,13 @@ def _calls(made: Sequence[Call], duration_ns: int) -> tuple[Calls, ...]:
 
 
 def _sparse(marks: list[Mark]) -> tuple[Mark, ...]:
-    """One mark for those that nobody could tell apart."""
+    """Keep one mark of those that are too close to distinguish."""
     last = {round(mark.at * _MARKS / 100): mark for mark in marks}
     return tuple(Mark(round(mark.at, 2), mark.color) for mark in last.values())
 
 
 def _nice(low: float, high: float, about: int) -> list[float]:
-    """Round numbers in even steps; the first at or below `low`, the last at or above `high`."""
+    """Return round numbers in even steps, from at most `low` to at least `high`."""
     span = high - low or 1.0
     raw = span / about
     power = 10.0 ** math.floor(math.log10(raw))
@@ -189,19 +189,19 @@ def _nice(low: float, high: float, about: int) -> list[float]:
     return [round(step * k, 12) for k in range(first, last + 1)]
 
 
-# What checks want of a curve ----------------------------------------------------------------------
+# What checks expect of a curve --------------------------------------------------------------------
 
 _LONGEST = 160
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """What is wanted of one curve.
+    """The expectation on one curve, as drawn.
 
     Attributes:
         text: in words.
-        bands: top and height of where it has to stay, as far as the plot shows it.
-        lines: how high the values are that it has to go beyond.
+        bands: top and height of the band that it has to stay in, within the plot.
+        lines: heights of the values that it has to go beyond.
     """
 
     text: str
@@ -210,7 +210,7 @@ class Drawn:
 
 
 def expected(report: Report, plots: Plots | None) -> dict[str, Drawn]:
-    """Of the plots of the nominal run, by their titles."""
+    """Return the expectations on the nominal run's curves, by the titles of their plots."""
     if plots is None:
         return {}
     wanted = {

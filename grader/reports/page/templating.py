@@ -1,6 +1,6 @@
-"""Templates of pages that stand alone: everything is escaped, and only their own script runs.
+"""Templates of self-contained pages: all values are escaped, and only the page's script runs.
 
-Compiled ones are kept beside them, as Python keeps compiled modules: in __pycache__.
+Compiled templates are cached as Python caches compiled modules: in __pycache__.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from markupsafe import Markup
 from grader import text, versions
 from grader.translations import current, number, tr, tr_many, translate
 
-#: How all pages look.
+#: The style of all pages.
 STYLE = Path(__file__).parent / "templates" / "page.css"
 
 
 def environment(folder: Path, page: str) -> jinja2.Environment:
-    """What renders the templates in a folder.
+    """Return the environment that renders the templates in a folder.
 
-    They get `script`, which is PAGE.js if there is one, and `script_digest`, for a content security
+    They get `script`, which is PAGE.js if there is one, `script_digest` for a content security
     policy that lets nothing else run, and `style`: that of all pages, and PAGE.css.
     """
     made = jinja2.Environment(
@@ -57,10 +57,10 @@ def environment(folder: Path, page: str) -> jinja2.Environment:
 
 
 class BesideTheTemplates(FileSystemBytecodeCache):
-    """Where nothing can be written, templates are compiled each time.
+    """Caches compiled templates beside them; where it cannot write, they are compiled each time.
 
-    jinja2 itself sees whether what it finds is of this source and of Python's version; its own
-    version and ours, which sets what compiling depends on, are in the file's name.
+    jinja2 checks source and Python's version of a cached template. The name of its file has the
+    versions of jinja2 and of the grader, since both change how templates are compiled.
 
     Args:
         folder: the templates'.
@@ -73,7 +73,7 @@ class BesideTheTemplates(FileSystemBytecodeCache):
 
     def load_bytecode(self, bucket: Bucket) -> None:
         """Called by jinja2: fill the bucket, if there is something for it."""
-        with suppress(Exception):  # a file that is damaged raises anything
+        with suppress(Exception):  # a damaged file raises anything
             super().load_bytecode(bucket)
 
     def dump_bytecode(self, bucket: Bucket) -> None:

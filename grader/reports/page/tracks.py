@@ -1,4 +1,4 @@
-"""A view of a run as a page draws it: where things went, thinned out, and what their pens did."""
+"""The tracks of a run as a page animates them: sampled, and divided by pen."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TRACKS = 5
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a way with one pen, from one sample to another; `drawn` unless the pen was off."""
+    """A part of a track with one pen, from sample to sample; `drawn` unless the pen was off."""
 
     first: int
     last: int
@@ -28,13 +28,13 @@ class Stretch:
 
 @dataclass(frozen=True)
 class SampledTrack:
-    """One track at the samples of a film.
+    """One track at the samples of an animation.
 
     Attributes:
         name: the track's.
         x, y: where it was at each sample [px, y down]; NaN where it was not there.
         theta: its heading at each sample [rad].
-        stretches: the way in parts, one for each pen.
+        stretches: the track in parts, one for each pen.
     """
 
     name: str
@@ -44,11 +44,11 @@ class SampledTrack:
     stretches: tuple[Stretch, ...]
 
     def path(self) -> str:
-        """The way as the `d` of an SVG path."""
+        """Return the track as the `d` of an SVG path."""
         return svg_path(self.x, self.y)
 
     def lifted(self) -> str:
-        """The stretches of the way on which the pen was off."""
+        """Return the stretches on which the pen was off as the `d` of an SVG path."""
         return "".join(
             svg_path(self.x[s.first : s.last + 1], self.y[s.first : s.last + 1])
             for s in self.stretches
@@ -57,7 +57,7 @@ class SampledTrack:
 
 
 @dataclass(frozen=True)
-class Film:
+class Animation:
     """All tracks of a run at common samples.
 
     Attributes:
@@ -77,14 +77,14 @@ class Film:
     drawn: tuple[str, ...]
 
 
-def film(view: View, duration_ns: int) -> Film:
-    """Thin a view out to what an animation needs.
+def animation(view: View, duration_ns: int) -> Animation:
+    """Sample the tracks of a view.
 
     Args:
         duration_ns: how long was recorded.
     """
     times_ns = _samples(duration_ns, view.step_ns)
-    return Film(
+    return Animation(
         times_ns / 1e9,
         tuple(_sampled(track, times_ns) for track in view.tracks[:_TRACKS]),
         tuple(sorted({int(np.searchsorted(times_ns, time_ns)) for time_ns in view.cleared})),
@@ -95,7 +95,7 @@ def film(view: View, duration_ns: int) -> Film:
 
 
 def svg_path(x: Floats, y: Floats) -> str:
-    """A line through points, interrupted where one is not finite."""
+    """Draw a line through points, interrupted where one is not finite."""
     parts: list[str] = []
     pen_down = False
     for a, b in zip(x.round(1).tolist(), y.round(1).tolist(), strict=True):
@@ -108,7 +108,7 @@ def svg_path(x: Floats, y: Floats) -> str:
 
 
 def _samples(duration_ns: int, step_ns: int) -> Times:
-    """Every so many steps, and the last one [ns]."""
+    """Return the times of the samples [ns]: evenly spaced, and the last step."""
     steps = duration_ns // step_ns
     each = max(1, -(-steps // _SAMPLES))
     samples = np.arange(1, steps + 1, each, dtype=np.int64)
@@ -127,7 +127,7 @@ def _sampled(track: Track, times_ns: Times) -> SampledTrack:
 
 
 def _stretches(track: Track, times_ns: Times) -> tuple[Stretch, ...]:
-    """The way by pens; of several changes between two samples the last counts."""
+    """Divide a track by pens; of several changes between two samples the last counts."""
     pen, *later = track.pens
     changes = {int(np.searchsorted(times_ns, change.time_ns)): change for change in later}
     stretches: list[Stretch] = []

@@ -75,7 +75,7 @@ class GradedSimulator:
         self._file = file
         self._scene = load_scene(plan.scene)
         self._feed = FeedWriter.of(shown, STEP_NS)
-        hooks = Hooks(tell=None if self._feed is None else self._feed.write)
+        hooks = Hooks(send_news=None if self._feed is None else self._feed.write)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )

@@ -77,8 +77,8 @@ class Lockstep:
         self._scene = load_scene(plan.scene)
         assert STEP_NS == TICK_NS
         self._feed = FeedWriter.of(shown, TICK_NS)
-        tell = None if self._feed is None else self._feed.write
-        hooks = Hooks(has_unread=self._registry.has_unread, tell=tell)
+        send = None if self._feed is None else self._feed.write
+        hooks = Hooks(has_unread=self._registry.has_unread, send_news=send)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )

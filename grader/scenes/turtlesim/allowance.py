@@ -1,29 +1,29 @@
-"""How much a submission may ask of a graded turtlesim; what it does not get, and that it is told.
+"""The limits on what a submission may request of a graded turtlesim, and remarks on refusals.
 
-The numbers are far above what drives turtles. They keep a run short, and what is recorded of it
-small, whatever comes; the node beside which nobody is graded has none of them.
+The numbers are far above what it takes to drive turtles. They keep every run short and its
+recording small; a turtlesim that grades nobody has no such limits.
 """
 
 from __future__ import annotations
 
 from grader.message import Message, msg
 
-#: Turtles at a time: each publishes in every tick, and has a way in the recording.
+#: Turtles at a time: each publishes in every tick, and has a trajectory in the recording.
 MOST_TURTLES = 32
-#: Turtles in a run, those of `reset` too: each takes fifteen endpoints of DDS.
+#: Turtles in a run, with those of `reset`: each needs fifteen endpoints of DDS.
 MOST_HATCHED = 200
 #: Inputs in a run: the whole recording is judged, and written to disk.
 MOST_EVENTS = 100_000
 #: Lines of the simulator's log in a run.
 MOST_LOGS = 20_000
-#: Rotation goals that are known at a time: what runs, or has ended in the last ten seconds. All of
-#: them are in each message of an action's status.
+#: Rotation goals at a time: running, or ended in the last ten seconds. All of them are in each
+#: message of an action's status.
 MOST_GOALS = 100
 #: Entries of one request to a service for parameters.
 MOST_ENTRIES = 1_000
 #: Pictures that `save_canvas` writes in a run.
 MOST_PICTURES = 100
-#: Of a name [characters]; ROS allows less, so a longer one is no turtle's.
+#: Of a name [characters]; ROS allows less, so no turtle has a longer one.
 LONGEST_NAME = 300
 #: Parameters that decide how a run is judged, or where files are written.
 FIXED = {
@@ -46,11 +46,11 @@ _MANY_IN_A_RUN = msg(
 
 
 class Allowance:
-    """What of it a run has used.
+    """Counts what a run has used.
 
     Attributes:
-        hatched: how many turtles there have been.
-        events, logs, pictures: how many there have been.
+        hatched: the number of turtles that there have been.
+        events, logs, pictures: their numbers.
     """
 
     def __init__(self) -> None:
@@ -59,17 +59,17 @@ class Allowance:
 
     @property
     def flags(self) -> tuple[Message, ...]:
-        """For the result: what the submission asked for and did not get."""
+        """Remarks for the result: requests of the submission that were refused."""
         return tuple(self._flags)
 
-    def refuse(self, what: Message) -> None:
-        """Something was refused; the message stands for itself in a result."""
+    def refuse(self, remark: Message) -> None:
+        """Note a refusal, with the remark for the result."""
         if len(self._flags) < MOST_FLAGS:
-            self._flags[what] = None
+            self._flags[remark] = None
 
     @property
     def is_used_up(self) -> bool:
-        """Whether nothing more is to be served."""
+        """Whether nothing more will be served."""
         if self.events < MOST_EVENTS:
             return False
         self.refuse(_NOT_ALL)
@@ -94,7 +94,7 @@ class Allowance:
         return False
 
     def why_not_hatch(self, turtles: int) -> str:
-        """Why there may not be another turtle beside so many; '' where there may."""
+        """Return why there may be no turtle beside so many others; '' where there may."""
         if turtles >= MOST_TURTLES:
             self.refuse(_MANY_AT_A_TIME)
             return f"more than {MOST_TURTLES} turtles at a time"

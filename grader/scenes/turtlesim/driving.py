@@ -1,6 +1,6 @@
-"""Drives an arena without ROS: a function takes a submission's place, tick by tick.
+"""Drives an arena without ROS, by a controller function in place of a submission.
 
-Among such functions are odd ones, which checks have to survive.
+Some controllers are odd, and checks have to survive them.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from turtlesim_py.world.turtle import Pose, Reading
 #: (tick, latest pose or None, arena) -> nothing; called before each tick, as callbacks would be.
 Controller = Callable[[int, Pose | None, Arena], None]
 
-#: It has come to rest if it stood still for so long: three seconds.
+#: A run ends after a rest of three seconds.
 REST_TICKS = 188
-#: Nothing has driven yet: fifteen seconds.
+#: Before the first motion, it ends after fifteen seconds.
 FIRST_MOTION_TICKS = 938
 
 
@@ -34,24 +34,29 @@ def drive(
 ) -> tuple[TurtleTrace, Reason]:
     """Let a controller drive until turtle1 has driven and rested for three seconds, or for `ticks`.
 
-    Who has not driven yet may stand for longer, as in a run of a submission.
+    Before it drives, turtle1 may rest for longer, as in a run of a submission.
     """
     arena = Arena(sprite=SPRITE)
-    if start is not None:
-        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
+    place(arena, start)
     recorder = Recorder(arena)
     pose: Pose | None = None
     still, has_driven = 0, False
     for tick in range(1, ticks + 1):
         controller(tick, pose, arena)
         readings = arena.tick()
-        recorder.take(readings)
+        recorder.record(readings)
         before, pose = pose, readings[FIRST_TURTLE].pose if FIRST_TURTLE in readings else None
         still = still + 1 if before and pose and before[:3] == pose[:3] else 0
         has_driven = has_driven or bool(before and pose and before[:2] != pose[:2])
         if still >= REST_TICKS and (has_driven or still >= FIRST_MOTION_TICKS):
             break
     return recorder.trace(), "rest" if still >= REST_TICKS else "time_limit"
+
+
+def place(arena: Arena, start: Start | None) -> None:
+    """Put turtle1 at the start of a run, without a stroke; None leaves it in the centre."""
+    if start is not None:
+        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
 
 
 def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:
@@ -65,10 +70,10 @@ def pen(arena: Arena, color: tuple[int, int, int], width: int = 3) -> None:
 
 
 class Recorder:
-    """Listens to an arena; `take` belongs after each of its ticks."""
+    """Records an arena: its events, and its readings by `record` after each tick."""
 
     def __init__(self, arena: Arena, most_logs: float = math.inf) -> None:
-        """Of the lines of the log, the first `most_logs` are kept."""
+        """Keep at most `most_logs` lines of the log."""
         self.ticks = 0
         self._most_logs = most_logs
         self._arena = arena
@@ -77,18 +82,18 @@ class Recorder:
         self._readings: dict[str, list[tuple[int, Reading]]] = defaultdict(list)
         arena.listeners.append(self._listen)
 
-    def take(self, readings: dict[str, Reading]) -> None:
-        """Record what every turtle has published in this tick."""
+    def record(self, readings: dict[str, Reading]) -> None:
+        """Record what every turtle has published in a tick."""
         self.ticks += 1
         for name, reading in readings.items():
             self._readings[name].append((self.ticks, reading))
 
     def trace(self) -> TurtleTrace:
-        """Everything up to now."""
+        """Return the recording up to now."""
         arena = self._arena
         return TurtleTrace(
             ticks=self.ticks,
-            # through JSON: an event is the same whether it was recorded or read from a bag
+            # through JSON: a recorded event equals one that is read from a bag
             events=tuple(from_json(to_json(event)) for event in self._events),
             trajectories={
                 name: Trajectory.of_readings(readings) for name, readings in self._readings.items()
@@ -106,15 +111,15 @@ class Recorder:
             self._logs.append(Log(tick, notice.severity, "turtlesim", notice.text))
 
 
-# What odd nodes draw -----------------------------------------------------------------------------
+# Odd controllers ---------------------------------------------------------------------------------
 
 TICKS = 700
-#: When the odd thing happens.
+#: The tick of the odd action.
 WHEN = 300
 
 
 def _round(tick: int, arena: Arena) -> None:
-    """Drive round, with a colour, as long as there is a turtle to drive."""
+    """Drive in a circle with changing colours while there is a turtle."""
     if FIRST_TURTLE not in arena.turtles:
         return
     if tick % 30 == 1:
@@ -124,7 +129,7 @@ def _round(tick: int, arena: Arena) -> None:
 
 
 def _with(odd: Callable[[Arena], object]) -> Controller:
-    """A drive with something odd in the middle of it."""
+    """Return a controller that drives, with an odd action in the middle."""
 
     def controller(tick: int, pose: Pose | None, arena: Arena) -> None:
         if tick == WHEN:
@@ -135,7 +140,7 @@ def _with(odd: Callable[[Arena], object]) -> Controller:
 
 
 def _again(speed: float, turn: float) -> Controller:
-    """The same command about twice a second."""
+    """Return a controller that sends one command about twice a second."""
 
     def controller(tick: int, pose: Pose | None, arena: Arena) -> None:
         if tick % 30 == 1:
@@ -172,7 +177,7 @@ def _one_step(tick: int, pose: Pose | None, arena: Arena) -> None:
         twist(arena, 0.0, 0.0)
 
 
-#: What the node does -> what drives.
+#: What the node does -> its controller.
 ODDITIES: Final[Mapping[str, Controller]] = {
     "does nothing": lambda tick, pose, arena: None,
     "makes one step": _one_step,
@@ -192,7 +197,7 @@ ODDITIES: Final[Mapping[str, Controller]] = {
 
 
 def odd_traces(start: Start | None) -> Mapping[str, Trace]:
-    """The trace of each, from a start."""
+    """Return the trace of each odd controller, from a start."""
     return {
         f"a node that {what}": drive(controller, TICKS, start)[0]
         for what, controller in ODDITIES.items()

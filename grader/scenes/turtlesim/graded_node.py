@@ -1,4 +1,4 @@
-"""The turtlesim node of a graded run: it can be foreseen, and gives each thing in its measure."""
+"""The turtlesim node of a graded run: it foresees ticks, and refuses requests beyond limits."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import Event, LogLine, Notice
 from turtlesim_py.world.turtle import Pose, Reading
 
-#: How often the node is served although nothing has come [ticks]: goals expire.
+#: How often the node is served although nothing has arrived [ticks]: goals expire.
 SERVE_TICKS = 63
-#: Where the entries of a request to a service for parameters are.
+#: Service for parameters -> the field with the entries of its request.
 ENTRIES = {
     SetParameters: "parameters",
     SetParametersAtomically: "parameters",
@@ -50,10 +50,10 @@ ENTRIES = {
 
 
 class GradedNode(TurtlesimNode):
-    """A turtlesim node that is served only where something has come, and within limits.
+    """A turtlesim node that is served only when something has arrived, and within limits.
 
     Attributes:
-        allowance: the limits, and what has been refused.
+        allowance: what has been used and refused.
     """
 
     MAY_BE_SEEN = False
@@ -78,17 +78,17 @@ class GradedNode(TurtlesimNode):
         return super().serve(now_ns)
 
     def play(self, script: Iterable[Event], now_ns: int | None) -> None:
-        """Do what a script says for the tick to come."""
+        """Apply the events of a script for the next tick."""
         self._set_time(self._now_ns() if now_ns is None else now_ns)
         for event in script:
             apply(self.arena, event)
         self._sync_endpoints()
 
     def foresee(self, most: int, is_certain: Callable[[dict[str, Pose]], bool]) -> Forecast:
-        """The poses of the next ticks, as far as nothing but driving happens.
+        """Return the poses of the next ticks, as far as nothing but driving happens.
 
         Args:
-            is_certain: told the poses of a tick to come; False where that is not to be foreseen.
+            is_certain: called with the poses of a coming tick; False ends the forecast before it.
         """
         twins = self.arena.twins()
         if twins is None:
@@ -110,25 +110,25 @@ class GradedNode(TurtlesimNode):
         return Forecast(publishers, ticks)
 
     def pass_tick(self, now_ns: int) -> dict[str, Reading]:
-        """As `tick` where there is nothing to serve, but nothing of the turtles is published."""
+        """Let a tick pass without serving and without publishing of the turtles; see `tick`."""
         self._set_time(now_ns)
         readings = self.arena.tick()
         self._window.publish_if_due()
         return readings
 
-    # What a submission may not do ----------------------------------------------------------
+    # Limits -----------------------------------------------------------------------------------
 
     def _confine(self) -> None:
-        """Have the services ask first."""
+        """Guard the services by the limits."""
         for service in self.services:
             if service.srv_type in ENTRIES:
-                where = ENTRIES[service.srv_type]
-                service.callback = partial(self._on_entries, service.callback, where)
+                field = ENTRIES[service.srv_type]
+                service.callback = partial(self._on_entries, service.callback, field)
             elif service.srv_type is Trigger:
                 service.callback = partial(self._on_picture, service.callback)
 
-    def _on_entries(self, serve: Callable[..., Any], where: str, request: Any, answer: Any) -> Any:
-        if len(getattr(request, where)) > MOST_ENTRIES:
+    def _on_entries(self, serve: Callable[..., Any], field: str, request: Any, answer: Any) -> Any:
+        if len(getattr(request, field)) > MOST_ENTRIES:
             self.allowance.refuse(
                 msg("requests for more than {number} parameters were refused", number=MOST_ENTRIES)
             )
@@ -143,18 +143,18 @@ class GradedNode(TurtlesimNode):
         return answer
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """All but those that a run depends on."""
+        """Set parameters, except those that a run depends on."""
         for parameter in parameter_list:
             name, value = parameter.name, parameter.value
             if name not in FIXED or value == (now := self.get_parameter(name).value):
                 continue
-            if type(value) is type(now):  # else there is a better reason
+            if type(value) is type(now):  # else rclpy has a better reason
                 self.allowance.refuse(FIXED[name])
                 return SetParametersResult(successful=False, reason=str(FIXED[name]))
         return super().set_parameters_atomically(parameter_list)
 
     def _on_spawn(self, request: Any, response: Any) -> Any:
-        # cut, it is as wrong as before
+        # as wrong after the cut as before
         request.name = request.name[:LONGEST_NAME]
         if why := self.allowance.why_not_hatch(len(self.arena.turtles)):
             self.get_logger().error(f"Cannot spawn a turtle named [{request.name}]: {why}")
@@ -176,7 +176,7 @@ class GradedNode(TurtlesimNode):
         return super()._on_reset(request, response)
 
     def accepts_goal(self) -> bool:
-        """Whether not too many are known."""
+        """Whether there are not too many goals."""
         if sum(each.action.known for each in self._endpoints.values()) < MOST_GOALS:
             return True
         self.allowance.refuse(
@@ -185,7 +185,7 @@ class GradedNode(TurtlesimNode):
         return False
 
     def on_failure(self, what: str, error: Exception) -> None:
-        """As always; and the result tells it, for nothing should fail."""
+        """Log a failure, and put it into the result: nothing should fail."""
         name = type(error).__name__
         self.allowance.refuse(
             msg("the simulator could not serve {what}: {error}", what=what, error=name)

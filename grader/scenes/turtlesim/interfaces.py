@@ -1,4 +1,4 @@
-"""What turtlesim's node has by name and type, and which package its messages come from.
+"""The endpoints of turtlesim's node, and the package that its messages come from.
 
 ROS 2 has them in `turtlesim` up to Jazzy, in `turtlesim_msgs` from Kilted on
 (`turtlesim_py.ros.interfaces`); one node serves one of them.
@@ -14,7 +14,7 @@ from grader.recording.subject import Endpoint
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros.interfaces import NAMES, NEWER, OLDER, installed, of_release, usual
 
-#: The package's name where Python imports it and where a package.xml depends on it.
+#: The package's name in an import of Python and in a dependency of a package.xml.
 _NAMED = re.compile(
     rf"(?<![\w.])({OLDER}|{NEWER})(?=\.(msg|srv|action)\b)"
     rf"|(?<=from )({OLDER}|{NEWER})(?= import (msg|srv|action)\b)"
@@ -23,13 +23,12 @@ _NAMED = re.compile(
 
 
 def choose(surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
-    """The package that a submission imports, whenever it is run or perhaps; else the usual one.
+    """Return the package that a submission imports, always or perhaps; else the usual one.
 
-    One that is not installed here is not chosen: the submission then fails with its import, as it
-    does in every ROS that is like this one.
+    A package that is not installed is not chosen: the import then fails, as in every ROS like this.
 
     Raises:
-        SubmissionError: it surely imports both.
+        SubmissionError: it always imports both.
     """
     if surely.keys() >= set(NAMES):
         raise SubmissionError(
@@ -42,16 +41,16 @@ def choose(surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
 
 
 def adapted(text: str, ros_distro: str) -> str:
-    """A Python file or a package.xml with the package that a ROS 2 release has."""
+    """Return a Python file or a package.xml with the package that a ROS 2 release has."""
     return _NAMED.sub(of_release(ros_distro), text)
 
 
-#: Of so many turtles; nobody mistakes a name for one of more.
+#: Endpoints of at most so many turtles are listed: enough to recognise a wrong name.
 _MOST_TURTLES = 20
 
 
 def endpoints_of(trace: TurtleTrace, interfaces: str) -> Sequence[Endpoint]:
-    """Those of the turtles, the first turtle's first, then the node's.
+    """Return the endpoints of the turtles, the first turtle's first, then those of the node.
 
     Args:
         interfaces: the package whose messages the run had; '' for the usual one.

@@ -1,7 +1,7 @@
-"""The page on which a graded run is seen while it goes on: the simulator's own, for looking only.
+"""The page that shows a graded run live: the page of the simulator, read-only.
 
-Nobody comes in without the token: a submission's process may have the same network, and is to see
-no verdict. There is no ROS graph behind the page, so nothing that a viewer says leads to a run.
+It needs the token, because a submission's process may have the same network and must not see
+verdicts. There is no ROS graph behind the page, so a viewer cannot affect a run.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class TurtlesimPage:
     """A `grader.scenes.live.LivePage`."""
 
     def __init__(self, port: int) -> None:
-        """Serve it; OSError: that cannot be, as where another one does."""
+        """Serve the page; OSError: that is not possible, as where the port is in use."""
         settings = Settings(
             port,
             is_read_only=True,
@@ -39,38 +39,38 @@ class TurtlesimPage:
 
     @property
     def address(self) -> str:
-        """With the token."""
+        """The address, with the token."""
         return self._server.address
 
     def await_viewer(self, patience_s: float) -> bool:
-        """Wait until somebody looks; whether anybody has."""
+        """Wait for a viewer; return whether one has come."""
         return self._mirror.has_been_seen.wait(patience_s)
 
-    def tell(self, grading: Grading) -> None:
-        """Show what is known now."""
-        self._mirror.tell(grading)
+    def update(self, grading: Grading) -> None:
+        """Show the state of the grading."""
+        self._mirror.update(grading)
 
     def begin(self) -> None:
         """Show an empty window."""
         self._mirror.begin()
 
     def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
-        """Show what happens."""
+        """Show the news of a run, in order."""
         self._mirror.hear(news)
 
     def close(self) -> None:
-        """Send everybody away."""
+        """Disconnect all viewers."""
         self._server.stop()
 
 
 class Mirror:
-    """The arena of a run as another process tells of it: what is painted, where the turtles are.
+    """The arena of a run in another process, from its news: the paint, and the turtles.
 
-    A `turtlesim_py.live.feed.Source`, which stands for `Feed` where the arena itself is out of
-    reach; its methods may be called from any thread.
+    A `turtlesim_py.live.feed.Source` in place of `Feed`, which needs the arena itself; its methods
+    may be called from any thread.
 
     Attributes:
-        has_been_seen: set when somebody looks for the first time.
+        has_been_seen: set when the first viewer has come.
     """
 
     def __init__(self, deliver: Deliver) -> None:
@@ -90,27 +90,27 @@ class Mirror:
         }
 
     def ask(self, viewer: object) -> None:
-        """Have all of it delivered for a viewer."""
+        """Deliver all of the arena to a viewer."""
         with self._lock:
             content = {**self._state, "grading": self._grading}
             self._deliver(News(content, self._canvas.copy(), viewer))
         self.has_been_seen.set()
 
     def begin(self) -> None:
-        """Another run begins: nothing is painted yet."""
+        """Begin another run, with nothing painted."""
         with self._lock:
             self._start()
             self._deliver(News({**self._state, "drawn": [None], "calls": [], "begins": True}))
 
-    def tell(self, grading: Grading) -> None:
-        """Have viewers know what is known of the grading."""
+    def update(self, grading: Grading) -> None:
+        """Deliver the state of the grading."""
         with self._lock:
-            self._grading = _words(grading)
+            self._grading = _content(grading)
             content = {"tick": self._state["tick"], "drawn": [], "calls": []}
             self._deliver(News({**content, "grading": self._grading}))
 
     def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
-        """Take up changes as `Feed` makes them, and hand them on as one."""
+        """Apply changes of a `Feed`, and deliver them as one."""
         if not news:
             return
         drawn: list[Any] = []
@@ -137,8 +137,8 @@ class Mirror:
         self._canvas.paint(Pen(*color), runs)
 
 
-def _words(grading: Grading) -> Mapping[str, Any]:
+def _content(grading: Grading) -> Mapping[str, Any]:
     shown = ("status", "word", "title", "rationale", "help")
     checks = [{name: getattr(each, name) for name in shown} for each in grading.judged]
-    told = {name: value for name, value in asdict(grading).items() if name != "judged"}
-    return {**told, "checks": checks}
+    rest = {name: value for name, value in asdict(grading).items() if name != "judged"}
+    return {**rest, "checks": checks}

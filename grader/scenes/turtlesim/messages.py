@@ -39,7 +39,7 @@ VECTOR, HEADER, TIME = (
     "std_msgs/msg/Header",
     "builtin_interfaces/msg/Time",
 )
-#: Where ROS is not sourced there may be no share/ to ask. Those of ROS's own are Jazzy's.
+#: Definitions of the types, since there may be no share/ where ROS is not sourced; Jazzy's.
 DEFINITIONS = {
     POSE: "float32 x\nfloat32 y\nfloat32 theta\n"
     "float32 linear_velocity\nfloat32 angular_velocity\n",
@@ -68,7 +68,7 @@ SEVERITIES = {level: severity for severity, level in LEVELS.items()}
 
 
 def topics(turtle: str) -> dict[str, str]:
-    """The topics of a turtle that publishes, with their types."""
+    """Return the topics that a turtle publishes, with their types."""
     return {f"/{turtle}/pose": POSE, f"/{turtle}/color_sensor": COLOR}
 
 
@@ -76,7 +76,7 @@ def topics(turtle: str) -> dict[str, str]:
 
 
 def to_messages(trace: TurtleTrace) -> list[BagMessage]:
-    """All messages by time; within a tick inputs, logs, readings, and pictures last."""
+    """Return all messages by time; within a tick inputs, logs, readings, pictures."""
     logs = (
         BagMessage(tick * TICK_NS, LOGS, LOG, _log(tick, severity, name, text))
         for tick, severity, name, text in trace.logs
@@ -92,7 +92,7 @@ def to_messages(trace: TurtleTrace) -> list[BagMessage]:
 
 
 def _readings(turtle: str, way: Trajectory) -> Iterator[BagMessage]:
-    """All but a few messages of a bag are these: packed by columns, not one by one."""
+    """Serialise the readings of a turtle: by columns, since they are most of a bag."""
     pose_topic, color_topic = topics(turtle)
     rows = way.rows()
     poses, colors = _cdr(rows[:, 1:6], _POSE_CDR), _cdr(rows[:, 6:9], _COLOR_CDR)
@@ -102,7 +102,7 @@ def _readings(turtle: str, way: Trajectory) -> Iterator[BagMessage]:
 
 
 def _cdr(columns: npt.NDArray[np.float64], layout: np.dtype[np.void]) -> list[bytes]:
-    """Each row as a serialized message."""
+    """Serialise each row as a message."""
     packed = np.empty(len(columns), layout)
     packed["mark"] = _CDR_MARK
     packed["fields"] = columns
@@ -111,7 +111,7 @@ def _cdr(columns: npt.NDArray[np.float64], layout: np.dtype[np.void]) -> list[by
 
 
 def _input(event: Event) -> BagMessage:
-    """A velocity command as a Twist, all else as JSON."""
+    """Serialise an input: a velocity command as a Twist, all others as JSON."""
     if isinstance(event, CmdVel):
         fields = np.array([[*event.linear, *event.angular]])
         (twist,) = _cdr(fields, _TWIST_CDR)
@@ -153,10 +153,10 @@ def _stamp(made: CdrWriter, tick: int) -> None:
 
 
 def from_channels(channels: Sequence[Channel], ticks: int) -> TurtleTrace:
-    """The trace that a bag's channels say, each of them with a topic of its own.
+    """Parse the channels of a bag, each with a different topic, into a trace.
 
     Raises:
-        ValueError, KeyError, TypeError: they are not what `to_messages` makes.
+        ValueError, KeyError, TypeError: `to_messages` makes no such channels.
     """
     by_topic = {channel.topic: channel for channel in channels}
     events: list[tuple[int, Event]] = []
@@ -202,7 +202,7 @@ def _ticks(channel: Channel) -> Times:
 
 
 def _rows(channel: Channel, msgtype: str, layout: np.dtype[np.void]) -> npt.NDArray[Any]:
-    """The fields of all messages of a channel, (n, number of fields)."""
+    """Return the fields of all messages of a channel, (n, number of fields)."""
     if channel.msgtype != msgtype:
         raise ValueError(f"{channel.topic}: expected a {msgtype}, found a {channel.msgtype}")
     rows = channel.rows(layout)

@@ -1,4 +1,4 @@
-"""What the reader of any result should know: what was done to the arena other than by driving."""
+"""Remarks for every result: how the node changed the arena other than by driving."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from turtlesim_py.world.events import (
 )
 from turtlesim_py.world.turtle import TICK_S
 
-#: Calls that change the arena other than by driving, and what they do.
+#: Call that changes the arena other than by driving -> its effect.
 _INTERVENTIONS: dict[type[Event], Message] = {
     TeleportAbsolute: msg("it moves a turtle without driving"),
     TeleportRelative: msg("it moves a turtle without driving"),
@@ -36,11 +36,11 @@ def _draws_with_0(event: SetPen) -> bool:
 
 
 def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER) -> list[Message]:
-    """One sentence a thing.
+    """Return the remarks, one sentence each.
 
     Args:
         published: the topics that the submission published on.
-        interfaces: the package whose messages it was given.
+        interfaces: the package of turtlesim's messages in the run.
     """
     found: list[Message] = []
     if interfaces == NEWER:

@@ -29,7 +29,7 @@ _TURTLE = f"/{FIRST_TURTLE}"
 
 
 class Turtlesim(Scene):
-    """Here each part of a scene finds its module.
+    """The scene, whose parts are in the modules of this folder.
 
     The modules that need ROS or rosbags are imported where they are used: judging a recording needs
     no ROS, and running a submission no bags.
@@ -49,17 +49,17 @@ class Turtlesim(Scene):
     plane = view.PLANE
     window_is_plane = True
     the_thing = msg("the turtle")
-    #: from the centre to half a metre before a wall; rounded, because authors read it
+    #: from the centre to half a metre before a wall; rounded, for authors of exercises
     farthest_start_m = round(SIZE_M / 2 - 0.5, 2)
 
     def wrong_setting(self, setting: str) -> Message:
-        """Whether it is a scenario."""
+        """Return why a setting is no scenario; NOTHING where it is one."""
         from grader.scenes.turtlesim import setting as scenarios
 
         return scenarios.wrong(setting)
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
-        """Places at a distance from the centre of the window; the same for the same seed."""
+        """Return places at a distance from the centre of the window; the same for the same seed."""
         chance = random.Random(seed)
         found = []
         for _ in range(count):
@@ -71,16 +71,27 @@ class Turtlesim(Scene):
         return found
 
     def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
-        """One of the two packages that turtlesim's messages come from."""
+        """Choose one of the two packages that turtlesim's messages come from."""
         return interfaces.choose(surely, perhaps)
 
     def adapted(self, text: str, ros_distro: str) -> str:
-        """With the package that the release has."""
+        """Return a file with the package of messages that the release has."""
         return interfaces.adapted(text, ros_distro)
 
     def how_to_try(self, program: str, package: str) -> str:
-        """With ros2 and without."""
-        return _how_to_try(program, package)
+        """Explain how to run a node beside turtlesim, and how to see the turtle."""
+        name = PurePath(program).stem
+        parts = [
+            tr("In one terminal the simulator, in another your node:"),
+            _BESIDE.format(command=command_by_hand(program, package)),
+        ]
+        if package:
+            parts += [
+                tr("The same with `ros2`, in a workspace that has this folder in its `src`:"),
+                _WITH_ROS2.format(package=package, name=name),
+            ]
+        parts += [tr("To see the turtle:"), "\n".join(_ways_to_see())]
+        return "\n\n".join(part.strip("\n") for part in parts) + "\n"
 
     def preload(self) -> None:
         """Import the node, decode the picture of the turtle."""
@@ -97,80 +108,80 @@ class Turtlesim(Scene):
         return TurtlesimSimulation(limits, start, hooks, interfaces, setting)
 
     def untouched(self, start: Start | None) -> Trace:
-        """No tick, an empty canvas, and the turtle where it began."""
+        """Return a trace of no tick, with an empty canvas and the turtle at its start."""
         from grader.scenes.turtlesim.driving import drive
 
         return drive(lambda *_: None, 0, start)[0]
 
     def message_definitions(self) -> Mapping[str, str]:
-        """Turtlesim's messages, and ROS's own in its bags."""
+        """Return the definitions of all messages in its bags."""
         from grader.scenes.turtlesim import messages
 
         return messages.DEFINITIONS
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
-        """Those of every turtle, also of one that published nothing."""
+        """List the topics of every turtle, even if it published nothing."""
         from grader.scenes.turtlesim import messages
 
         for turtle in TurtleTrace.of(made).trajectories:
             yield from messages.topics(turtle).items()
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
-        """A trace as messages, by time."""
+        """Serialise a trace as messages, by time."""
         from grader.scenes.turtlesim import messages
 
         return messages.to_messages(TurtleTrace.of(made))
 
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
-        """The trace of a bag's channels; see `grader.scenes.turtlesim.messages`."""
+        """Parse a bag's channels; see `grader.scenes.turtlesim.messages`."""
         from grader.scenes.turtlesim import messages
 
         return messages.from_channels(channels, duration_ns // TICK_NS)
 
     def scenario(self, made: Trace) -> dict[str, Any]:
-        """The inputs, for `python -m turtlesim_py.scenario`."""
+        """Return the inputs for `python -m turtlesim_py.scenario`."""
         events = TurtleTrace.of(made).events
         within = [to_json(event) for event in events if 1 <= event.tick <= made.ticks]
         return {"ticks": made.ticks, "events": within}
 
     def behaviour(self, made: Trace) -> Behaviour:
-        """Commands, pens, jumps, and the way of the first turtle."""
+        """Return all inputs, and the path of the first turtle."""
         return behaviour(TurtleTrace.of(made))
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
-        """Those of the node and of each turtle."""
+        """Return the endpoints of the node and of each turtle."""
         return endpoints_of(TurtleTrace.of(made), interfaces)
 
     def pictures(self, made: Trace) -> Pictures:
-        """The original's window, and the path alone."""
-        taken = TurtleTrace.of(made)
-        return Pictures(taken.window, {"path": taken.canvas})
+        """Return the original's window, and the path alone."""
+        trace = TurtleTrace.of(made)
+        return Pictures(trace.window, {"path": trace.canvas})
 
     def view(self, made: Trace) -> View:
-        """Ways, pens and curves."""
+        """Return tracks, pens and curves."""
         return view.view(TurtleTrace.of(made))
 
     @property
     def player(self) -> Callable[[Playback], str]:
-        """The page that plays runs."""
+        """The function that renders the page that plays runs."""
         from grader.scenes.turtlesim.player.page import render
 
         return render
 
     def live_page(self, port: int) -> LivePage:
-        """The simulator's own page, for looking only."""
+        """Serve the simulator's page, read-only."""
         from grader.scenes.turtlesim.live import TurtlesimPage
 
         return TurtlesimPage(port)
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        """What odd nodes draw."""
+        """Return the traces of odd nodes."""
         from grader.scenes.turtlesim.driving import odd_traces
 
         return odd_traces(start)
 
     def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
-        """What was done to the arena other than by driving, and for which ROS that was."""
+        """Return remarks on changes of the arena other than by driving, and on the messages."""
         return remarks.remarks(TurtleTrace.of(made), published, interfaces)
 
 
@@ -185,24 +196,8 @@ _WITH_ROS2 = """\
 """
 
 
-def _how_to_try(program: str, package: str) -> str:
-    """How a student runs a node beside turtlesim by hand, and sees the turtle."""
-    name = PurePath(program).stem
-    parts = [
-        tr("In one terminal the simulator, in another your node:"),
-        _BESIDE.format(command=command_by_hand(program, package)),
-    ]
-    if package:
-        parts += [
-            tr("The same with `ros2`, in a workspace that has this folder in its `src`:"),
-            _WITH_ROS2.format(package=package, name=name),
-        ]
-    parts += [tr("To see the turtle:"), "\n".join(_seen())]
-    return "\n\n".join(part.strip("\n") for part in parts) + "\n"
-
-
-def _seen() -> Iterator[str]:
-    """What shows the turtle, a point of a list each."""
+def _ways_to_see() -> Iterator[str]:
+    """Yield the ways to see the turtle, each as an item of a list."""
     points = (
         tr(
             "Every grading leaves `report.html`: the picture, the way, an animation, the speeds "

@@ -1,7 +1,7 @@
 """A setting of turtlesim: a scenario, played beside the submission as `turtlesim_py.scenario` does.
 
-It may have any turtles: what it spawns, drives or teleports in a tick happens before what the
-submission has sent for that tick.
+It may have any turtles. Its events of a tick happen before those that the submission has sent for
+that tick.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from grader.message import NOTHING, Message, msg
 from turtlesim_py.scenario import ScenarioError, events_by_tick, replay
 from turtlesim_py.world.events import Event, Spawn
 
-#: A scenario is played through when an exercise is loaded: no longer than an hour [ticks].
+#: The longest scenario [ticks]: an hour. It is replayed when an exercise is loaded.
 MOST_TICKS = 225_000
 
 
 def script(setting: str) -> tuple[Sequence[Event], Mapping[int, Sequence[Event]]]:
-    """What a scenario does before a run begins, and in which tick, 1 for the first recorded.
+    """Return a scenario's events before a run begins, and those by tick; 1 is recorded first.
 
-    Turtles are spawned in tick 1, and are there before: a submission that waits for one that comes
-    later would be taken for one that waits in vain.
+    Turtles of tick 1 are spawned before the run: a submission that waits for a later one would look
+    as if it waited in vain.
     """
     if not setting:
         return (), {}
@@ -30,14 +30,14 @@ def script(setting: str) -> tuple[Sequence[Event], Mapping[int, Sequence[Event]]
         tick: [event for _, event in each]
         for tick, each in events_by_tick(_scenario(setting)).items()
     }
-    there = [event for event in by_tick.get(1, ()) if isinstance(event, Spawn)]
-    if there:
-        by_tick[1] = [event for event in by_tick[1] if event not in there]
-    return there, by_tick
+    spawned = [event for event in by_tick.get(1, ()) if isinstance(event, Spawn)]
+    if spawned:
+        by_tick[1] = [event for event in by_tick[1] if event not in spawned]
+    return spawned, by_tick
 
 
 def wrong(setting: str) -> Message:
-    """Why a text is no scenario; NOTHING where it is one, or is empty."""
+    """Return why a text is no scenario; NOTHING where it is one, or is empty."""
     if not setting:
         return NOTHING
     try:

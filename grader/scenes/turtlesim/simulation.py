@@ -1,4 +1,4 @@
-"""The scene at work: a turtlesim node, served and ticked, with a recorder."""
+"""The simulation: a turtlesim node that is served and ticked, and a recorder."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grader.message import Message
 from grader.recording.subject import Start
 from grader.scenes.scene import GRACE_TICKS, Forecast, Hooks, Limits, Reason, Simulation
 from grader.scenes.turtlesim.allowance import MOST_LOGS
-from grader.scenes.turtlesim.driving import Recorder
+from grader.scenes.turtlesim.driving import Recorder, place
 from grader.scenes.turtlesim.graded_node import GradedNode
 from grader.scenes.turtlesim.setting import script
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
@@ -22,7 +22,7 @@ from turtlesim_py.world.turtle import TICK_S, Pose, Reading
 
 
 class TurtlesimSimulation(Simulation):
-    """One arena, its node, a recorder, and the rule for the end.
+    """An arena with its node, a recorder, and the rule that ends the run.
 
     Attributes:
         node: `/turtlesim`.
@@ -35,54 +35,55 @@ class TurtlesimSimulation(Simulation):
     ) -> None:
         super().__init__()
         self.node = GradedNode(hooks, interfaces)
-        _place(self.node.arena, start)
+        place(self.node.arena, start)
         self._recorder = Recorder(self.node.arena, MOST_LOGS)
         self._end = EndOfRun(limits)
-        there, self._script = script(setting)
-        self.node.play(there, None)
-        self._feed = None if hooks.tell is None else _feed(self.node.arena, hooks.tell)
+        before, self._script = script(setting)
+        self.node.play(before, None)
+        send = hooks.send_news
+        self._feed = None if send is None else _feed(self.node.arena, send)
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether turtle1 has moved, and does not now."""
+        """Whether turtle1 has moved, and rests now."""
         return self._end.is_at_rest
 
     @property
     def flags(self) -> tuple[Message, ...]:
-        """What the submission asked for and did not get."""
+        """Requests of the submission that were refused."""
         return self.node.allowance.flags
 
     @property
     def ticks(self) -> int:
-        """How many ticks were recorded."""
+        """The number of recorded ticks."""
         return self._recorder.ticks
 
     def submission_gone(self) -> None:
-        """The submission's process has ended."""
+        """Note that the submission's process has ended."""
         self._end.submission_gone()
 
     def tick(self, now_ns: int | None = None) -> Reason:
-        """Serve what has arrived, let a tick pass; why the run is over, or ''."""
+        """Serve what has arrived and let a tick pass; return why the run is over, or ''."""
         if self.records and (events := self._script.get(self._recorder.ticks + 1)):
             self.node.play(events, now_ns)
         readings = self.node.tick(now_ns)
         if self._feed is not None:
             self._feed.after_tick(readings)
-        return self._take(readings) if self.records else ""
+        return self._record(readings) if self.records else ""
 
-    def _take(self, readings: dict[str, Reading]) -> Reason:
-        self._recorder.take(readings)
+    def _record(self, readings: dict[str, Reading]) -> Reason:
+        self._recorder.record(readings)
         poses = {name: reading.pose for name, reading in readings.items()}
         return self._end.after(self._recorder.ticks, self._about(poses))
 
     def _about(self, poses: Mapping[str, Pose]) -> Mapping[str, Pose]:
-        """Those of the turtles that the run is about: turtle1; where a script has others, all."""
+        """Return the poses that can end the run: turtle1's, or all where there is a script."""
         if self._script:
             return poses
         return {FIRST_TURTLE: poses[FIRST_TURTLE]} if FIRST_TURTLE in poses else {}
 
     def foresee(self, most: int) -> Forecast:
-        """The next ticks, so many at most: as far as they are certain if nothing arrives."""
+        """Return at most so many of the next ticks that are certain if nothing arrives."""
         end = copy(self._end)
         ticks = count(self._recorder.ticks + 1)
 
@@ -93,23 +94,23 @@ class TurtlesimSimulation(Simulation):
         return self.node.foresee(most, goes_on)
 
     def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
-        """As `tick`, in a tick that was foreseen: publishes nothing, returns what it would have."""
+        """Let a foreseen tick pass without publishing; return as `tick`, and the messages."""
         readings = self.node.pass_tick(now_ns)
         if self._feed is not None:
             self._feed.after_tick(readings)
         poses = tuple([pose_bytes(reading.pose) for reading in readings.values()])
-        return self._take(readings), poses
+        return self._record(readings), poses
 
     def trace(self) -> TurtleTrace:
-        """Everything recorded up to now."""
+        """Return the recording up to now."""
         return self._recorder.trace()
 
 
-def _feed(arena: Arena, tell: Callable[[Mapping[str, Any]], None]) -> Feed:
-    """What tells of every tick, and has told already where the run begins."""
+def _feed(arena: Arena, send: Callable[[Mapping[str, Any]], None]) -> Feed:
+    """Return a feed that sends the news of every tick; the state at the begin is sent here."""
 
     def deliver(news: News) -> None:
-        tell(news.content)  # nobody asks for a whole: who looks on knows all from the beginning
+        send(news.content)  # never all of an arena: the audience has the news from the beginning
 
     feed = Feed(arena, deliver, together=1)
     feed.is_watched = True
@@ -117,18 +118,12 @@ def _feed(arena: Arena, tell: Callable[[Mapping[str, Any]], None]) -> Feed:
     return feed
 
 
-def _place(arena: Arena, start: Start | None) -> None:
-    """Put turtle1 where a run is to begin, without a stroke and before anything is recorded."""
-    if start is not None:
-        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
-
-
 class EndOfRun:
-    """Decides when there is nothing more to see.
+    """Decides when the run is over.
 
     The turtle has driven and rested; or nothing has moved for too long; or the submission is gone
-    and nothing moved; or time is up. Who has only turned on the spot has not begun to drive, and
-    may pause for as long as anybody may before the first motion.
+    and nothing moved; or time is up. A turtle that has only turned on the spot may rest for as long
+    as before the first motion.
     """
 
     def __init__(self, limits: Limits) -> None:
@@ -141,15 +136,15 @@ class EndOfRun:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether the turtle has moved, and does not now."""
+        """Whether the turtle has moved, and rests now."""
         return self._moved and self._still_ticks > 0
 
     def submission_gone(self) -> None:
-        """The submission's process has ended."""
+        """Note that the submission's process has ended."""
         self._gone_ticks = 0
 
     def after(self, tick: int, poses: Mapping[str, Pose]) -> Reason:
-        """Why to stop after this tick, or ''; `poses` are of the turtles that the run is about."""
+        """Return why to stop after this tick, or ''; `poses` are those that can end the run."""
         self._watch(poses)
         if self._gone_ticks is not None:
             self._gone_ticks += 1
@@ -162,7 +157,7 @@ class EndOfRun:
         return "no_motion" if tick * TICK_S >= self._limits.first_motion_s else ""
 
     def _patience_s(self) -> float:
-        """How long a rest ends the run [s]."""
+        """Return the length of a rest that ends the run [s]."""
         has_begun = self._driven or self._gone_ticks is not None
         rest_s = self._limits.rest_s
         return rest_s if has_begun else max(rest_s, self._limits.first_motion_s)

@@ -1,7 +1,7 @@
-"""What a run of turtlesim leaves: where each turtle was, what came in, what the pens drew.
+"""The trace of a run of turtlesim: trajectories, inputs, log, and the drawing.
 
-A recording may come from anywhere: poses and velocities can be any numbers, also none, because a
-student's node sends what it likes. Ticks, pens, names and pictures cannot, and are checked.
+A recording may come from anywhere. Poses and velocities may be any number or NaN, because a
+student's node may send them; ticks, pens, names and pictures are checked.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Pixels = npt.NDArray[np.uint8]
 Value = TypeVar("Value", int, str)
 #: The turtle that exercises are about.
 FIRST_TURTLE = "turtle1"
-#: How every turtle of a graded run looks.
+#: The picture of every turtle in a graded run.
 SPRITE = "rolling"
 
 
@@ -52,10 +52,10 @@ class TurtleTrace:
     """A recorded run of turtlesim.
 
     Attributes:
-        ticks: how many were recorded, of 16 ms each.
+        ticks: the number of recorded ticks, of 16 ms each.
         events: every input to the arena, in the order in which they came.
-        trajectories: turtle -> what it published, in the order in which the turtles appeared.
-        logs: what the simulator logged.
+        trajectories: turtle -> what it published, in the order of their appearance.
+        logs: the simulator's log.
         canvas: the drawn path at the end, uint8 array (500, 500, 4), alpha 0 where unpainted.
         window: path, background and turtles at the end, uint8 array (500, 500, 3).
     """
@@ -69,10 +69,10 @@ class TurtleTrace:
 
     @classmethod
     def of(cls, trace: Trace) -> Self:
-        """A recording's trace as what it is.
+        """Narrow the type of a recording's trace.
 
         Raises:
-            TypeError: it is another scene's.
+            TypeError: it is a trace of another scene.
         """
         if not isinstance(trace, cls):
             raise TypeError(f"expected a trace of turtlesim, found a {type(trace).__name__}")
@@ -80,21 +80,21 @@ class TurtleTrace:
 
     @property
     def duration_ns(self) -> int:
-        """How long was recorded [ns]."""
+        """The recorded time [ns]."""
         return self.ticks * TICK_NS
 
     def of_kind(self, kind: type[SomeEvent], turtle: str = FIRST_TURTLE) -> list[SomeEvent]:
-        """The inputs of one kind, in order; of a kind that names a turtle, those to this one."""
+        """Return the inputs of one kind, in order; of a kind that names a turtle, those to it."""
         found = (event for event in self.events if isinstance(event, kind))
         return [event for event in found if getattr(event, "turtle", turtle) == turtle]
 
     def trajectory(self, turtle: str = FIRST_TURTLE) -> Trajectory:
-        """What a turtle published; nothing where there was none of that name."""
+        """Return what a turtle published; empty where there was none of that name."""
         empty = Trajectory.of_rows(np.zeros((0, 9)))
         return self.trajectories.get(turtle, empty)
 
     def sha256(self) -> str:
-        """A hash of every pose and every input; equal hashes mean equal runs."""
+        """Hash every pose and every input; equal hashes mean equal runs."""
         digest = hashlib.sha256()
         for name in sorted(self.trajectories):
             digest.update(name.encode())
@@ -104,15 +104,15 @@ class TurtleTrace:
 
 
 def stands_still(command: CmdVel) -> bool:
-    """Whether a velocity command says to stand still."""
+    """Whether a velocity command stops the turtle."""
     return not command.linear[0] and not command.angular[2]
 
 
 def check(trace: TurtleTrace) -> None:
-    """Refuse what the recorder never writes.
+    """Refuse a trace that no recorder writes.
 
     Raises:
-        ValueError: something in it cannot have been recorded; the text says what.
+        ValueError: something in it cannot have been recorded; the text names it.
     """
     for event in trace.events:
         _check_event(event, trace.ticks)
@@ -140,7 +140,7 @@ def _check_event(event: Event, ticks: int) -> None:
 
 
 def _check_tick(what: str, tick: int, ticks: int) -> None:
-    # what comes after the last tick would have taken effect in the next one
+    # inputs after the last tick have the number of the next one
     if not 0 <= tick <= ticks + 1:
         raise ValueError(f"{what} at tick {tick!r:.40} of {ticks}")
 
@@ -153,9 +153,9 @@ def _check_way(name: str, way: Trajectory, ticks: int) -> None:
 
 
 def behaviour(trace: TurtleTrace) -> Behaviour:
-    """Every input to the arena, and turtle1's way up to where it was nowhere.
+    """Return every input to the arena, and turtle1's path while its position was finite.
 
-    A velocity command counts by what the node takes from it: ahead, sideways, turning.
+    Of a velocity command the values count that the node uses: ahead, sideways, turning.
     """
     way = trace.trajectory()
     path = until_lost(np.column_stack((way.x, way.y)))

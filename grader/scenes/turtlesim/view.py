@@ -1,6 +1,6 @@
-"""A recorded run for a page: ways in pixels with the pens that drew them, and curves over time.
+"""A recorded run for a page: tracks in pixels with their pens, and curves over time.
 
-What of it stands in words is made by `words.py`.
+Its texts are made by `words.py`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ PLANE = Plane(SIZE_PX, METER_PX, SIZE_M)
 
 
 def view(trace: TurtleTrace) -> View:
-    """Everything that a page shows of a run."""
+    """Return all that a page shows of a run."""
     names = list(trace.trajectories)
     first = FIRST_TURTLE if FIRST_TURTLE in names else next(iter(names), None)
     names.sort(key=lambda name: (name != first, name))
@@ -56,7 +56,7 @@ def _track(trace: TurtleTrace, name: str) -> Track:
 
 
 def _rest(way: Trajectory) -> Rest | None:
-    """Where it stood still at the end; None if it was moving, never moved, or is nowhere."""
+    """Return the rest at the end; None if it was moving, never moved, or has no finite place."""
     moved = np.flatnonzero((np.diff(way.x) != 0) | (np.diff(way.y) != 0)) + 1
     if not len(moved) or moved[-1] == len(way) - 1:
         return None
@@ -80,7 +80,7 @@ def _curves(trace: TurtleTrace, name: str) -> tuple[Curve, ...]:
 
 
 def _rate(trace: TurtleTrace, name: str) -> Floats:
-    """Velocity commands a second, for each tick: over the interval that ends with a command."""
+    """Return velocity commands a second for each tick, over the interval up to each command."""
     rate = np.zeros(trace.ticks)
     ticks, counts = np.unique(
         np.array([command.tick for command in trace.of_kind(CmdVel, name)], dtype=np.int64),
@@ -99,13 +99,13 @@ def _call(event: Event, trace: TurtleTrace) -> Call:
 
 
 def _where(way: Trajectory, tick: int) -> Message:
-    """In which part of the window it was in a tick, or the last time before it."""
+    """Return the part of the window that it was in, in a tick or the last one before it."""
     row = int(np.searchsorted(way.ticks, tick, side="right")) - 1
     return words.quarter(float(way.x[row]), float(way.y[row])) if row >= 0 else NOTHING
 
 
 def _background(trace: TurtleTrace) -> str:
-    """The commonest colour of the window where nothing is painted."""
+    """Return the commonest colour of the window where nothing is painted."""
     unpainted: npt.NDArray[np.uint8] = trace.window[trace.canvas[..., 3] == 0]
     if not len(unpainted):
         return "#4556ff"

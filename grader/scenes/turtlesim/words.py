@@ -1,7 +1,7 @@
-"""A run in words, for those who do not see its colours: what a call asked for, what is drawn where.
+"""A run in words, for readers that do not see colours: requests, and the drawing by quadrant.
 
-A place is a quarter of the window, with the number that the quadrant has in mathematics. A colour
-is named after its hue, roughly, and its numbers always follow.
+Quadrants have their numbers of mathematics. A colour is named roughly after its hue, followed by
+its RGB values.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ QUADRANTS = {
     3: msg("bottom left (quadrant III)"),
     4: msg("bottom right (quadrant IV)"),
 }
-#: Up to which hue [degrees] a colour is called so.
+#: The largest hue [degrees] of a name.
 _HUES = (
     (15, msg("red")),
     (45, msg("orange")),
@@ -49,13 +49,13 @@ _HUES = (
     (345, msg("pink")),
     (360, msg("red")),
 )
-#: A text that a submission has chosen is not shown beyond this.
+#: The most characters that are shown of a submission's text.
 _NAME_LIMIT = 80
 
 
 @lru_cache(1024)
 def color(r: int, g: int, b: int) -> Message:
-    """A colour, each part 0-255: 'red (255, 0, 0)'."""
+    """Name a colour, each part 0-255: 'red (255, 0, 0)'."""
     return msg("{name} ({r}, {g}, {b})", name=_named(r, g, b), r=r, g=g, b=b)
 
 
@@ -72,7 +72,7 @@ def _named(r: int, g: int, b: int) -> Message:
 
 
 def quarter(x: float, y: float) -> Message:
-    """The quarter of the window that a place [m] lies in; '' for one that is not a number."""
+    """Return the quarter of the window that a place [m] lies in; '' for one that is not finite."""
     if not (math.isfinite(x) and math.isfinite(y)):
         return NOTHING
     right, top = x >= SIZE_M / 2, y >= SIZE_M / 2
@@ -80,10 +80,10 @@ def quarter(x: float, y: float) -> Message:
 
 
 def asked_for(event: Event) -> Message:
-    """What an input asked for; '' where its name says all."""
+    """Describe the arguments of an input; '' where it has none."""
     turtle = getattr(event, "turtle", FIRST_TURTLE)
-    said = _asked_for(event)
-    return said if turtle == FIRST_TURTLE else joined([_own(turtle), ": ", said])
+    request = _asked_for(event)
+    return request if turtle == FIRST_TURTLE else joined([_clipped(turtle), ": ", request])
 
 
 def _asked_for(event: Event) -> Message:
@@ -99,12 +99,12 @@ def _asked_for(event: Event) -> Message:
         case RotateAbsolute():
             return msg("to heading {heading}", heading=_degrees(event.theta))
         case Spawn():
-            name = as_message(_own(event.name)) or msg("a name of its choice")
+            name = as_message(_clipped(event.name)) or msg("a name of its choice")
             return joined([name, text.place(event.x, event.y)], ", ")
         case Kill():
-            return plain_text(_own(event.name))
+            return plain_text(_clipped(event.name))
         case SetParameter():
-            return plain_text(f"{_own(event.name)} = {_own(str(event.value))}")
+            return plain_text(f"{_clipped(event.name)} = {_clipped(str(event.value))}")
     return NOTHING
 
 
@@ -116,12 +116,12 @@ def _degrees(theta: float) -> str:
     return f"{math.degrees(theta):.0f}°"
 
 
-def _own(name: str) -> str:
+def _clipped(name: str) -> str:
     return text.clip(text.one_line(text.plain(name)), _NAME_LIMIT)
 
 
 def drawn(canvas: Pixels, background: str) -> tuple[Message, ...]:
-    """What shows of the ink in each quarter of a canvas (height, width, 4), quadrant by quadrant.
+    """Describe the visible ink in each quarter of a canvas (height, width, 4), by quadrant.
 
     Args:
         background: the window's colour, "#rrggbb"; ink of this colour does not show.

@@ -229,7 +229,7 @@ def test_who_was_in_time_is_told_so(hand_in, words):
     made = Result.from_json(samples.result() | {"handed_in": to_json(hand_in)})
     report = samples.report(handed_in=to_json(hand_in))
     assert (report.score, report.deducted) == (made.score, 0)
-    assert all(word in " ".join(report.handed_in) for word in words)
+    assert all(word in " ".join(report.notes) for word in words)
 
 
 @pytest.mark.parametrize(

@@ -4,25 +4,25 @@
 (() => {
   const SVG = "http://www.w3.org/2000/svg";
   const all = (selector, root = document) => [...root.querySelectorAll(selector)];
-  const films = JSON.parse(document.getElementById("films").textContent);
+  const animations = JSON.parse(document.getElementById("animations").textContent);
   const words = JSON.parse(document.getElementById("words").textContent);
   document.documentElement.classList.add("script");
 
   /** The index of the last sample that is not after `time`. */
-  function sampleAt(film, time) {
-    let low = 0, high = film.t.length - 1;
+  function sampleAt(animation, time) {
+    let low = 0, high = animation.t.length - 1;
     while (low < high) {
       const middle = Math.ceil((low + high) / 2);
-      if (film.t[middle] <= time) low = middle; else high = middle - 1;
+      if (animation.t[middle] <= time) low = middle; else high = middle - 1;
     }
     return low;
   }
 
   class Player {
-    constructor(run, film) {
+    constructor(run, animation) {
       const root = document.querySelector(`.pictures .run[data-run="${run}"]`);
-      this.film = film;
-      this.end = film.t[film.t.length - 1];
+      this.animation = animation;
+      this.end = animation.t[animation.t.length - 1];
       this.controls = root.querySelector(".player");
       this.button = root.querySelector(".play");
       this.slider = root.querySelector(".player input");
@@ -85,8 +85,8 @@
       }
       this.veil.setAttribute("visibility", atEnd ? "hidden" : "visible");
       this.layer.setAttribute("visibility", atEnd ? "hidden" : "visible");
-      const sample = sampleAt(this.film, time);
-      this.turtles.forEach((turtle, k) => this.place(turtle, this.film.tracks[k], sample, atEnd));
+      const sample = sampleAt(this.animation, time);
+      this.turtles.forEach((turtle, k) => this.place(turtle, this.animation.tracks[k], sample, atEnd));
       if (!atEnd) this.draw(sample);
     }
 
@@ -100,7 +100,7 @@
     /** One line for each stretch of ink, made when it is first needed. */
     prepare() {
       this.lines = [];
-      for (const track of this.film.tracks) {
+      for (const track of this.animation.tracks) {
         for (const [first, last, color, width] of track.ink) {
           const element = document.createElementNS(SVG, "polyline");
           element.setAttribute("stroke", color);
@@ -113,7 +113,7 @@
 
     draw(sample) {
       if (this.lines === null) this.prepare();
-      const cleared = Math.max(0, ...this.film.cleared.filter((at) => at <= sample));
+      const cleared = Math.max(0, ...this.animation.cleared.filter((at) => at <= sample));
       for (const line of this.lines) {
         const until = Math.min(line.last, sample);
         const shown = until > line.first && until > cleared ? until * 100000 + cleared : 0;
@@ -131,9 +131,9 @@
   }
 
   const players = {};
-  for (const [run, film] of Object.entries(films)) {
-    if (film.t.length && document.querySelector(`.pictures .run[data-run="${run}"] .player`)) {
-      players[run] = new Player(run, film);
+  for (const [run, animation] of Object.entries(animations)) {
+    if (animation.t.length && document.querySelector(`.pictures .run[data-run="${run}"] .player`)) {
+      players[run] = new Player(run, animation);
     }
   }
 

@@ -1,1 +1,1 @@
-"""The page that plays runs of turtlesim: films of them, and the page itself."""
+"""The page that plays runs of turtlesim: animations of them, and the page itself."""

@@ -1,4 +1,4 @@
-"""The page that plays runs: one file, without network, whose only script is our own."""
+"""The page that plays runs: one file, without network, and with one script."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from typing import Any
 import turtlesim_py
 from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
 from grader.scenes.turtlesim.player import runs
-from grader.scenes.turtlesim.player.film import film
+from grader.scenes.turtlesim.player.replay import animate
 from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
 from grader.translations import catalogue, current, tr
 from turtlesim_py.world import picture
 from turtlesim_py.world.turtle import TICK_S
 
 _PAGE = Path(__file__).with_name("page")
-#: Where the window is drawn that the live page shows, too, and what both say.
+#: The modules and sentences that the live page has too: the window is drawn there.
 _LIVE_PAGE = Path(turtlesim_py.__file__).parent / "live" / "page"
 
 
 def render(playback: Playback) -> str:
-    """The page, with films of all runs in it.
+    """Return the page, with an animation of each run in it.
 
     Raises:
         RecordingError: a run cannot be played.
@@ -40,7 +40,7 @@ def render(playback: Playback) -> str:
         "sprites": {SPRITE: base64.b64encode(picture.sprite(SPRITE).tobytes()).decode()},
         "sprite": SPRITE,
         "title": playback.title,
-        "runs": [_run(take) for take in playback.runs],
+        "runs": [_run(run) for run in playback.runs],
         "judged": [_judged(item) for item in playback.judged],
         "other": None if playback.other is None else _other(playback, playback.other),
     }
@@ -58,13 +58,13 @@ def render(playback: Playback) -> str:
     )
 
 
-def _run(take: PlayedRun) -> dict[str, Any]:
-    made = film(TurtleTrace.of(take.trace), take.start)
+def _run(run: PlayedRun) -> dict[str, Any]:
+    animation = animate(TurtleTrace.of(run.trace), run.start)
     return {
-        "title": take.title,
-        "outcome": take.outcome,
-        **made,
-        **runs.with_lines(made["calls"], take.sent),
+        "title": run.title,
+        "outcome": run.outcome,
+        **animation,
+        **runs.with_lines(animation["calls"], run.sent),
     }
 
 
@@ -77,7 +77,7 @@ def _other(playback: Playback, other: Playback) -> dict[str, Any]:
     return {
         "title": other.title,
         "summary": other.summary,
-        "runs": [_run(take) for take in other.runs],
+        "runs": [_run(run) for run in other.runs],
         "differences": [
             runs.first_difference(TurtleTrace.of(one.trace), TurtleTrace.of(two.trace))
             for one, two in traces
@@ -86,7 +86,7 @@ def _other(playback: Playback, other: Playback) -> dict[str, Any]:
 
 
 def _in_html(data: Any) -> str:
-    """JSON that no parser of HTML takes for anything else."""
+    """Serialise as JSON that an HTML parser cannot mistake for markup."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     for letter in "<>&":
         text = text.replace(letter, f"\\u{ord(letter):04x}")
@@ -95,12 +95,12 @@ def _in_html(data: Any) -> str:
 
 @cache
 def _sentences(language: str) -> dict[str, str]:
-    """What the page says instead of each English sentence; what is not there stays English."""
+    """Return the translation of each English sentence of the page; the others stay English."""
     source = " ".join((_script() + (_PAGE / "player.html").read_text(encoding="utf-8")).split())
     file = _LIVE_PAGE / f"{language}.json"
     shared = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    own = ((key, said) for key, said in catalogue(language).items() if isinstance(said, str))
-    return {key: said for key, said in own if key in source} | shared
+    texts = ((key, text) for key, text in catalogue(language).items() if isinstance(text, str))
+    return {key: text for key, text in texts if key in source} | shared
 
 
 @cache
@@ -114,7 +114,7 @@ def _template() -> Template:
 
 
 def _moment(item: Moment) -> dict[str, Any]:
-    """As the page's script reads it, which counts ticks."""
+    """Return a moment as the page's script reads it, with its tick."""
     x, y = item.place or (None, None)
     tick = round(item.time_s / TICK_S)
     return {"number": item.number, "run": item.run, "tick": tick, "x": x, "y": y, "text": item.text}
@@ -125,16 +125,16 @@ _EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))
 
 
 def join_modules(entry: str, folders: Sequence[Path]) -> str:
-    """A script that runs the JavaScript module of this name, after all that it imports.
+    """Return a script that runs a JavaScript module, after all that it imports.
 
-    Modules are written with the few forms of import and export that are read here; a page that is
-    served loads the same files as they are.
+    Only a few forms of import and export are parsed here; a served page loads the same files as
+    they are.
 
     Args:
-        folders: where modules are looked for, one after another.
+        folders: that modules are searched in, one after another.
 
     Raises:
-        ValueError: a module is in none of them, or written otherwise.
+        ValueError: a module is in none of them, or has another form of import or export.
     """
     parts = ['"use strict";', "const modules = {};"]
     _add(entry, folders, parts, [])

@@ -1,7 +1,7 @@
-"""What the page shows of runs beside the animation: the lines behind calls, where runs differ.
+"""The lines of code behind calls, and the first difference of two runs, for the page.
 
-The submission's process counts what it sends, the simulator what arrives. Where both are as many by
-a name, the first is the first and the last the last; else only the first is known, if anything.
+The submission's process counts the messages that it sends by a name, the simulator those that
+arrive. Where the counts agree, each belongs to its line; else only the line of the first is known.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from grader.recording.playback import Line, Sent
 from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.events import to_json
 
-#: Services that are the node's own, and no turtle's.
+#: Services of the node, not of a turtle.
 _OF_THE_NODE = frozenset(("clear", "reset", "spawn", "kill"))
 
 
 def with_lines(calls: Sequence[Mapping[str, Any]], sent: Sequence[Sent]) -> dict[str, Any]:
-    """`{"calls", "lines"}`: the calls, with `line` where it is known, a number in the lines."""
+    """Return `{"calls", "lines"}`: each call has its `line`, an index, where that is known."""
     by_name = defaultdict(list)
     for index, call in enumerate(calls):
         by_name[_name(call)].append(index)
@@ -28,7 +28,7 @@ def with_lines(calls: Sequence[Mapping[str, Any]], sent: Sequence[Sent]) -> dict
     for each in sent:
         where = [line for line, times in each.order for _ in range(min(times, len(calls) + 1))]
         came = by_name[each.name]
-        # the simulator has missed something, or hears of somebody else, too
+        # the simulator has missed some, or another process sends by this name too
         surely = where if each.times == len(came) else where[:1]
         for index, line in zip(came, surely, strict=False):
             known[index] = lines.setdefault(each.lines[line], len(lines))
@@ -42,14 +42,14 @@ def with_lines(calls: Sequence[Mapping[str, Any]], sent: Sequence[Sent]) -> dict
 
 
 def _name(call: Mapping[str, Any]) -> str:
-    """The topic or service that a call came by; '' for what is none."""
+    """Return the topic or service that a call came by; '' where it came by none."""
     if call["op"] in _OF_THE_NODE:
         return f"/{call['op']}"
     return f"/{call['turtle']}/{call['op']}" if "turtle" in call else ""
 
 
 def first_difference(mine: TurtleTrace, other: TurtleTrace) -> dict[str, Any] | None:
-    """The first tick in which not the same came in, and what did; None where all is the same.
+    """Return the first tick whose inputs differ, with these; None where none does.
 
     `{"tick", "mine": [...], "other": [...]}`, with the inputs of that tick as JSON.
     """
@@ -61,9 +61,9 @@ def first_difference(mine: TurtleTrace, other: TurtleTrace) -> dict[str, Any] | 
 
 
 def _by_tick(trace: TurtleTrace) -> dict[int, list[Any]]:
-    """Inputs by tick. Goals are told apart by ids that nobody chooses: these are left out."""
-    found: dict[int, list[Any]] = defaultdict(list)
+    """Return the inputs by tick, without the ids of goals, which are random."""
+    by_tick: dict[int, list[Any]] = defaultdict(list)
     for event in trace.events:
-        words = to_json(event)
-        found[event.tick].append({key: words[key] for key in words if key not in ("id", "tick")})
-    return dict(found)
+        data = to_json(event)
+        by_tick[event.tick].append({key: data[key] for key in data if key not in ("id", "tick")})
+    return dict(by_tick)

@@ -238,16 +238,16 @@ def test_evidence_and_picture_point_to_each_other(page):
     assert {a["href"] for a in numbers} == {"#pin1", "#pin2"}
 
 
-def test_every_run_has_a_picture_plots_and_a_film(page):
+def test_every_run_has_a_picture_plots_and_an_animation(page):
     pictures = elements(page, "image")
     assert [a["href"][:22] for a in pictures] == ["data:image/png;base64,"] * 2
     assert classes(page, "figure").count("plot") == 8
-    data = re.findall(r'id="films">(.*?)</script>', page, re.DOTALL)[0]
-    films = json.loads(data)
-    assert films.keys() == {"0", "1"}
-    for film in films.values():
-        (track,) = film["tracks"]
-        assert len(film["t"]) == len(track["x"]) == len(track["y"]) == len(track["a"])
+    data = re.findall(r'id="animations">(.*?)</script>', page, re.DOTALL)[0]
+    animations = json.loads(data)
+    assert animations.keys() == {"0", "1"}
+    for animation in animations.values():
+        (track,) = animation["tracks"]
+        assert len(animation["t"]) == len(track["x"]) == len(track["y"]) == len(track["a"])
         assert track["ink"][0][2] == "#ffffff"
 
 

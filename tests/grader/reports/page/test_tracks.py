@@ -3,15 +3,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from grader.reports.page.tracks import film, svg_path
+from grader.reports.page.tracks import animation, svg_path
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import view
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 
-def film_of(recording):
-    return film(view(recording.trace), recording.trace.duration_ns)
+def animation_of(recording):
+    return animation(view(recording.trace), recording.trace.duration_ns)
 
 
 def test_a_line_is_interrupted_where_a_place_is_missing():
@@ -21,7 +21,7 @@ def test_a_line_is_interrupted_where_a_place_is_missing():
 
 def test_a_long_run_is_thinned_out_and_keeps_its_end():
     recording = drive(Spiral())
-    shown = film_of(recording)
+    shown = animation_of(recording)
     (track,) = shown.tracks
     assert 500 < len(shown.times) <= 1001
     assert shown.times[-1] == pytest.approx(recording.run.ticks * TICK_S)
@@ -41,7 +41,7 @@ def test_ink_has_the_pens_colour_and_gaps_where_it_was_off():
         if tick == 300:
             pen(arena, GREEN)
 
-    (track,) = film_of(drive(controller, ticks=400)).tracks
+    (track,) = animation_of(drive(controller, ticks=400)).tracks
     found = [(s.first, s.last, s.color, s.width, s.drawn) for s in track.stretches]
     assert found == [
         (0, 98, "#b3b8ff", 3, True),
@@ -57,7 +57,7 @@ def test_other_turtles_are_drawn_from_when_they_are_there():
         if tick == 50:
             arena.spawn(2.0, 3.0, 0.0, "another")
 
-    first, second = film_of(drive(controller, ticks=100)).tracks
+    first, second = animation_of(drive(controller, ticks=100)).tracks
     assert (first.name, second.name) == ("turtle1", "another")
     assert np.isnan(second.x[:48]).all()
     assert second.x[-1] == pytest.approx(90)
@@ -68,16 +68,16 @@ def test_what_was_cleared_is_known():
         if tick == 50:
             arena.clear()
 
-    assert film_of(drive(controller, ticks=100)).cleared == (49,)
+    assert animation_of(drive(controller, ticks=100)).cleared == (49,)
 
 
 def test_the_rest_is_where_the_turtle_stands_at_the_end():
-    rest = film_of(drive(Spiral())).rest
+    rest = animation_of(drive(Spiral())).rest
     assert min(rest.x, rest.y, SIZE_M - rest.x, SIZE_M - rest.y) < 0.5
     assert rest.time_s > 30
-    assert film_of(drive(Spiral(), ticks=300)).rest is None
-    assert film_of(drive(lambda *_: None, ticks=10)).rest is None
+    assert animation_of(drive(Spiral(), ticks=300)).rest is None
+    assert animation_of(drive(lambda *_: None, ticks=10)).rest is None
 
 
 def test_the_background_is_what_lies_below_the_ink():
-    assert film_of(drive(Spiral(), ticks=200)).background == "#4556ff"
+    assert animation_of(drive(Spiral(), ticks=200)).background == "#4556ff"

@@ -100,7 +100,7 @@ def test_what_checks_say_is_told_at_once_and_to_those_who_come_later(page, viewe
     grading = Grading("zoe.py", "nominal run", "Score: 5", "Nothing to fix", (passed,))
     viewer.send(json.dumps({"op": "subscribe", "topic": "/turtlesim_live"}))
     heard(viewer)
-    page.tell(grading)
+    page.update(grading)
     told = heard(viewer)["msg"]["grading"]
     assert told["checks"] == [
         {

@@ -1,4 +1,4 @@
-"""The films of runs that a page plays: every stroke, every place, and where two runs part."""
+"""The animations of runs that a page plays: strokes, places, and where two runs differ."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from grader.recording.playback import JudgedCheck, Line, Playback, PlayedRun, Se
 from grader.recording.subject import Start
 from grader.scenes.turtlesim.driving import drive
 from grader.scenes.turtlesim.player import page, runs
-from grader.scenes.turtlesim.player.film import MOST_TICKS, film
-from grader.scenes.turtlesim.player.reel import WIPED
+from grader.scenes.turtlesim.player.animation import WIPED
+from grader.scenes.turtlesim.player.replay import MOST_TICKS, animate
 from grader.scenes.turtlesim.player.runs import first_difference
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import pen, twist
@@ -93,21 +93,21 @@ RUNS = {
 def test_the_inputs_played_again_paint_the_recorded_picture_byte_for_byte(name):
     controller, ticks, start = RUNS[name]
     trace, _ = drive(controller, ticks, start)
-    made = film(trace, start)
+    made = animate(trace, start)
     assert made["exact"]
     assert made["last"] == trace.ticks
     assert (painted(made, trace.ticks) == trace.canvas).all()
 
 
 def test_each_frame_is_the_picture_after_its_tick():
-    made = film(drive(eventful, 200)[0], None)
+    made = animate(drive(eventful, 200)[0], None)
     for ticks in (0, 1, 59, 60, 79, 80, 131, 199):
         assert (painted(made, ticks) == drive(eventful, ticks)[0].canvas).all()
 
 
 def test_every_pose_that_was_published_is_in_it():
     trace, _ = drive(eventful, 200)
-    made = film(trace, None)
+    made = animate(trace, None)
     for name, way in trace.trajectories.items():
         shown = poses(made, name)
         assert (shown[shown[:, 0] > 0] == way.rows()[:, :6]).all()
@@ -118,11 +118,11 @@ def test_every_pose_that_was_published_is_in_it():
 
 def test_before_the_first_tick_the_turtle_is_where_it_began():
     start = Start(3.0, 7.0, 1.0)
-    made = film(drive(eventful, 5, start)[0], start)
+    made = animate(drive(eventful, 5, start)[0], start)
     assert poses(made, "turtle1")[0] == pytest.approx([0, 3.0, 7.0, 1.0, 0, 0], abs=1e-6)
 
 
-def test_where_a_clock_of_its_own_ended_commands_the_film_follows_the_poses():
+def test_where_a_clock_of_its_own_ended_commands_the_animation_follows_the_poses():
     def late(tick, pose, arena):
         if tick == 1:
             twist(arena, 2.0, 0.5)
@@ -130,7 +130,7 @@ def test_where_a_clock_of_its_own_ended_commands_the_film_follows_the_poses():
             arena.now_ns += 60 * TICK_NS  # the watchdog strikes earlier than ticks tell
 
     trace, _ = drive(late, 100)
-    made = film(trace, None)
+    made = animate(trace, None)
     assert not made["exact"]
     assert (painted(made, 100) == trace.canvas).all()
     shown = poses(made, "turtle1")
@@ -139,8 +139,8 @@ def test_where_a_clock_of_its_own_ended_commands_the_film_follows_the_poses():
 
 
 @given(odd_traces())
-def test_whatever_a_recording_holds_becomes_a_film_that_is_json(trace):
-    made = film(trace, None)
+def test_whatever_a_recording_holds_becomes_an_animation_that_is_json(trace):
+    made = animate(trace, None)
     json.dumps(made, allow_nan=False)
     assert len(numbers(made["runs"], "<u2")) == 3 * sum(made["ops"][2::3])
 
@@ -150,7 +150,7 @@ def test_a_command_that_is_no_number_is_played_too():
         twist(arena, math.nan if tick == 30 else 1.0)
 
     trace, _ = drive(lost, 60)
-    made = film(trace, None)
+    made = animate(trace, None)
     assert made["exact"]
     assert (painted(made, 60) == trace.canvas).all()
     assert np.isnan(poses(made, "turtle1")[-1, 1])
@@ -159,11 +159,11 @@ def test_a_command_that_is_no_number_is_played_too():
 def test_what_takes_hours_is_refused():
     trace, _ = drive(eventful, 3)
     with pytest.raises(RecordingError, match=r"225001 ticks; expected 225000 at most"):
-        film(replace(trace, ticks=MOST_TICKS + 1), None)
+        animate(replace(trace, ticks=MOST_TICKS + 1), None)
 
 
 def test_calls_and_log_stand_by_tick():
-    calls = film(drive(eventful, 200)[0], None)["calls"]
+    calls = animate(drive(eventful, 200)[0], None)["calls"]
     assert [call["op"] for call in calls if call["tick"] == 80] == ["cmd_vel", "clear", "log"]
     assert [call["tick"] for call in calls] == sorted(call["tick"] for call in calls)
 

@@ -2,7 +2,7 @@
 
 import { number, t } from "./language.js";
 import { callText } from "./words.js";
-import { lastUpTo } from "./film.js";
+import { lastUpTo } from "./animation.js";
 
 /** So many are shown before the cursor, and as many after it. */
 const AROUND = 40;
@@ -34,9 +34,9 @@ export class Calls {
     this.current = -2;
   }
 
-  show(film) {
-    this.entries = folded(film.calls);
-    this.lines = film.lines;
+  show(animation) {
+    this.entries = folded(animation.calls);
+    this.lines = animation.lines;
     this.current = -2;
   }
 

@@ -1,14 +1,14 @@
 // Another recording over ours: both ways, both turtles, how far apart, where the inputs part.
 
-import { Film } from "./film.js";
+import { RunAnimation } from "./animation.js";
 import { key, number, t } from "./language.js";
 import { svg } from "./plots.js";
 import { callText } from "./words.js";
 
 export class Comparison {
-  constructor(data, films, element) {
-    this.films = films;
-    this.others = data.other.runs.map((run) => new Film(run, data.sprite));
+  constructor(data, animations, element) {
+    this.animations = animations;
+    this.others = data.other.runs.map((run) => new RunAnimation(run, data.sprite));
     this.title = data.other.title;
     this.differences = data.other.differences;
     this.tickS = data.tick_s;
@@ -22,16 +22,16 @@ export class Comparison {
 
   /** The first turtle of the other run; nothing where there is no such run. */
   curves(run) {
-    const film = this.others[run];
-    return film && film.turtles[0] ? [[film, film.turtles[0]]] : [];
+    const animation = this.others[run];
+    return animation && animation.turtles[0] ? [[animation, animation.turtles[0]]] : [];
   }
 
   last(run) { return this.others[run] ? this.others[run].last : 0; }
 
   turtles(run, frame) {
-    const film = this.others[run];
-    if (!film) return [];
-    const there = film.turtlesAt(Math.min(frame, film.last));
+    const animation = this.others[run];
+    if (!animation) return [];
+    const there = animation.turtlesAt(Math.min(frame, animation.last));
     return there.map((turtle) => ({ ...turtle, name: t("{name} (other)", turtle) }));
   }
 
@@ -39,10 +39,10 @@ export class Comparison {
   difference(run, turtle) {
     const [other] = this.curves(run);
     if (!other || !turtle) return [];
-    const [film, mine] = [this.films[run], turtle];
+    const [animation, mine] = [this.animations[run], turtle];
     const line = [];
-    for (let frame = 0; frame <= Math.min(film.last, other[0].last); frame += 1) {
-      const [a, b] = [film.pose(mine, frame), other[0].pose(other[1], frame)];
+    for (let frame = 0; frame <= Math.min(animation.last, other[0].last); frame += 1) {
+      const [a, b] = [animation.pose(mine, frame), other[0].pose(other[1], frame)];
       const apart = a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : NaN;
       line.push(Number.isFinite(apart) ? [frame, apart] : null);
     }
@@ -55,8 +55,8 @@ export class Comparison {
     ways.replaceChildren();
     this.element("parts").textContent = this.told(run);
     if (!other) return;
-    for (const [film, kind] of [[this.films[run], "mine"], [other, "other"]]) {
-      const turtle = film.turtles[0];
+    for (const [animation, kind] of [[this.animations[run], "mine"], [other, "other"]]) {
+      const turtle = animation.turtles[0];
       if (!turtle) continue;
       const d = wayOf(turtle);
       ways.prepend(svg("path", { d, class: "casing" }));  // below both lines

@@ -3,7 +3,7 @@
 import { Calls } from "./calls.js";
 import { Checks } from "./checks.js";
 import { Comparison } from "./comparison.js";
-import { Film, Screen } from "./film.js";
+import { RunAnimation, Screen } from "./animation.js";
 import { speak, t } from "./language.js";
 import { Marks } from "./marks.js";
 import { Plots } from "./plots.js";
@@ -16,7 +16,7 @@ const element = (id) => document.getElementById(id);
 
 const data = JSON.parse(element("data").textContent);
 speak(data.language, data.sentences);
-const films = data.runs.map((run) => new Film(run, data.sprite));
+const animations = data.runs.map((run) => new RunAnimation(run, data.sprite));
 const screens = new Map();
 const small = [];
 const marks = new Marks(element("marks"));
@@ -25,7 +25,7 @@ const checks = new Checks(element("checks"), (moment) => visit(moment));
 const calls = new Calls(element("calls"), data.tick_s, (frame) => jump(frame));
 const plots = new Plots(element("plots"), data.tick_s, (frame) => jump(frame));
 const transport = new Transport(element, data.tick_s, (frame) => showSoon(frame));
-const comparison = data.other ? new Comparison(data, films, element) : null;
+const comparison = data.other ? new Comparison(data, animations, element) : null;
 let shown = 0;
 let moment = null;
 let isDue = false;
@@ -48,12 +48,12 @@ function showSoon() {
 function show(frame) {
   if (moment && (moment.run !== shown || moment.tick !== frame)) leaveMoment();
   if (shown === BESIDE) {
-    for (const screen of small) screen.seek(Math.min(frame, screen.film.last));
+    for (const screen of small) screen.seek(Math.min(frame, screen.animation.last));
   } else {
-    const film = films[shown];
+    const animation = animations[shown];
     const others = comparison ? comparison.turtles(shown, frame) : [];
-    screens.get(shown).seek(Math.min(frame, film.last), others);
-    const turtles = film.turtlesAt(Math.min(frame, film.last));
+    screens.get(shown).seek(Math.min(frame, animation.last), others);
+    const turtles = animation.turtlesAt(Math.min(frame, animation.last));
     marks.show([...turtles, ...others]);
     ring.show(moment);
     tellTurtles(element("turtles"), [...turtles, ...others]);
@@ -93,49 +93,49 @@ function choose(run) {
 }
 
 function showOne(run) {
-  const film = films[run];
+  const animation = animations[run];
   if (!screens.has(run)) {
-    screens.set(run, new Screen(document.createElement("canvas"), data.sprites, film));
+    screens.set(run, new Screen(document.createElement("canvas"), data.sprites, animation));
   }
   const canvas = screens.get(run).view.context.canvas;
   canvas.id = "canvas";
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", t("The window in this moment of {run}; the table below says where each turtle is.", { run: film.title }));
+  canvas.setAttribute("aria-label", t("The window in this moment of {run}; the table below says where each turtle is.", { run: animation.title }));
   element("place").replaceChildren(canvas);
-  element("outcome").textContent = t("{what}: {value}.", { what: film.title, value: film.outcome });
-  element("inexact").hidden = film.exact;
-  calls.show(film);
-  const turtle = film.turtles[0];
-  const curves = turtle ? [[film, turtle]] : [];
+  element("outcome").textContent = t("{what}: {value}.", { what: animation.title, value: animation.outcome });
+  element("inexact").hidden = animation.exact;
+  calls.show(animation);
+  const turtle = animation.turtles[0];
+  const curves = turtle ? [[animation, turtle]] : [];
   if (comparison) {
     comparison.show(run);
     plots.show([...curves, ...comparison.curves(run)], comparison.difference(run, turtle));
   } else {
     plots.show(curves);
   }
-  transport.setLast(Math.max(film.last, comparison ? comparison.last(run) : 0));
+  transport.setLast(Math.max(animation.last, comparison ? comparison.last(run) : 0));
 }
 
 function showBeside() {
   if (!small.length) {
-    for (const film of films) {
+    for (const animation of animations) {
       const figure = document.createElement("figure");
       const caption = document.createElement("figcaption");
       const canvas = document.createElement("canvas");
-      caption.textContent = t("{what}: {value}", { what: film.title, value: film.outcome });
+      caption.textContent = t("{what}: {value}", { what: animation.title, value: animation.outcome });
       canvas.setAttribute("role", "img");
-      canvas.setAttribute("aria-label", t("The window of {run}", { run: film.title }));
+      canvas.setAttribute("aria-label", t("The window of {run}", { run: animation.title }));
       figure.append(canvas, caption);
       element("beside").append(figure);
-      small.push(new Screen(canvas, data.sprites, film));
+      small.push(new Screen(canvas, data.sprites, animation));
     }
   }
-  transport.setLast(Math.max(...films.map((film) => film.last)));
+  transport.setLast(Math.max(...animations.map((animation) => animation.last)));
 }
 
 function offer() {
-  const titles = films.map((film, run) => [run, film.title]);
-  if (films.length > 1) titles.push([BESIDE, t("Side by side")]);
+  const titles = animations.map((animation, run) => [run, animation.title]);
+  if (animations.length > 1) titles.push([BESIDE, t("Side by side")]);
   element("runs").hidden = titles.length < 2;
   for (const [run, title] of titles) {
     const button = document.createElement("button");
@@ -151,7 +151,7 @@ function offer() {
 function fromAddress() {
   const asked = new URLSearchParams(location.hash.slice(1));
   const run = Number(asked.get("run") || 0);
-  choose(films[run] ? run : 0);
+  choose(animations[run] ? run : 0);
   transport.go(asked.has("tick") ? Number(asked.get("tick")) || 0 : transport.last);
 }
 

@@ -17,7 +17,7 @@ export function svg(name, attributes = {}) {
 }
 
 /** [[frame, value], ...] of a column, gaps as null. */
-function points(film, turtle, column) {
+function points(animation, turtle, column) {
   const found = [];
   for (const [first, last, row] of turtle.stretches) {
     for (let frame = first; frame <= last; frame += 1) {
@@ -46,9 +46,9 @@ export class Plots {
 
   /** Films with the turtle of each, the first of them ours, and curves that are ready made. */
   show(shown, more = []) {
-    this.last = Math.max(1, ...shown.map(([film]) => film.last));
+    this.last = Math.max(1, ...shown.map(([animation]) => animation.last));
     const made = CURVES.map(([column, words, unit]) => ({
-      words, unit, lines: shown.map(([film, turtle]) => points(film, turtle, column)),
+      words, unit, lines: shown.map(([animation, turtle]) => points(animation, turtle, column)),
     }));
     this.plots = [...more, ...made].map((curve) => this.plot(curve));
     this.place.replaceChildren(...this.plots.map((plot) => plot.figure));

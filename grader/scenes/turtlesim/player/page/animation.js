@@ -1,6 +1,6 @@
-// A run as a film: which paint, and who is where, in every frame. Frame 0 is before the first tick.
+// An animated run: the paint and the turtles in every frame. Frame 0 is before the first tick.
 //
-// grader/scenes/turtlesim/player/reel.py writes what is read here.
+// grader/scenes/turtlesim/player/animation.py writes the data.
 
 import { SIZE_PX, TurtleWindow } from "./window.js";
 
@@ -21,7 +21,7 @@ export function lastUpTo(list, frame, key = (item) => item[0]) {
   return low - 1;
 }
 
-export class Film {
+export class RunAnimation {
   constructor(data, sprite) {
     this.last = data.last;
     this.title = data.title;
@@ -91,10 +91,10 @@ export class Film {
   }
 }
 
-/** A canvas that shows any frame of a film. */
+/** A canvas that shows any frame of an animation. */
 export class Screen {
-  constructor(canvas, sprites, film) {
-    this.film = film;
+  constructor(canvas, sprites, animation) {
+    this.animation = animation;
     this.view = new TurtleWindow(canvas, sprites);
     this.done = 0;
     this.sinceKey = 0;
@@ -102,12 +102,12 @@ export class Screen {
   }
 
   seek(frame, others = []) {
-    const target = this.film.strokes(frame);
+    const target = this.animation.strokes(frame);
     const [strokes, paint] = this.keys[lastUpTo(this.keys, target)];
     if (target < this.done || strokes > this.done) this.restore(strokes, paint);
     while (this.done < target) this.step();
-    this.view.setBackground(this.film.background(frame));
-    this.view.turtles = [...others, ...this.film.turtlesAt(frame)];
+    this.view.setBackground(this.animation.background(frame));
+    this.view.turtles = [...others, ...this.animation.turtlesAt(frame)];
     this.view.show();
   }
 
@@ -119,11 +119,11 @@ export class Screen {
   }
 
   step() {
-    const [, stroke, count] = this.film.ops[this.done];
+    const [, stroke, count] = this.animation.ops[this.done];
     this.view.draw([stroke]);
     this.done += 1;
     this.sinceKey += count;
-    if (this.sinceKey < this.film.between) return;
+    if (this.sinceKey < this.animation.between) return;
     this.sinceKey = 0;
     if (this.done > this.keys[this.keys.length - 1][0]) {
       this.keys.push([this.done, this.view.paint.slice()]);

@@ -1,7 +1,7 @@
-"""What a page needs to show every moment of a run: paint as runs of pixels, and who is where.
+"""The data of an animation: for every frame of a run, the painted pixels and the turtles.
 
-A frame is the picture after a tick; frame 0 is that before the first. Columns travel as bytes in
-base64, little-endian, so that what is no number and every last bit arrive.
+A frame is the picture after a tick; frame 0 is that before the first. Columns are sent as bytes in
+base64, little-endian, so that NaN, infinities and every last bit arrive.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from turtlesim_py.world.turtle import Pose
 Color = tuple[int, int, int]
 #: Centre on the canvas [px, y down] and heading [rad].
 Place = tuple[float, float, float]
-#: Instead of a colour: all paint is wiped.
+#: In place of a colour: all paint is wiped.
 WIPED: Final = -1
 
 
 @dataclass
 class _TurtleFrames:
-    """What is known of one turtle, frame by frame; there may be gaps."""
+    """One turtle, frame by frame; there may be gaps."""
 
     stretches: list[list[int]] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
@@ -35,8 +35,8 @@ class _TurtleFrames:
     pens: list[list[int]] = field(default_factory=list)
 
 
-class Reel:
-    """Takes a run down; frames come in their order."""
+class Animation:
+    """Records the drawing events of a run, frame by frame, and writes them as JSON."""
 
     def __init__(self) -> None:
         self._parts: dict[str, _TurtleFrames] = {}
@@ -44,7 +44,7 @@ class Reel:
         self._colors: dict[Color, int] = {}
         self._ops: list[list[int]] = []
         self._runs: list[int] = []
-        # which colour every pixel has, counted from 1, so that what changes nothing is left out
+        # the number of each pixel's colour, from 1; a run of pixels that changes none is left out
         self._paint: npt.NDArray[np.int32] = np.zeros((SIZE_PX, SIZE_PX), np.int32)
 
     def stroke(self, frame: int, color: Color, runs: Iterable[Span]) -> None:
@@ -73,12 +73,12 @@ class Reel:
             self._ops.append([frame, color, runs])
 
     def background(self, frame: int, color: Sequence[int]) -> None:
-        """What shows where there is no paint."""
+        """Set the colour that shows where there is no paint."""
         if not self._backgrounds or self._backgrounds[-1][1] != list(color):
             self._backgrounds.append([frame, list(color)])
 
     def turtle(self, frame: int, name: str, place: Place, pose: Pose) -> None:
-        """Where a turtle is in this frame: centre [px, y down] and heading [rad], and its pose."""
+        """Place a turtle in this frame: centre [px, y down], heading [rad], and its pose."""
         part = self._parts.setdefault(name, _TurtleFrames())
         if part.stretches and part.stretches[-1][1] == frame - 1:
             part.stretches[-1][1] = frame
@@ -88,14 +88,14 @@ class Reel:
         part.poses.append(pose)
 
     def pen(self, frame: int, name: str, pen: Pen, is_on: bool) -> None:
-        """The pen of a turtle that `turtle` has told of."""
+        """Set the pen of a turtle that `turtle` has placed in this frame."""
         pens = self._parts[name].pens
         now = [pen.r, pen.g, pen.b, pen.width, int(not is_on)]
         if not pens or pens[-1][1:] != now:
             pens.append([frame, *now])
 
     def to_json(self, last: int) -> dict[str, Any]:
-        """All of it up to the frame `last`, as `page/film.js` reads it."""
+        """Return all frames up to `last`, as `page/animation.js` reads them."""
         return {
             "last": last,
             "colors": [list(color) for color in self._colors],

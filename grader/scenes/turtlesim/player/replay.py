@@ -1,7 +1,7 @@
-"""A recorded run as a film: its inputs are played again, and every stroke is taken down.
+"""Animates a recorded run: replays its inputs, and records every stroke.
 
-That gives the recorded run to the last bit, in virtual time always. Where it does not (a clock of
-its own decided when commands ran out), the film follows the recorded poses instead.
+A replay gives the recorded run to the last bit, in virtual time always. Where it does not (in real
+time the wall clock decides when a command runs out), the recorded poses are followed instead.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import numpy as np
 
 from grader.errors import RecordingError
 from grader.recording.subject import Start
-from grader.scenes.turtlesim.player.reel import Place, Reel
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace
+from grader.scenes.turtlesim.driving import place
+from grader.scenes.turtlesim.player.animation import Animation, Place
+from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
 from turtlesim_py.scenario import ScenarioError, replay
 from turtlesim_py.world.arena import DEFAULT_BACKGROUND, Arena, UnknownTurtle
 from turtlesim_py.world.canvas import Canvas, Pen
@@ -40,11 +41,11 @@ MOST_TICKS: Final = 225_000
 
 
 class _OtherRunError(Exception):
-    """The inputs, played again, do not lead where the recording went."""
+    """The replay of the inputs differs from the recording."""
 
 
-def film(trace: TurtleTrace, start: Start | None) -> dict[str, Any]:
-    """All frames of a run and all calls, as `page/film.js` reads them.
+def animate(trace: TurtleTrace, start: Start | None) -> dict[str, Any]:
+    """Return all frames of a run and all calls, as `page/animation.js` reads them.
 
     Args:
         start: where turtle1 began; None for the centre.
@@ -59,14 +60,14 @@ def film(trace: TurtleTrace, start: Start | None) -> dict[str, Any]:
             most=MOST_TICKS,
         )
     try:
-        reel, is_exact = _played_again(trace, start), True
+        animation, is_exact = _replayed(trace, start), True
     except (_OtherRunError, ScenarioError, UnknownTurtle):
-        reel, is_exact = follow(trace), False
-    return {**reel.to_json(trace.ticks), "exact": is_exact, "calls": _calls(trace)}
+        animation, is_exact = follow(trace), False
+    return {**animation.to_json(trace.ticks), "exact": is_exact, "calls": _calls(trace)}
 
 
 def _calls(trace: TurtleTrace) -> list[dict[str, Any]]:
-    """Inputs and log lines by tick, in the order of the recording."""
+    """Return inputs and log lines by tick, in the order of the recording."""
     logs = [
         {"tick": log.tick, "op": "log", "severity": log.severity, "text": log.text}
         for log in trace.logs
@@ -75,25 +76,25 @@ def _calls(trace: TurtleTrace) -> list[dict[str, Any]]:
     return sorted(calls, key=lambda call: int(call["tick"]))
 
 
-def _played_again(trace: TurtleTrace, start: Start | None) -> Reel:
-    """Raises: _OtherRunError, ScenarioError, UnknownTurtle."""
+def _replayed(trace: TurtleTrace, start: Start | None) -> Animation:
+    """Animate a run by its inputs; raises _OtherRunError, ScenarioError, UnknownTurtle."""
     events = [to_json(event) for event in trace.events if 1 <= event.tick <= trace.ticks]
-    camera = _Camera(trace, start)
-    arena = replay({"ticks": trace.ticks, "events": events}, camera).arena
+    recorder = _ReplayRecorder(trace, start)
+    arena = replay({"ticks": trace.ticks, "events": events}, recorder).arena
     if not np.array_equal(arena.canvas.rgba(), trace.canvas):
         raise _OtherRunError
-    return camera.reel
+    return recorder.animation
 
 
-class _Camera:
-    """Sees a replay, and compares it with the recording.
+class _ReplayRecorder:
+    """Records a replay as an animation, and compares it with the recording.
 
     Attributes:
-        reel: what it has taken.
+        animation: the frames up to now.
     """
 
     def __init__(self, trace: TurtleTrace, start: Start | None) -> None:
-        self.reel = Reel()
+        self.animation = Animation()
         self._arena: Arena
         self._start = start
         self._recorded = {
@@ -101,38 +102,36 @@ class _Camera:
         }
 
     def begin(self, arena: Arena) -> None:
-        """Put the turtle where it was, and look from now on."""
+        """Put the turtle where the run began, and record from here on."""
         self._arena = arena
         arena.sprite = SPRITE
-        if self._start is not None:
-            start = self._start
-            arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
+        place(arena, self._start)
         arena.canvas.watcher = self._on_stroke
         arena.listeners.append(self._on_notice)
-        self._take({})
+        self._record_frame({})
 
     def after_tick(self, arena: Arena, readings: Mapping[str, Reading]) -> None:
-        """Compare the tick with the recorded one, and take a frame."""
+        """Compare the tick with the recorded one, and record a frame."""
         for name, (pose, color) in readings.items():
             recorded = next(self._recorded.get(name, iter(())), None)
             if recorded is None or not _is_same(recorded, (arena.ticks, *pose, *color)):
                 raise _OtherRunError
-        self._take(readings)
+        self._record_frame(readings)
 
-    def _take(self, readings: Mapping[str, Reading]) -> None:
-        arena, reel = self._arena, self.reel
-        reel.background(arena.ticks, arena.background)
+    def _record_frame(self, readings: Mapping[str, Reading]) -> None:
+        arena, animation = self._arena, self.animation
+        animation.background(arena.ticks, arena.background)
         for name, turtle in arena.turtles.items():
             pose = readings[name].pose if name in readings else _pose(turtle)
-            reel.turtle(arena.ticks, name, _place(turtle), pose)
-            reel.pen(arena.ticks, name, turtle.pen, turtle.pen_on)
+            animation.turtle(arena.ticks, name, _place(turtle), pose)
+            animation.pen(arena.ticks, name, turtle.pen, turtle.pen_on)
 
     def _on_stroke(self, pen: Pen, runs: Sequence[Span]) -> None:
-        self.reel.stroke(self._arena.ticks + 1, (pen.r, pen.g, pen.b), runs)
+        self.animation.stroke(self._arena.ticks + 1, (pen.r, pen.g, pen.b), runs)
 
     def _on_notice(self, notice: Notice) -> None:
         if isinstance(notice, Clear | Reset):
-            self.reel.wipe(self._arena.ticks + 1)
+            self.animation.wipe(self._arena.ticks + 1)
 
 
 def _place(turtle: Turtle) -> Place:
@@ -140,7 +139,7 @@ def _place(turtle: Turtle) -> Place:
 
 
 def _pose(turtle: Turtle) -> Pose:
-    """As it would be published by one that has not been updated yet."""
+    """Return the pose that a turtle would publish before its first update."""
     return Pose(turtle.x_m, SIZE_M - turtle.y_down_m, turtle.heading_rad, 0.0, 0.0)
 
 
@@ -151,29 +150,29 @@ def _is_same(recorded: Sequence[float], now: Sequence[float]) -> bool:
 _CHANNELS = ("background_r", "background_g", "background_b")
 
 
-def follow(trace: TurtleTrace) -> Reel:
-    """The film of a trace, from its poses, pens and last picture.
+def follow(trace: TurtleTrace) -> Animation:
+    """Animate a trace by its poses, pens and last picture.
 
-    In real time the wall clock decided in which tick a command ran out, and no recording has it. So
-    the strokes go from one published pose to the next, which may differ from the true ones in
-    single pixels; the last frame has the recorded picture.
+    In real time the wall clock decided in which tick a command ran out, which is not recorded. So
+    the strokes go from one published pose to the next and may differ from the true ones in single
+    pixels; the last frame has the recorded picture.
     """
-    made = _Follower(trace)
+    follower = _PoseFollower(trace)
     for frame in range(trace.ticks + 1):
-        made.go_on(frame)
-    made.end(trace.ticks)
-    return made.reel
+        follower.record_frame(frame)
+    follower.end(trace.ticks)
+    return follower.animation
 
 
-class _Follower:
-    """Goes along, tick by tick.
+class _PoseFollower:
+    """Draws from one recorded pose to the next, tick by tick.
 
     Attributes:
-        reel: what it has taken.
+        animation: the frames up to now.
     """
 
     def __init__(self, trace: TurtleTrace) -> None:
-        self.reel = Reel()
+        self.animation = Animation()
         self._trace = trace
         self._frame = 0
         self._background = list(DEFAULT_BACKGROUND)
@@ -187,12 +186,12 @@ class _Follower:
         self._rows = {name: way.rows().tolist() for name, way in trace.trajectories.items()}
         self._next = dict.fromkeys(self._rows, 0)
 
-    def go_on(self, frame: int) -> None:
-        """Take the next frame; frame 0 is as frame 1 was."""
+    def record_frame(self, frame: int) -> None:
+        """Record the next frame; frame 0 has the poses of frame 1."""
         self._frame = frame
         for event in self._events.get(frame, ()):
-            self._hear(event)
-        self.reel.background(frame, self._background)
+            self._apply(event)
+        self.animation.background(frame, self._background)
         for name in sorted(self._rows):
             index = self._next[name]
             rows = self._rows[name]
@@ -201,8 +200,8 @@ class _Follower:
                 self._move(name, Pose._make(rows[index][1:6]))
 
     def end(self, frame: int) -> None:
-        """Have the recorded picture in the last frame."""
-        self.reel.wipe(frame)
+        """Replace the drawing in the last frame by the recorded picture."""
+        self.animation.wipe(frame)
         canvas = self._trace.canvas
         painted = canvas[..., 3] != 0
         packed = canvas.astype(np.int64) @ np.array([1 << 16, 1 << 8, 1, 0])
@@ -213,9 +212,9 @@ class _Follower:
                 color = int(values[first])
                 if color >= 0:
                     rgb = (color >> 16, color >> 8 & 255, color & 255)
-                    self.reel.stroke(frame, rgb, [(row, first, after - 1)])
+                    self.animation.stroke(frame, rgb, [(row, first, after - 1)])
 
-    def _hear(self, event: Event) -> None:
+    def _apply(self, event: Event) -> None:
         match event:
             case SetPen(turtle=name):
                 pen, _ = self._pens.get(name, (Pen(), True))
@@ -226,9 +225,9 @@ class _Follower:
                 self._last.pop(name, None)
                 self._pens.pop(name, None)
             case Clear():
-                self.reel.wipe(self._frame)
+                self.animation.wipe(self._frame)
             case Reset():
-                self.reel.wipe(self._frame)
+                self.animation.wipe(self._frame)
                 self._last.clear()
                 self._pens.clear()
             case SetParameter(name=name, value=int(value)) if name in _CHANNELS:
@@ -241,11 +240,11 @@ class _Follower:
         if is_on and before is not None and not _is_still(before, (x, y)):
             self._canvas.draw_line(x, y, before[0], before[1], pen)
         self._last[name] = (x, y, pose.theta)
-        self.reel.turtle(self._frame, name, self._last[name], pose)
-        self.reel.pen(self._frame, name, pen, is_on)
+        self.animation.turtle(self._frame, name, self._last[name], pose)
+        self.animation.pen(self._frame, name, pen, is_on)
 
     def _on_stroke(self, pen: Pen, runs: Sequence[Span]) -> None:
-        self.reel.stroke(self._frame, (pen.r, pen.g, pen.b), runs)
+        self.animation.stroke(self._frame, (pen.r, pen.g, pen.b), runs)
 
 
 def _is_still(before: Place, now: tuple[float, float]) -> bool:
