@@ -28,7 +28,7 @@ STUDENTS = re.compile(
     r"|grader(_robots)?\.exercises\.\w+\.(starter|reference|right)\b"
 )
 #: Doubles of ROS's packages, by whose names they import each other.
-DOUBLES = "grader.scenes.package.examining.doubles"
+DOUBLES = "grader.inspection.examining.doubles"
 
 
 def below(package: str, *names: str) -> set[str]:
@@ -81,21 +81,21 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"grader.recording", "grader.scenes.scene", "grader.scenes.live"}
     | below("turtlesim_py", "__init__", "world", "scenario", "ros", "live"),
     # a package is inspected in the submission's process, which sees little of ours
-    "grader.scenes.package": GROUND
-    | below("grader", "recording", "scenes.scene", "scenes.package"),
-    "grader.scenes.package.trace": below("grader", "strict_json", "message"),
-    "grader.scenes.package.inspection": {"grader.strict_json", "grader.scenes.package.trace"},
-    "grader.scenes.package.examining": below("grader", "limited", "linux", "strict_json", "message")
-    | below("grader.scenes.package", "trace", "inspection", "__init__"),
-    "grader.scenes.package.examining.doubles": {
-        "grader.scenes.package.examining",
+    "grader.inspection": GROUND | below("grader", "recording", "inspection"),
+    "grader.inspection.trace": below("grader", "strict_json", "message"),
+    "grader.inspection.answer": {"grader.strict_json", "grader.inspection.trace"},
+    "grader.inspection.examining": below("grader", "limited", "linux", "strict_json", "message")
+    | below("grader.inspection", "trace", "answer", "__init__"),
+    "grader.inspection.examining.doubles": {
+        "grader.inspection.examining",
         "grader.message",
     },
     # what an inspection answers, as data; the findings that its source shows, as they are recorded
     "grader.submission": GROUND
-    | below("grader.scenes.package", "inspection", "said", "trace")
+    | below("grader.inspection", "answer", "said", "trace")
     | {"grader.recording.observations"},
-    "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
+    "grader.run": GROUND
+    | below("grader", "submission", "recording", "scenes", "inspection", "run"),
     "grader.run.limits": {"grader.message"},
     "grader.run.sandbox": GROUND | {"grader.run.limits"},
     "grader.run.processes": GROUND | below("grader.run", "limits", "sandbox"),
@@ -194,12 +194,12 @@ EXTENSION = {
     "grader_robots.__init__": set(),
     "grader_robots.scene": GROUND
     | below("grader", "recording", "scenes.scene", "scenes.by_hand")
-    | {"grader.scenes.package.trace", "robot_py", "turtlesim_py.ros.program"},
+    | {"grader.inspection.trace", "robot_py", "turtlesim_py.ros.program"},
     "grader_robots.inspection": {"grader.message"}
-    | below("grader", "recording", "scenes.package")
+    | below("grader", "recording", "inspection")
     | {"grader_robots.scene"},
     "grader_robots.exercises": GROUND
-    | below("grader", "recording", "scenes.package", "exercise")
+    | below("grader", "recording", "inspection", "exercise")
     | {"grader_robots.scene", "robot_py", "tf2_ros"},
 }
 if (ROOT / "grader_robots").is_dir():

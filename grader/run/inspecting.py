@@ -22,6 +22,10 @@ from typing import Final
 
 from grader import linux
 from grader.errors import GraderFailure
+from grader.inspection import answer, inspector
+from grader.inspection.answer import Inspection, SetUp, Told
+from grader.inspection.by_itself import unlike_launched
+from grader.inspection.trace import FAILED, PackageTrace
 from grader.message import Message, msg
 from grader.recording.recording import Outcome, Recording
 from grader.recording.subject import Trace, load_subject
@@ -31,16 +35,12 @@ from grader.run.finish import Ending, ended, record
 from grader.run.handover import Plan
 from grader.run.limits import INSPECTION_BYTES, INSPECTION_S, CpuBudget
 from grader.run.processes.started_process import SubmissionProcess
-from grader.scenes.package import inspection, inspector
-from grader.scenes.package.by_itself import unlike_launched
-from grader.scenes.package.inspection import Inspection, SetUp, Told
-from grader.scenes.package.trace import FAILED, PackageTrace
 from grader.submission.start import EntryPoint, Submission, Whole
 
 #: Called with the simulated time [s], of which none passes here.
 Progress = Callable[[float], None]
 #: The program that examines a package, from `ROOT` on.
-EXAMINER: Final = "grader/scenes/package/examining/main.py"
+EXAMINER: Final = "grader/inspection/examining/main.py"
 #: How often the process is checked for being stopped [s], and how many checks together decide.
 EVERY_S, STOPPED_CHECKS = 0.5, 4
 ROOT: Final = Path(__file__).resolve().parents[2]
@@ -184,6 +184,6 @@ def _failure(output: str) -> Message:
 def _fetch(file: int) -> tuple[Inspection | None, str]:
     """Decode the findings of the process; return None, and why, where that is impossible."""
     try:
-        return inspection.decode(handover.read_bounded(file, INSPECTION_BYTES)), ""
+        return answer.decode(handover.read_bounded(file, INSPECTION_BYTES)), ""
     except (OSError, ValueError, RecursionError) as error:
         return None, f"{error!s:.200}"

@@ -25,7 +25,7 @@ from grader.submission.set_ups import NotInspected
 from grader.submission.start import EntryPoint, Script, Submission, Whole
 
 if TYPE_CHECKING:
-    from grader.scenes.package.trace import PackageTrace
+    from grader.inspection.trace import PackageTrace
 
 
 @contextmanager
@@ -112,7 +112,7 @@ def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
 
 def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
     """Return notes on how a program started by itself differs from its start by launch files."""
-    from grader.scenes.package.by_itself import not_read, unlike_launched
+    from grader.inspection.by_itself import not_read, unlike_launched
 
     if not isinstance(submission.start, EntryPoint):
         return []

@@ -57,7 +57,7 @@ from grader.submission.start import EntryPoint, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.scenes.package.inspection import Inspection
+    from grader.inspection.answer import Inspection
 
 
 def find(

@@ -17,9 +17,9 @@ from grader.submission.set_ups import ConsoleScript, PackageFolder
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.scenes.package import trace
-    from grader.scenes.package.inspection import Inspection
-    from grader.scenes.package.trace import LaunchedNode
+    from grader.inspection import trace
+    from grader.inspection.answer import Inspection
+    from grader.inspection.trace import LaunchedNode
 
 _ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.

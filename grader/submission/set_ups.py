@@ -17,7 +17,7 @@ from grader.message import NOTHING, Message, msg
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.scenes.package.inspection import SetUp, Told
+    from grader.inspection.answer import SetUp, Told
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
 #: So many folders with set-up files are inspected.
@@ -71,7 +71,7 @@ class PackageFolder:
     @property
     def problem(self) -> Message:
         """A sentence on the error that ended its set-up; '' where there was none."""
-        from grader.scenes.package.said import how_it_ends
+        from grader.inspection.said import how_it_ends
 
         if self.set_up is None or self.set_up.problem is None:
             return NOTHING

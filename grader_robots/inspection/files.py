@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from grader.scenes.package.examining import paths
-from grader.scenes.package.examining.launches import prepare, watch_files
-from grader.scenes.package.examining.layout import Workspace
-from grader.scenes.package.examining.packages import is_description
-from grader.scenes.package.examining.steps import end_of
-from grader.scenes.package.examining.taken import Taken
-from grader.scenes.package.trace import NamedMesh
+from grader.inspection.examining import paths
+from grader.inspection.examining.launches import prepare, watch_files
+from grader.inspection.examining.layout import Workspace
+from grader.inspection.examining.packages import is_description
+from grader.inspection.examining.steps import end_of
+from grader.inspection.examining.taken import Taken
+from grader.inspection.trace import NamedMesh
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].

@@ -12,12 +12,11 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from grader.message import Message, msg, plain_text
-from grader.scenes.package import trace
-from grader.scenes.package.examining.examination import Examination
-from grader.scenes.package.examining.steps import Ended, attempt, open_account, step
-from grader.scenes.package.inspector import Inspector
-from grader.scenes.package.trace import (
+from grader.inspection import trace
+from grader.inspection.examining.examination import Examination
+from grader.inspection.examining.steps import Ended, attempt, open_account, step
+from grader.inspection.inspector import Inspector
+from grader.inspection.trace import (
     Description,
     LaunchFile,
     NamedMesh,
@@ -25,6 +24,7 @@ from grader.scenes.package.trace import (
     PackageTrace,
     Varied,
 )
+from grader.message import Message, msg, plain_text
 from grader_robots.inspection import files, meshes
 
 if TYPE_CHECKING:

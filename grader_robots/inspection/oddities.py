@@ -6,9 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from grader.message import NOTHING, plain_text
-from grader.recording.subject import Trace
-from grader.scenes.package.trace import (
+from grader.inspection.trace import (
     Description,
     Include,
     InstalledScript,
@@ -22,6 +20,8 @@ from grader.scenes.package.trace import (
     Setup,
     Varied,
 )
+from grader.message import NOTHING, plain_text
+from grader.recording.subject import Trace
 
 _SETUP: Final = Setup("", "", "", "", NOTHING, (), None, (), (), (), "", (), (), ())
 _LAUNCH: Final = LaunchFile("", None, (), (), (), (), (), (), (), "")

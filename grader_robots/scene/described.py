@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from grader.inspection.trace import Description, PackageTrace
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.view import Pixels, Placing, Solid, SolidFrame, Tree, TreeNode
-from grader.scenes.package.trace import Description, PackageTrace
 from grader_robots.scene.shapes import (
     MOST_NODES,
     descend,

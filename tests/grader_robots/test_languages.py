@@ -11,13 +11,8 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.message import NOTHING, Message, msg, plain_text
-from grader.recording.recording import Recording, Recordings
-from grader.recording.subject import load_subject
-from grader.recording.view import Table, Tree
-from grader.scenes import load_scene
-from grader.scenes.package.examining.examination import FROM_A_FILE, FROM_A_LAUNCH_FILE
-from grader.scenes.package.examining.steps import (
+from grader.inspection.examining.examination import FROM_A_FILE, FROM_A_LAUNCH_FILE
+from grader.inspection.examining.steps import (
     _NO_END,
     NONSENSE,
     it,
@@ -25,8 +20,8 @@ from grader.scenes.package.examining.steps import (
     not_there,
     problem_of,
 )
-from grader.scenes.package.said import advice
-from grader.scenes.package.trace import (
+from grader.inspection.said import advice
+from grader.inspection.trace import (
     InstalledScript,
     Lacking,
     LaunchedNode,
@@ -38,6 +33,11 @@ from grader.scenes.package.trace import (
     decode,
     encode,
 )
+from grader.message import NOTHING, Message, msg, plain_text
+from grader.recording.recording import Recording, Recordings
+from grader.recording.subject import load_subject
+from grader.recording.view import Table, Tree
+from grader.scenes import load_scene
 from grader.translations import ENGLISH, LANGUAGES, translate
 from grader_robots.exercises.state_publisher.seen import sentence
 from grader_robots.inspection.oddities import odd_traces

@@ -14,11 +14,11 @@ from pathlib import Path
 from unittest.mock import patch
 
 from grader.exercise.loading import load_exercise
+from grader.inspection import inspector
+from grader.inspection.examining import steps
+from grader.inspection.examining.main import inspect
+from grader.inspection.trace import PackageTrace, decode, encode
 from grader.recording.recording import Recording, Recordings, Run
-from grader.scenes.package import inspector
-from grader.scenes.package.examining import steps
-from grader.scenes.package.examining.main import inspect
-from grader.scenes.package.trace import PackageTrace, decode, encode
 from grader.testing.solutions import read_solutions
 from tests import apart, once
 

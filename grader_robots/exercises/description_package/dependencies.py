@@ -6,10 +6,10 @@ from typing import Final
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.examining.known import DESKTOP
+from grader.inspection.said import shown
+from grader.inspection.trace import Description, NamedMesh
 from grader.message import Message, joined, msg
-from grader.scenes.package.examining.known import DESKTOP
-from grader.scenes.package.said import shown
-from grader.scenes.package.trace import Description, NamedMesh
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     nothing_started,

@@ -11,10 +11,10 @@ from typing import NamedTuple
 from grader.exercise.asking import CheckFunction
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.said import said
+from grader.inspection.trace import Description, LaunchFile, Obstacle, PackageTrace, Setup
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Recordings
-from grader.scenes.package.said import said
-from grader.scenes.package.trace import Description, LaunchFile, Obstacle, PackageTrace, Setup
 
 
 class PackageFault(NamedTuple):

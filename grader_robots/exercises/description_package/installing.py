@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.said import how_it_ends, shown
+from grader.inspection.trace import EMPTY, Lacking, LaunchFile, Obstacle
 from grader.message import Message, joined, msg
-from grader.scenes.package.said import how_it_ends, shown
-from grader.scenes.package.trace import EMPTY, Lacking, LaunchFile, Obstacle
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,

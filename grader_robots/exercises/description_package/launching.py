@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.examining.known import FILES, KNOWN, SIMULATORS
+from grader.inspection.said import advice, how_it_ends, shown
+from grader.inspection.trace import LaunchedNode, LaunchFile, Obstacle
 from grader.message import joined, msg
-from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
-from grader.scenes.package.said import advice, how_it_ends, shown
-from grader.scenes.package.trace import LaunchedNode, LaunchFile, Obstacle
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,

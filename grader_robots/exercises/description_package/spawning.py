@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.said import shown
+from grader.inspection.trace import LaunchedNode, LaunchFile
 from grader.message import Message, msg
-from grader.scenes.package.said import shown
-from grader.scenes.package.trace import LaunchedNode, LaunchFile
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     nothing_started,

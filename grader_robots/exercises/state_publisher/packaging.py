@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.said import said, shown
+from grader.inspection.trace import PREFIX, LaunchedNode, LaunchFile
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.recording import Recordings
-from grader.scenes.package.said import said, shown
-from grader.scenes.package.trace import PREFIX, LaunchedNode, LaunchFile
 from grader_robots.exercises.description_package import installing, launching
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

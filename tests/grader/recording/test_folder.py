@@ -16,11 +16,11 @@ from rosbags.typesys import Stores, get_typestore
 
 from grader import cli, content
 from grader.errors import RecordingError
+from grader.inspection.trace import PackageTrace
 from grader.recording import bag, reading, saving
 from grader.recording.folder import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.observations import End, Observations, SourceLine, Standstill
 from grader.recording.recording import Provenance, Recording, Recordings
-from grader.scenes.package.trace import PackageTrace
 from grader.scenes.turtlesim.trace import Log
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive

@@ -8,11 +8,11 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.exercise.building import NO_LIMITS
+from grader.inspection.answer import Inspection, decode, encode
 from grader.run import inspecting
 from grader.run.handover import Plan
 from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
-from grader.scenes.package.inspection import Inspection, decode, encode
 from grader.submission.start import EntryPoint, Script, Submission, Whole
 from tests.files import lay
 from tests.grader.submission.test_entry_points import SETUP, package
@@ -61,7 +61,7 @@ def two(folder: Path, before: str) -> Path:
         pytest.param(FORGES, id="writes wherever it can"),
         pytest.param("import json\njson.loads = json.dumps = None", id="spoils the module json"),
         pytest.param(
-            "from grader.scenes.package.examining import main, setup_call, steps\n"
+            "from grader.inspection.examining import main, setup_call, steps\n"
             "main.inspect = setup_call.evaluate = steps.step = lambda *_, **__: None",
             id="spoils the inspection",
         ),
@@ -126,7 +126,7 @@ def test_an_answer_about_other_folders_is_none(tmp_path: Path, monkeypatch) -> N
         asked = (whole, ["."], "turtle_controller", CpuBudget(), None)
         said, _ = inspecting.inspect(*asked)
         assert [each.told.name for each in said.set_ups] == ["spiral"]
-        monkeypatch.setattr(inspecting.inspection, "decode", lambda _: Inspection())
+        monkeypatch.setattr(inspecting.answer, "decode", lambda _: Inspection())
         said, _ = inspecting.inspect(*asked)
         assert [(each.folder, each.told.name) for each in said.set_ups] == [(".", "")]
 

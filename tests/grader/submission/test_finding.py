@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.scenes.package.inspection import Inspection, SetUp, Told
+from grader.inspection.answer import Inspection, SetUp, Told
 from grader.submission.finding import find, find_inspected
 from grader.submission.set_ups import NotInspected
 from tests.files import lay

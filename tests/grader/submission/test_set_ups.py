@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.scenes.package.inspection import SetUp, Told
+from grader.inspection.answer import SetUp, Told
 from grader.submission.folder import SubmissionFolder
 from grader.submission.set_ups import PackageFolder, read_package
 from tests.files import lay

@@ -9,9 +9,7 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.message import NOTHING, plain_text
-from grader.recording.recording import Recording, Recordings
-from grader.scenes.package.trace import (
+from grader.inspection.trace import (
     Include,
     InstalledScript,
     Lacking,
@@ -22,6 +20,8 @@ from grader.scenes.package.trace import (
     Parameter,
     Setup,
 )
+from grader.message import NOTHING, plain_text
+from grader.recording.recording import Recording, Recordings
 from grader_robots.scene.driving import drive, joint_state, tf
 from robot_py.robot_state import Placed
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.scenes.package.examining import steps
+from grader.inspection.examining import steps
 
 
 @pytest.fixture(autouse=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.scenes.package.trace import Include
+from grader.inspection.trace import Include
 from tests.grader_robots.inspection.test_launches import launched
 
 MODEL = "walker.urdf.xacro"

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.scenes.package.examining import main, paths, steps
-from grader.scenes.package.examining.steps import (
+from grader.inspection.answer import Told
+from grader.inspection.examining import main, paths, steps
+from grader.inspection.examining.steps import (
     NONSENSE,
     Ended,
     end_of,
@@ -23,8 +24,7 @@ from grader.scenes.package.examining.steps import (
     start_of,
     step,
 )
-from grader.scenes.package.inspection import Told
-from grader.scenes.package.trace import FAILED, PackageTrace, decode, encode
+from grader.inspection.trace import FAILED, PackageTrace, decode, encode
 from grader.strict_json import from_json
 from grader_robots.inspection import meshes
 from tests.submissions.packages import INSPECTORS, REFERENCE, looked_at, written

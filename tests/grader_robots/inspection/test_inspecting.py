@@ -11,9 +11,9 @@ import grader
 from grader import judging, scratch
 from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
+from grader.inspection.trace import FAILED
 from grader.run import inspecting
 from grader.run.processes import isolation, levels
-from grader.scenes.package.trace import FAILED
 from tests import runs
 from tests.grader.run.test_opening import FORGES
 from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, recorded, written

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.scenes.package.launched import HEADINGS, tables
+from grader.inspection.launched import HEADINGS, tables
 from tests.grader_robots.inspection.test_launches import launched, looked_at, written
 
 

@@ -6,7 +6,7 @@ import textwrap
 
 import pytest
 
-from grader.scenes.package.trace import LaunchFile
+from grader.inspection.trace import LaunchFile
 from tests.submissions.packages import looked_at, written
 
 FILE = "launch/display.launch.py"

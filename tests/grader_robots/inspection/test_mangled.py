@@ -13,8 +13,8 @@ import grader
 from grader.errors import SubmissionError
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.scenes.package.examining.steps import Ended, attempt
-from grader.scenes.package.trace import decode, encode
+from grader.inspection.examining.steps import Ended, attempt
+from grader.inspection.trace import decode, encode
 from tests.conftest import CASES
 from tests.submissions.mangled import OUTSIDE, SAYS, Change, Mangled, packages
 from tests.submissions.packages import looked_at, recorded

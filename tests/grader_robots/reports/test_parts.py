@@ -7,19 +7,19 @@ import re
 
 import pytest
 
-from grader.message import plain_text
-from grader.recording.recording import Recording, Run
-from grader.recording.view import Tree, TreeNode
-from grader.reports import read as read_report
-from grader.reports.page import html
-from grader.reports.page.parts import DEEPEST, WIDTH, drawn
-from grader.scenes.package.trace import (
+from grader.inspection.trace import (
     Description,
     LaunchedNode,
     LaunchFile,
     PackageTrace,
     Parameter,
 )
+from grader.message import plain_text
+from grader.recording.recording import Recording, Run
+from grader.recording.view import Tree, TreeNode
+from grader.reports import read as read_report
+from grader.reports.page import html
+from grader.reports.page.parts import DEEPEST, WIDTH, drawn
 from grader_robots.scene.driving import drive
 from grader_robots.scene.trace import RobotTrace
 from tests.grader.reports import readers, samples

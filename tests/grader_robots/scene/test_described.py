@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.scenes.package.scene import PACKAGE
-from grader.scenes.package.trace import Description, NamedMesh, PackageTrace, decode, encode
+from grader.inspection.subject import PACKAGE
+from grader.inspection.trace import Description, NamedMesh, PackageTrace, decode, encode
 from grader_robots.scene import described
 
 URI = "package://a/meshes/b.stl"

@@ -1,0 +1,94 @@
+"""What an inspection answers: what set-ups install, and what a package would launch.
+
+It is asked before anything of a package is started, and comes from a process in which a stranger's
+code ran: a claim, which whoever uses it holds against the files.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+
+from grader.inspection import trace
+from grader.inspection.trace import Obstacle, PackageTrace
+from grader.strict_json import to_json
+
+
+@dataclass(frozen=True)
+class DataFiles:
+    """Files, and the folder that they come into."""
+
+    folder: str
+    files: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a set-up says.
+
+    Attributes:
+        name: of the package; '' where it gives none.
+        data_files: what it installs beside Python's packages.
+        scripts: lines such as 'talker = pkg.talker:main'.
+        plain_scripts: files that are programs.
+        packages: Python's; None where nothing lists them.
+        package_folders: where they lie, as 'NAME=FOLDER'; without a name, all others.
+        scripts_folder: where programs are installed, without `$base/`; '' where nothing says so.
+        has_commands: whether classes of its own install it.
+    """
+
+    name: str = ""
+    data_files: tuple[DataFiles, ...] = ()
+    scripts: tuple[str, ...] = ()
+    plain_scripts: tuple[str, ...] = ()
+    packages: tuple[str, ...] | None = None
+    package_folders: tuple[str, ...] = ()
+    scripts_folder: str = ""
+    has_commands: bool = False
+
+
+@dataclass(frozen=True)
+class SetUp:
+    """The set-up files of one folder.
+
+    Attributes:
+        folder: where they lie in what was handed in; '.' for its top.
+        problem: what ended their evaluation; None where it came to its end.
+    """
+
+    folder: str
+    told: Told
+    problem: Obstacle | None
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """All of it.
+
+    Attributes:
+        set_ups: in the order in which they were asked for.
+        package: the folder of the package that is likely to be started; '' for none.
+        trace: what was found of that package; its launch files at least.
+        plain: those in which there is nothing but nodes.
+    """
+
+    set_ups: tuple[SetUp, ...] = ()
+    package: str = ""
+    trace: PackageTrace = field(default_factory=PackageTrace)
+    plain: tuple[str, ...] = ()
+
+
+def encode(inspection: Inspection) -> bytes:
+    """An inspection as JSON."""
+    return json.dumps(to_json(inspection), sort_keys=True).encode("ascii")
+
+
+def decode(data: bytes) -> Inspection:
+    """The inspection that bytes mean.
+
+    Raises:
+        ValueError: they mean none.
+    """
+    made = trace.read(Inspection, data)
+    trace.must_agree(made.trace)
+    return made

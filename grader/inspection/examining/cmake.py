@@ -1,0 +1,213 @@
+"""What a CMakeLists.txt installs, as far as its install() commands say it; it is not run."""
+
+from __future__ import annotations
+
+import fnmatch
+import os
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple
+
+from grader.inspection.examining import paths
+from grader.inspection.examining.steps import Ended, attempt, it
+from grader.inspection.trace import Obstacle
+from grader.message import msg
+
+_COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
+_COMMAND = re.compile(r"\b(project|set|file|install)\s*\(([^()]*)\)|\b(if|endif)\s*\(", re.I)
+#: The innermost loop: its head, and its body.
+_LOOP = re.compile(
+    r"\bforeach\s*\(([^()]*)\)((?:(?!\bforeach\s*\().)*?)\bendforeach\s*\([^()]*\)", re.I | re.S
+)
+_HERE = (
+    *("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR"),
+    "CMAKE_CURRENT_LIST_DIR",
+)
+FILE = "CMakeLists.txt"
+_MOST_CHARACTERS, _MOST_FILES = 1_000_000, 20_000
+_WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|(\S+)', re.DOTALL)
+_VARIABLE = re.compile(r"\$\{(\w+)\}")
+_KINDS = ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS")
+_OPTIONS = (
+    *("DESTINATION", "PATTERN", "FILES_MATCHING", "REGEX", "EXCLUDE", "PERMISSIONS", "RENAME"),
+    *("USE_SOURCE_PERMISSIONS", "OPTIONAL", "COMPONENT", "RUNTIME", "ARCHIVE", "LIBRARY", "EXPORT"),
+    *("CONFIGURATIONS", "INCLUDES", "FILE_PERMISSIONS", "DIRECTORY_PERMISSIONS", "TYPE"),
+    *("MESSAGE_NEVER", "EXCLUDE_FROM_ALL", "NAMELINK_SKIP", "BUNDLE", "PUBLIC_HEADER"),
+)
+
+
+class Read(NamedTuple):
+    """What a set-up file installs, a CMakeLists.txt or a setup.py.
+
+    Attributes:
+        project: the name that it gives; '' where it tells none.
+        files: (folder below the prefix, file of the package).
+        absent: what it installs, and is not there.
+        programs: what is compiled and installed: 'lib/NAME/PROGRAM'.
+        problems: what ended its evaluation; commands that nobody can follow here.
+    """
+
+    project: str
+    files: list[tuple[str, str]]
+    absent: list[str]
+    programs: list[str]
+    problems: list[Obstacle]
+
+
+def read(folder: Path) -> Read:
+    """What the CMakeLists.txt of a package says."""
+    text = paths.read(folder / FILE, _MOST_CHARACTERS).decode("utf-8", "replace")
+    variables = {**dict.fromkeys(_HERE, "."), "CMAKE_INSTALL_PREFIX": ""}
+    made = Read("", [], [], [], [])
+    depth = 0  # of if()
+    for found in _COMMAND.finditer(_unrolled(_COMMENT.sub("", text))):
+        if found[3]:
+            depth += 1 if found[3].lower() == "if" else -1
+            continue
+        words = [_filled(a or b, variables) for a, b in _WORD.findall(found[2])]
+        known = len(made.absent)
+        try:
+            attempt(partial(_follow, folder, found[1].lower(), words, variables, made))
+        except Ended as ended:
+            line = text[: text.find(found[0])].count("\n") + 1 if found[0] in text else 0
+            made.problems.append(replace(ended.problem, file=FILE, line=line))
+        if depth > 0:  # on a condition, mostly that it is there
+            del made.absent[known:]
+    return made._replace(project=variables.get("PROJECT_NAME", ""))
+
+
+def _follow(
+    folder: Path, command: str, words: list[str], variables: dict[str, str], made: Read
+) -> None:
+    match command:
+        case "project" if words:
+            variables["PROJECT_NAME"] = words[0]
+        case "set" if words:
+            variables[words[0]] = ";".join(words[1:])[:_MOST_CHARACTERS]
+        case "file" if len(words) > 2 and words[0].upper() in ("GLOB", "GLOB_RECURSE"):
+            variables[words[1]] = ";".join(_globbed(folder, words))
+        case "install":
+            _install(folder, words, made)
+
+
+def _unrolled(text: str) -> str:
+    """A text with its loops over words, and over lists of words, written out."""
+
+    def written_out(loop: re.Match[str]) -> str:
+        name, *items = loop[1].split() or [""]
+        kind = [each.upper() for each in items[:2]]
+        if kind[:1] == ["RANGE"]:
+            return ""
+        if kind == ["IN", "LISTS"]:
+            lists = [
+                re.search(rf"\bset\s*\(\s*{re.escape(n)}\s([^()]*)\)", text) for n in items[2:]
+            ]
+            items = [word for each in lists if each for word in each[1].split()]
+        elif kind == ["IN", "ITEMS"]:
+            items = items[2:]
+        return "\n".join(loop[2].replace(f"${{{name}}}", each) for each in items[:100])
+
+    for _ in range(5):
+        text = _LOOP.sub(written_out, text)[:_MOST_CHARACTERS]
+    return text
+
+
+def _globbed(folder: Path, words: list[str]) -> list[str]:
+    """The files that patterns match: `*` within a name; of GLOB_RECURSE in folders below, too."""
+    patterns = [each for each in words[2:] if each.upper() != "CONFIGURE_DEPENDS"]
+    if patterns[:1] == ["RELATIVE"]:
+        if patterns[1:2] != ["."]:
+            return []
+        patterns = patterns[2:]
+    found: set[str] = set()
+    names = list(islice(_files_below(folder), _MOST_FILES))
+    for pattern in patterns:
+        parts = [each for each in pattern.split("/") if each not in ("", ".")]
+        if pattern.startswith("/") or ".." in parts or not parts:
+            continue
+        for name in names:
+            whole = name.split("/")
+            if words[0].upper() == "GLOB_RECURSE" and len(whole) > len(parts):
+                whole = [*whole[: len(parts) - 1], whole[-1]]
+            if len(whole) == len(parts) and all(map(fnmatch.fnmatchcase, whole, parts)):
+                found.add(name)
+    return sorted(found)
+
+
+def _files_below(folder: Path) -> Iterator[str]:
+    for at, folders, names in os.walk(folder):
+        folders.sort()
+        for name in sorted(names):
+            path = Path(at, name)
+            if paths.is_file(path):
+                yield path.relative_to(folder).as_posix()
+
+
+def _filled(word: str, variables: dict[str, str]) -> str:
+    """A word with its variables put in; those that nobody knows stay as they are."""
+    for _ in range(5):
+        word = _VARIABLE.sub(lambda found: variables.get(found[1], found[0]), word)
+        word = word[:_MOST_CHARACTERS]
+    return word
+
+
+def _install(folder: Path, words: list[str], made: Read) -> None:
+    files, absent, programs = made.files, made.absent, made.programs
+    if not words or words[0].upper() not in _KINDS or "DESTINATION" not in words[:-1]:
+        return
+    where = words[words.index("DESTINATION") + 1].strip("/")
+    end = next((n for n, word in enumerate(words[1:], 1) if word in _OPTIONS), len(words))
+    named = [each for word in words[1:end] for each in word.split(";") if each]
+    unknown = [each for each in (where, *named) if "${" in each or "$<" in each]
+    if unknown:
+        raise Ended(Obstacle("unknown", it(msg("installs {name}", name=unknown[0][:200]))))
+    if words[0].upper() == "TARGETS":
+        programs += [f"{where}/{name}" for name in named]
+        return
+    is_kept = _patterns(words)
+    for name in named:
+        source = Path(os.path.normpath(folder / name))
+        if not source.resolve().is_relative_to(folder.resolve()):
+            raise Ended(Obstacle("unknown", it(msg("installs {name}", name=name[:200]))))
+        if words[0].upper() == "DIRECTORY":
+            if not paths.is_folder(source):
+                absent.append(name.rstrip("/"))
+                continue
+            # with a slash at its end what is in it is installed, without one the folder itself
+            base = source if name.endswith("/") else source.parent
+            for at, _, names in sorted(os.walk(source)):
+                for each in sorted(names):
+                    path = Path(at, each)
+                    if is_kept(path.relative_to(source).as_posix(), each) and (
+                        len(files) < _MOST_FILES
+                    ):
+                        below = path.relative_to(base).parent.as_posix()
+                        to = f"{where}/{below}" if below != "." else where
+                        files.append((to, os.path.relpath(path, folder)))
+        elif paths.is_file(source):
+            files.append((where, os.path.relpath(source, folder)))
+        else:
+            absent.append(name)
+
+
+def _patterns(words: list[str]) -> Callable[[str, str], bool]:
+    """Whether a file of a folder is installed, by FILES_MATCHING, PATTERN and EXCLUDE."""
+    wanted: list[str] = []
+    refused: list[str] = []
+    for n, word in enumerate(words[:-1]):
+        if word == "PATTERN":
+            is_out = words[n + 2 : n + 3] == ["EXCLUDE"]
+            (refused if is_out else wanted).append(words[n + 1])
+    matching = "FILES_MATCHING" in words
+
+    def is_kept(path: str, name: str) -> bool:
+        parts = path.split("/")
+        if any(fnmatch.fnmatch(part, each) for each in refused for part in parts):
+            return False
+        return not matching or any(fnmatch.fnmatch(name, each) for each in wanted)
+
+    return is_kept

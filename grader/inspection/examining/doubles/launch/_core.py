@@ -1,0 +1,295 @@
+"""What all of these doubles stand on: entities, substitutions, the context, and what is not known.
+
+They are ROS's `launch` as far as a description package uses it (ros2/launch, branch jazzy): the
+same names, arguments and refusals. Nothing is started: what would be is taken down in
+`LaunchContext.record`. A name that ROS may have and these have not ends in `NotKnown`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from itertools import islice
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from grader.inspection.examining.steps import not_known
+from grader.message import Message
+
+_MOST_ENTITIES = 10_000
+
+
+def unknown(module: str) -> Any:
+    """The `__getattr__` of a module: names that are not here may be in the original."""
+
+    def missing(name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise not_known(f"{module}.{name}")
+
+    return missing
+
+
+def exported(name: str, *more: str) -> list[str]:
+    """What `import *` takes of a module: its own classes and functions, and more."""
+    made = vars(sys.modules[name]).items()
+    own = [each for each, value in made if getattr(value, "__module__", "") == name]
+    return [*(each for each in own if not each.startswith("_")), *more]
+
+
+def module(name: str, *given: Any, **more: Any) -> ModuleType:
+    """A module that is a file of its own in the original: classes and functions, more by name."""
+    names = {each.__name__: each for each in given} | more
+    made = ModuleType(name, f"A double of ROS's `{name}`.")
+    made.__dict__.update(names, __all__=list(names), __getattr__=unknown(name))
+    sys.modules[name] = made
+    return made
+
+
+class Record:
+    """What a launch file would have started, and asked for; `grader...launches` makes a better."""
+
+    def node(self, node: dict[str, Any]) -> None: ...
+
+    def skipped(self, node: dict[str, Any]) -> None: ...
+
+    def process(self, words: list[str]) -> None: ...
+
+    def visited(self, kind: str) -> None: ...
+
+    def include(self, path: str, arguments: dict[str, str]) -> bool:
+        return False
+
+    def path(self, path: str) -> str:
+        return path
+
+    def command(self, words: list[str], on_stderr: str) -> str:
+        raise not_known("a command")
+
+    def executable(self, package: str, name: str) -> None: ...
+
+    def remark(self, remark: Message) -> None: ...
+
+    def declared(self, name: str) -> None: ...
+
+
+class LaunchContext:
+    def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
+        self.argv = list(argv or [])
+        self.launch_configurations: dict[str, str] = {}
+        self.environment = os.environ
+        self.locals_: dict[str, Any] = {}
+        self.record = Record()
+        self.is_later = False
+        self.depth = 0
+
+    @property
+    def locals(self) -> Any:
+        return type("Locals", (), dict(self.locals_))()
+
+    def extend_locals(self, extensions: dict[str, Any]) -> None:
+        self.locals_.update(extensions)
+
+    def extend_globals(self, extensions: dict[str, Any]) -> None:
+        self.locals_.update(extensions)
+
+    def get_locals_as_dict(self) -> dict[str, Any]:
+        return dict(self.locals_)
+
+    def perform_substitution(self, substitution: Any) -> str:
+        return str(substitution.perform(self))
+
+    def __getattr__(self, name: str) -> Any:
+        raise not_known(f"LaunchContext.{name}")
+
+
+class Substitution:
+    def perform(self, context: LaunchContext) -> str:
+        return ""
+
+    def describe(self) -> str:
+        return repr(self)
+
+
+class TextSubstitution(Substitution):
+    def __init__(self, *, text: str) -> None:
+        if not isinstance(text, str):
+            raise TypeError(f"TextSubstitution expected str object got '{type(text)}' instead.")
+        self.text = text
+
+    def perform(self, context: LaunchContext) -> str:
+        return self.text
+
+
+def normalize_to_list_of_substitutions(subs: Any) -> list[Substitution]:
+    def one(each: Any) -> Substitution:
+        if isinstance(each, Substitution):
+            return each
+        if isinstance(each, str):
+            return TextSubstitution(text=each)
+        if isinstance(each, Path):
+            return TextSubstitution(text=str(each))
+        raise TypeError(
+            f"Failed to normalize given item of type '{type(each)}', when only "
+            "'str' or 'launch.Substitution' were expected."
+        )
+
+    if isinstance(subs, str | Path | Substitution):
+        return [one(subs)]
+    if isinstance(subs, Iterable):
+        return [one(each) for each in subs]
+    return [one(subs)]
+
+
+def perform_substitutions(context: LaunchContext, subs: Iterable[Substitution]) -> str:
+    return "".join(str(each.perform(context)) for each in subs)
+
+
+def text_of(context: LaunchContext, subs: Any) -> str:
+    """Whatever may be a substitution, as a text."""
+    return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
+
+
+def shown(subs: Any) -> str:
+    """Whatever may be a substitution, as a launch file in XML has it."""
+    parts = []
+    for each in normalize_to_list_of_substitutions(subs):
+        name = getattr(each, "variable_name", None)
+        if isinstance(each, TextSubstitution):
+            parts.append(each.text)
+        elif isinstance(name, list):
+            parts.append(f"$(var {shown(name)})")
+        else:
+            parts.append(f"$({type(each).__name__})")
+    return "".join(parts)
+
+
+class LaunchDescriptionEntity:
+    def visit(self, context: LaunchContext) -> list[Any] | None:
+        return None
+
+
+class Condition:
+    #: in words
+    told = "a condition"
+
+    def __init__(self, *, predicate: Any = None) -> None:
+        self.predicate = predicate
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        return bool(self.predicate(context)) if self.predicate else True
+
+
+class Action(LaunchDescriptionEntity):
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        self.condition = condition
+
+    def visit(self, context: LaunchContext) -> list[Any] | None:
+        if self.condition is None or self.condition.evaluate(context):
+            return self.execute(context)
+        self.skip(context)
+        return None
+
+    def skip(self, context: LaunchContext) -> None:
+        """Its condition is not met."""
+
+    def execute(self, context: LaunchContext) -> list[Any] | None:
+        return None
+
+
+class Executable:
+    def __init__(
+        self,
+        *,
+        cmd: Any,
+        prefix: Any = None,
+        name: Any = None,
+        cwd: Any = None,
+        env: Any = None,
+        additional_env: Any = None,
+        arguments: Any = None,
+    ) -> None:
+        self.cmd = [*cmd, *(arguments or [])]
+
+
+class NeedsArgument(RuntimeError):
+    """A launch argument without a value: whoever launches it has to give one."""
+
+    kind_of_problem = "argument"
+
+
+class LaunchDescription(LaunchDescriptionEntity):
+    def __init__(
+        self, initial_entities: Iterable[Any] | None = None, *, deprecated_reason: str | None = None
+    ) -> None:
+        self.entities = list(islice(initial_entities or (), _MOST_ENTITIES + 1))
+        if len(self.entities) > _MOST_ENTITIES:
+            raise RecursionError("a launch description of actions without end")
+        self.deprecated_reason = deprecated_reason
+
+    def add_entity(self, entity: Any) -> None:
+        self.entities.append(entity)
+
+    def add_action(self, action: Any) -> None:
+        self.add_entity(action)
+
+    def visit(self, context: LaunchContext) -> list[Any] | None:
+        return self.entities
+
+    def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[Any]:
+        from launch.actions import DeclareLaunchArgument
+
+        return [each for each in self.entities if isinstance(each, DeclareLaunchArgument)]
+
+
+class LaunchDescriptionSource:
+    def __init__(
+        self, launch_description: Any = None, location: Any = "", method: str = "unspecified"
+    ) -> None:
+        self.given = launch_description
+        self.location_ = normalize_to_list_of_substitutions(location)
+        self.method = method
+
+    @property
+    def location(self) -> str:
+        return "".join(getattr(each, "text", "") for each in self.location_)
+
+
+class InvalidPythonLaunchFileError(Exception):
+    pass
+
+
+class PythonLaunchDescriptionSource(LaunchDescriptionSource):
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(None, launch_file_path, "interpreted python launch file")
+
+
+class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(None, launch_file_path, "interpreted frontend launch file")
+
+
+class AnyLaunchDescriptionSource(LaunchDescriptionSource):
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(None, launch_file_path, "interpreted launch file")
+
+
+def walk(entities: Any, context: LaunchContext, depth: int = 0) -> None:
+    """Visit what a launch service would."""
+    if entities is None:
+        return
+    if isinstance(entities, LaunchDescriptionEntity):
+        entities = [entities]
+    for entity in list(entities):
+        if entity is None:
+            continue
+        if not isinstance(entity, LaunchDescriptionEntity):
+            raise TypeError(
+                f"expected an action in the launch description, found {type(entity).__name__}"
+            )
+        if depth > 60:
+            raise RecursionError("launch files or actions that lead to each other without end")
+        context.record.visited(type(entity).__name__)
+        walk(entity.visit(context), context, depth + 1)

@@ -1,0 +1,373 @@
+"""A double of ROS's `launch.actions`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import yaml
+from launch._core import (
+    Action,
+    AnyLaunchDescriptionSource,
+    Executable,
+    LaunchContext,
+    LaunchDescriptionSource,
+    NeedsArgument,
+    Substitution,
+    exported,
+    normalize_to_list_of_substitutions,
+    text_of,
+    unknown,
+    walk,
+)
+
+from grader.inspection.examining.steps import not_known
+from grader.message import msg
+
+
+class DeclareLaunchArgument(Action):
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: Any = None,
+        description: str | None = None,
+        choices: list[str] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.name = name
+        self.default_value = (
+            None if default_value is None else normalize_to_list_of_substitutions(default_value)
+        )
+        if choices is not None and not choices:
+            raise RuntimeError("Provided choices arg is empty. Use None to ignore the choice list.")
+        plain = default_value is not None and not isinstance(default_value, Substitution | list)
+        if choices is not None and plain and default_value not in choices:
+            raise RuntimeError(
+                f'Provided default_value "{default_value}" is not in provided choices "{choices}".'
+            )
+        self.description = description or "no description given"
+        self.choices = choices
+
+    def execute(self, context: LaunchContext) -> None:
+        context.record.declared(self.name)
+        known = context.launch_configurations
+        if self.name not in known:
+            if self.default_value is not None:
+                known[self.name] = text_of(context, self.default_value)
+            elif self.choices is not None:
+                known[self.name] = str(self.choices[0])
+                context.record.remark(
+                    msg(
+                        "its argument {name} has no default: looked at with {value}, the first of "
+                        "its choices",
+                        name=self.name,
+                        value=str(self.choices[0]),
+                    )
+                )
+            else:
+                raise NeedsArgument(f'Required launch argument "{self.name}" was not provided.')
+        if self.choices is not None and known[self.name] not in self.choices:
+            raise RuntimeError(
+                f'Argument "{self.name}" provided value "{known[self.name]}" is not valid. '
+                f"Valid options are: {self.choices}"
+            )
+
+
+class IncludeLaunchDescription(Action):
+    def __init__(
+        self, launch_description_source: Any, *, launch_arguments: Any = None, **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        if not isinstance(launch_description_source, LaunchDescriptionSource):
+            launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
+        self.launch_description_source = launch_description_source
+        self.launch_arguments = tuple(launch_arguments or ())
+
+    def execute(self, context: LaunchContext) -> list[Any] | None:
+        source = self.launch_description_source
+        given = {
+            text_of(context, name): text_of(context, value) for name, value in self.launch_arguments
+        }
+        if source.given is not None:
+            context.launch_configurations.update(given)
+            return [source.given]
+        path = text_of(context, source.location_)
+        context.record.include(path, given)
+        return None
+
+
+class GroupAction(Action):
+    def __init__(
+        self,
+        actions: Iterable[Any],
+        *,
+        scoped: bool = True,
+        forwarding: bool = True,
+        launch_configurations: dict[Any, Any] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._actions = list(actions)
+        self._scoped, self._forwarding = scoped, forwarding
+        self._more = launch_configurations or {}
+
+    def execute(self, context: LaunchContext) -> None:
+        before = dict(context.launch_configurations)
+        locals_ = dict(context.locals_)
+        if self._scoped and not self._forwarding:
+            context.launch_configurations.clear()
+        for name, value in self._more.items():
+            context.launch_configurations[text_of(context, name)] = text_of(context, value)
+        walk(self._actions, context)
+        if self._scoped:
+            context.launch_configurations.clear()
+            context.launch_configurations.update(before)
+            context.locals_ = locals_
+
+
+class TimerAction(Action):
+    def __init__(
+        self, *, period: Any, actions: Iterable[Any], cancel_on_shutdown: Any = True, **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        self.actions = list(actions)
+
+    def execute(self, context: LaunchContext) -> list[Any]:
+        return self.actions
+
+
+class OpaqueFunction(Action):
+    def __init__(
+        self,
+        *,
+        function: Callable[..., Any],
+        args: Iterable[Any] | None = None,
+        kwargs: dict[str, Any] | None = None,
+        **left_over_kwargs: Any,
+    ) -> None:
+        super().__init__(**left_over_kwargs)
+        if not callable(function):
+            raise TypeError(
+                f"OpaqueFunction expected a callable for 'function', got '{type(function)}'"
+            )
+        self._call = function, list(args or []), dict(kwargs or {})
+
+    def execute(self, context: LaunchContext) -> Any:
+        function, args, kwargs = self._call
+        return function(context, *args, **kwargs)
+
+
+class RegisterEventHandler(Action):
+    def __init__(self, event_handler: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.event_handler = event_handler
+
+    def execute(self, context: LaunchContext) -> None:
+        entities = self.event_handler.entities
+        if entities is None or callable(entities):
+            return
+        before, context.is_later = context.is_later, True
+        walk(entities, context)
+        context.is_later = before
+
+
+class ExecuteLocal(Action):
+    def __init__(
+        self,
+        *,
+        process_description: Any,
+        shell: bool = False,
+        sigterm_timeout: Any = "5",
+        sigkill_timeout: Any = "5",
+        emulate_tty: bool = False,
+        output: Any = "log",
+        output_format: str = "",
+        cached_output: bool = False,
+        log_cmd: bool = False,
+        on_exit: Any = None,
+        respawn: Any = False,
+        respawn_delay: float | None = None,
+        respawn_max_retries: int = -1,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        if not isinstance(output, dict):
+            normalize_to_list_of_substitutions(output)
+        self.process_description = process_description
+        self._on_exit = on_exit
+
+    def execute(self, context: LaunchContext) -> None:
+        words = [text_of(context, word) for word in self.process_description.cmd]
+        context.record.process(words)
+        self._afterwards(context)
+
+    def _afterwards(self, context: LaunchContext) -> None:
+        if self._on_exit is not None and not callable(self._on_exit):
+            before, context.is_later = context.is_later, True
+            walk(self._on_exit, context)
+            context.is_later = before
+
+
+class ExecuteProcess(ExecuteLocal):
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[Any],
+        prefix: Any = None,
+        name: Any = None,
+        cwd: Any = None,
+        env: Any = None,
+        additional_env: Any = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(
+            process_description=Executable(
+                cmd=[normalize_to_list_of_substitutions(word) for word in cmd]
+            ),
+            **kwargs,
+        )
+
+    @property
+    def cmd(self) -> list[Any]:
+        return list(self.process_description.cmd)
+
+
+class _NameAndValue(Action):
+    """Gives something of a name a value."""
+
+    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._both = (
+            normalize_to_list_of_substitutions(name),
+            normalize_to_list_of_substitutions(value),
+        )
+
+    def texts(self, context: LaunchContext) -> tuple[str, str]:
+        name, value = self._both
+        return text_of(context, name), text_of(context, value)
+
+
+class SetEnvironmentVariable(_NameAndValue):
+    def execute(self, context: LaunchContext) -> None:
+        name, value = self.texts(context)
+        context.environment[name] = value
+
+
+class AppendEnvironmentVariable(_NameAndValue):
+    def __init__(
+        self,
+        name: Any,
+        value: Any,
+        prepend: Any = False,
+        separator: Any = os.pathsep,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(name, value, **kwargs)
+        self._prepend = (
+            prepend if isinstance(prepend, bool) else normalize_to_list_of_substitutions(prepend)
+        )
+        self._separator = normalize_to_list_of_substitutions(separator)
+
+    def execute(self, context: LaunchContext) -> None:
+        name, value = self.texts(context)
+        parts = [context.environment[name], value] if name in context.environment else [value]
+        if self._is_first(context):
+            parts.reverse()
+        context.environment[name] = text_of(context, self._separator).join(parts)
+
+    def _is_first(self, context: LaunchContext) -> bool:
+        if isinstance(self._prepend, bool):
+            return self._prepend
+        text = text_of(context, self._prepend)
+        if not isinstance(found := yaml.safe_load(text), bool):
+            raise ValueError(f"Failed to convert '{text}' to bool")
+        return found
+
+
+class UnsetEnvironmentVariable(Action):
+    def __init__(self, name: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._name = name
+
+    def execute(self, context: LaunchContext) -> None:
+        context.environment.pop(text_of(context, self._name), None)
+
+
+class SetLaunchConfiguration(_NameAndValue):
+    def execute(self, context: LaunchContext) -> None:
+        name, value = self.texts(context)
+        context.launch_configurations[name] = value
+
+
+class UnsetLaunchConfiguration(Action):
+    def __init__(self, name: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._name = name
+
+    def execute(self, context: LaunchContext) -> None:
+        context.launch_configurations.pop(text_of(context, self._name), None)
+
+
+class LogInfo(Action):
+    def __init__(self, *, msg: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._msg = normalize_to_list_of_substitutions(msg)
+
+    def execute(self, context: LaunchContext) -> None:
+        text_of(context, self._msg)
+
+
+class Shutdown(Action):
+    def __init__(self, *, reason: Any = "reason not given", **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+
+class EmitEvent(Action):
+    def __init__(self, *, event: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+
+class UnregisterEventHandler(Action):
+    def __init__(self, event_handler: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+
+class PushLaunchConfigurations(Action):
+    def execute(self, context: LaunchContext) -> None:
+        raise not_known("PushLaunchConfigurations outside of a GroupAction")
+
+
+class PopLaunchConfigurations(PushLaunchConfigurations):
+    pass
+
+
+class PushEnvironment(Action):
+    pass
+
+
+class PopEnvironment(Action):
+    pass
+
+
+class ResetEnvironment(Action):
+    pass
+
+
+class ResetLaunchConfigurations(Action):
+    def __init__(self, launch_configurations: Any = None, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.launch_configurations.clear()
+
+
+class OpaqueCoroutine(Action):
+    def __init__(self, *, coroutine: Any, **kwargs: Any) -> None:
+        raise not_known("OpaqueCoroutine")
+
+
+__all__ = exported(__name__)
+__getattr__ = unknown("launch.actions")

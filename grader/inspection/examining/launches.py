@@ -1,0 +1,118 @@
+"""A launch file, evaluated with doubles of ROS's launch in a copy of the process.
+
+What a launch file names and is not there is taken down (`Lacking`), and the package's own file of
+the same name stands in for it: so one mistake hides no others.
+"""
+
+from __future__ import annotations
+
+import builtins
+import io
+import os
+import sys
+from typing import Any, Final
+
+from grader import strict_json
+from grader.inspection.examining import foreign, known
+from grader.inspection.examining.layout import DOUBLES, Installed, Workspace
+from grader.inspection.examining.packages import is_description
+from grader.inspection.examining.steps import NotKnown, in_folder, it, problem_of
+from grader.inspection.examining.taken import SUFFIXES, Taken
+from grader.message import msg
+
+#: Packages of ROS that have doubles.
+DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
+_MOST: Final = 200
+
+
+def evaluate(place: Workspace, of: Installed, file: str) -> Any:
+    """In a copy of the process: a launch file of a package, as `Evaluated` in JSON."""
+    prepare(place)
+    from launch import LaunchContext
+
+    taken = Taken(place)
+    taken.context = LaunchContext()
+    taken.context.record = taken
+    watch_files(taken, place)
+    installed = {source: path for path, source in of.files.items()}
+    if file in installed:
+        path = str(place.prefix / installed[file])
+    else:
+        path = str(of.package.folder / file)
+        taken.lack("file", f"{place.prefix}/share/{of.name}/{file}", path)
+    problem = None
+    try:
+        taken.run(path)
+    except MemoryError:
+        raise
+    except BaseException as error:
+        problem = problem_of(error, place.own)
+    return strict_json.to_json(taken.evaluated(file, problem, *_asked(place)), strict_json.OURS)
+
+
+def prepare(place: Workspace) -> None:
+    """In the copy: stand where nobody's files are, and find the doubles first."""
+    source = str(place.judged.package.folder)
+    in_folder(str(place.empty), [str(DOUBLES), source], place.environment())
+    place.asked.write_text("")
+    for name in [name for name in sys.modules if name.partition(".")[0] in DOUBLED]:
+        del sys.modules[name]  # ROS's own, that somebody has imported before
+    sys.meta_path.insert(0, _Unknown(place))
+
+
+def _asked(place: Workspace) -> tuple[list[str], list[str]]:
+    """Packages that were asked for: those that are there, and those that are not."""
+    lines = place.asked.read_text(encoding="utf-8", errors="replace").splitlines()
+    said = [line.partition(" ") for line in lines]
+    there, missing = (dict.fromkeys(n for s, _, n in said if s == sign) for sign in "+-")
+    ours = {each.name for each in place.all}
+    return [each for each in there if each not in ours][:_MOST], list(missing)[:_MOST]
+
+
+def watch_files(taken: Taken, place: Workspace) -> None:
+    """A file of the submission's that is read and is not there is the one that was meant."""
+    real = io.open
+
+    def opened(file: Any, mode: str = "r", *args: Any, **kwargs: Any) -> Any:
+        if isinstance(file, str | os.PathLike) and "r" in mode and "+" not in mode:
+            name = os.fspath(file)
+            if isinstance(name, str) and not os.path.exists(name) and _is_meant(name, place):
+                file = taken.path(os.path.abspath(name))
+            if isinstance(name, str) and is_description(name):
+                taken.sources.append(os.path.abspath(os.fspath(file)))
+        return real(file, mode, *args, **kwargs)
+
+    builtins.open = io.open = opened
+
+
+def _is_meant(name: str, place: Workspace) -> bool:
+    """Whether a file that is not there is one of a package, rather than one of the system's."""
+    full = os.path.abspath(name)
+    if full.startswith((f"{place.prefix}/", f"{place.stubs}/", f"{place.empty}/")):
+        return True
+    return bool(place.meant(full)) or full.endswith(SUFFIXES[:6])
+
+
+class _Unknown:
+    """Modules that the doubles have not, and the originals may: no fault of the package."""
+
+    def __init__(self, place: Workspace) -> None:
+        self._declared = set(place.judged.setup.depends)
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> Any:
+        """Stand in for what would be found nowhere else, or refuse it."""
+        import importlib.machinery
+
+        top = name.partition(".")[0]
+        if (
+            top not in DOUBLED
+            and top not in self._declared | known.KNOWN
+            and not top.startswith("launch_")
+        ):
+            return None
+        if importlib.machinery.PathFinder.find_spec(name, path) is not None:
+            return None
+        if top in DOUBLED or top.startswith("launch_"):
+            what = msg("imports {name}, which the grader does not have", name=name)
+            raise NotKnown(it(what))
+        return foreign.module(name)

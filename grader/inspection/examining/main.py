@@ -1,0 +1,132 @@
+"""The process that looks at a package: finds it, lays it out, evaluates it, leaves what it found.
+
+    python main.py {"root": ..., "leaves": ..., "added": ..., ARGUMENTS OF inspect}
+
+It is a submission's process, confined as such: what is in it may be anything. It leaves an
+`Inspection` as JSON in the open file `leaves`. Each step that runs a stranger's code is a copy of
+it, and cannot reach that file. What is `added` to a submission, so that it can be started, is no
+part of its package: it goes.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+import traceback
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from pkgutil import resolve_name
+
+ROOT = Path(__file__).resolve().parents[3]
+if __name__ == "__main__":
+    sys.path[0] = str(ROOT)
+
+from grader import linux  # noqa: E402
+from grader.inspection import answer  # noqa: E402
+from grader.inspection.answer import Inspection, SetUp  # noqa: E402
+from grader.inspection.examining import layout, leftovers, packages, setup_call  # noqa: E402
+from grader.inspection.examining.examination import Examination  # noqa: E402
+from grader.inspection.examining.layout import Workspace  # noqa: E402
+from grader.inspection.examining.steps import Ended, attempt, open_account  # noqa: E402
+from grader.inspection.trace import FAILED, PackageTrace  # noqa: E402
+
+
+def main() -> None:
+    """Look, and leave what was found; that it cannot do so is no fault of a package."""
+    try:
+        _main()
+    except Exception:
+        traceback.print_exc()
+        sys.exit(FAILED)
+
+
+def _main() -> None:
+    order = json.loads(sys.argv[1])
+    linux.control(linux.PR_SET_DUMPABLE, 0)  # no copy opens our descriptors by /proc
+    leftovers.adopt()
+    with tempfile.TemporaryDirectory(prefix="package-", ignore_cleanup_errors=True) as scratch:
+        root, leaves = Path(order.pop("root")), order.pop("leaves")
+        for each in order.pop("added", ()):
+            (root / each).unlink()
+        data = answer.encode(inspect(root, Path(scratch).resolve(), **order))
+    with open(leaves, "wb") as left:
+        left.write(data)
+
+
+def inspect(
+    root: Path,
+    scratch: Path,
+    *,
+    set_ups: Sequence[str] = (),
+    program: str = "",
+    package: str = "",
+    folder: str = "",
+    inspectors: Sequence[str] | None = (),
+) -> Inspection:
+    """Return what set-ups name to be started, and what there is of one package.
+
+    Args:
+        set_ups: folders that hold set-up files, below the root; the package that counts is then
+            the one that has the program.
+        program: the console script that is asked for.
+        package, folder: which package counts otherwise, by its name or by where it lies; '' for
+            the one that describes a robot.
+        inspectors: where the inspectors are that examine it besides; None where only what launch
+            files would start is asked for.
+    """
+    root = root.resolve()
+    said = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in set_ups)
+    known = {root / each.folder: (each.told, each.problem) for each in said}
+
+    def worth(set_up: SetUp) -> tuple[bool, bool]:
+        names = [line.partition("=")[0].strip() for line in set_up.told.scripts]
+        return program in names, bool(names)
+
+    best = max(said, key=worth).folder if said else ""
+    judged = root / best if said else Path(folder).resolve() if folder else None
+    try:
+        found, plain = attempt(lambda: _examine(root, package, scratch, judged, known, inspectors))
+    except Ended as ended:  # nothing that a step was made of: so much can be said
+        found, plain = PackageTrace(setup=layout.nothing("", ended.problem)), ()
+    return Inspection(said, best, found, plain)
+
+
+def _examine(
+    root: Path,
+    asked: str,
+    scratch: Path,
+    folder: Path | None,
+    known: layout.Known,
+    inspectors: Sequence[str] | None,
+) -> tuple[PackageTrace, tuple[str, ...]]:
+    """What was found, and launch files in which there is nothing but nodes.
+
+    Args:
+        known: set-ups that were evaluated already.
+        inspectors: see `inspect`.
+    """
+    open_account()
+    found = packages.find(root)
+    one = packages.judged(found, asked, folder)
+    if one is None:
+        return PackageTrace(), ()
+    with suppress(ImportError):  # once, and not by each copy that runs it
+        import xacro  # noqa: F401
+    prefix = scratch / "prefix"
+    stubs, empty = scratch / "stubs", scratch / "empty"
+    declared = {name for each in found for name in each.depends}
+    layout.make_stubs(stubs, declared, {each.name for each in found})
+    (empty / "home").mkdir(parents=True)
+    laid = {id(each): layout.lay_out(each, root, prefix, known) for each in found}
+    judged, everything = laid[id(one)], tuple(laid.values())
+    place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
+    examination = Examination(place, scratch)
+    examine = [resolve_name(place).examine for place in inspectors or ()]
+    trace = examination.trace(examine, is_whole=inspectors is not None)
+    return trace, tuple(examination.plain)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,388 @@
+"""What a launch file would start, asks for and lacks: the other side of the doubles."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+from grader.inspection.examining import commands, foreign, known, paths
+from grader.inspection.examining.layout import Workspace
+from grader.inspection.examining.steps import LIMITS, NotKnown, end_of, it
+from grader.inspection.trace import (
+    Include,
+    Lacking,
+    LaunchedNode,
+    LaunchFile,
+    Obstacle,
+    Parameter,
+    Skipped,
+)
+from grader.message import Message, msg
+from grader.strict_json import STRANGERS
+
+#: A text that is longer is no name or number, but a description.
+LONG: Final = 300
+_MOST: Final = 200
+#: So much of what a program says is kept, from its end.
+_LONGEST_SAID: Final = 1000
+_FILE_OPTIONS: Final = ("-d", "--display-config", "-file", "--file")
+#: How the names of files end that a node may be told to read.
+SUFFIXES: Final = (
+    *(".rviz", ".urdf", ".xacro", ".xml", ".yaml", ".yml", ".sdf", ".world", ".py", ".dae", ".stl"),
+    *(".launch", ".config", ".json", ".vcg"),
+)
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """What was taken down of a launch file.
+
+    Attributes:
+        launch: as far as this file tells alone; `packages` are those that are there.
+        texts: what the numbers of its texts stand for.
+        sources: descriptions that were read, in their order.
+        refused: what xacro said where it made nothing.
+        borrowed: packages that are not there, with files of the submission's.
+        missing: packages that were asked for, and are not there.
+        others: kinds of actions, but for nodes.
+    """
+
+    launch: LaunchFile
+    texts: Annotated[tuple[str, ...], STRANGERS._replace(characters=LIMITS.answer_bytes)]
+    sources: tuple[str, ...]
+    refused: tuple[str, ...]
+    borrowed: tuple[str, ...]
+    missing: tuple[str, ...]
+    others: tuple[str, ...]
+
+
+class Taken:
+    """What is taken down of a launch file; the `record` of a double's context."""
+
+    def __init__(self, place: Workspace) -> None:
+        self._place = place
+        self.context: Any = None
+        self._nodes: list[LaunchedNode] = []
+        self._processes: list[str] = []
+        self._includes: list[Include] = []
+        self._declared: list[str] = []
+        self._lacking: list[Lacking] = []
+        self._remarks: list[Message] = []
+        self._refused: list[str] = []
+        self._borrowed: list[str] = []
+        self._skipped: list[Skipped] = []
+        self._others: list[str] = []
+        self._texts: list[str] = []
+        self._depth = 0
+        #: descriptions that were read, in their order
+        self.sources: list[str] = []
+
+    def evaluated(
+        self, file: str, problem: Obstacle | None, there: Sequence[str], missing: Sequence[str]
+    ) -> Evaluated:
+        """All of it; with packages that were asked for, those that are there and the others."""
+        launch = LaunchFile(
+            file=file,
+            problem=problem,
+            nodes=tuple(self._nodes),
+            processes=tuple(self._processes),
+            includes=tuple(self._includes),
+            declared=tuple(self._declared),
+            packages=tuple(there),
+            lacking=tuple(self._lacking),
+            remarks=tuple(self._remarks),
+            moved="",
+            skipped=tuple(self._skipped),
+        )
+        return Evaluated(
+            launch,
+            tuple(self._texts),
+            tuple(self.sources[:20]),
+            tuple(self._refused),
+            tuple(self._borrowed),
+            tuple(missing),
+            tuple(self._others),
+        )
+
+    # Called by the doubles ----------------------------------------------------------------------
+
+    def node(self, node: dict[str, Any]) -> None:
+        """A node that would start."""
+        given = [*node["parameters"], *self._by_argument(node)]
+        parameters = tuple(self._parameter(each) for each in given)
+        self._look_for_paths(node["arguments"])
+        words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
+        _add(
+            self._nodes,
+            LaunchedNode(**{**self._from_where(node), **words, "parameters": parameters}),
+        )
+
+    def skipped(self, node: dict[str, Any]) -> None:
+        """A node that would start on a condition that is not met."""
+        _add(self._skipped, Skipped(**self._from_where(node)))
+
+    def _from_where(self, node: dict[str, Any]) -> dict[str, Any]:
+        """A node with the file and line that say that it starts."""
+        told = {"condition": "", **node}
+        path, line = told.pop("made", ("", 0))
+        file = self._place.own(path)
+        current = self.context.locals_.get("current_launch_file_path") or ""
+        return {
+            **told,
+            "file": file or self._place.own(current),
+            "line": line if file else 0,
+            "condition": told["condition"][:LONG],
+        }
+
+    def visited(self, kind: str) -> None:
+        """An action of whatever kind."""
+        if kind not in ("LaunchDescription", "Node"):
+            _add(self._others, kind[:LONG])
+
+    def process(self, words: list[str]) -> None:
+        """Another program that would start; a node, where it is plainly one."""
+        program = os.path.basename(words[0]) if words else ""
+        if words[:2] == ["ros2", "run"] and len(words) > 3:
+            package, executable, *arguments = words[2:]
+        elif program == "rviz2":
+            package, executable, arguments = program, program, words[1:]
+        else:
+            package, executable, arguments = "", "", []
+        if package:
+            self.executable(package, executable)
+            told = {"package": package, "executable": executable, "arguments": arguments}
+            told |= {"name": "", "namespace": "", "parameters": [], "remappings": []}
+            self.node({**told, "later": self.context.is_later})
+            return
+        self._look_for_paths(words)
+        _add(self._processes, " ".join(words)[:1000])
+
+    def declared(self, name: str) -> None:
+        """An argument."""
+        _add(self._declared, name)
+
+    def remark(self, remark: Message) -> None:
+        """What works, and need not."""
+        _add(self._remarks, remark)
+
+    def executable(self, package: str, name: str) -> None:
+        """A program of a package is wanted."""
+        from ament_index_python.packages import PackageNotFoundError, get_package_prefix
+
+        try:
+            prefix = get_package_prefix(package)
+        except PackageNotFoundError:
+            return
+        ours = [each.name for each in self._place.all]
+        if package in ours:
+            there = paths.is_file(Path(prefix) / "lib" / package / name)
+        else:
+            programs = known.PROGRAMS.get(package)
+            there = programs is None or name in programs
+            programs_of = (self._place.prefix / "lib" / each / name for each in ours)
+            is_known = self._place.knows(package)
+            if not is_known and any(map(paths.is_file, programs_of)):
+                _add(self._borrowed, package)
+        if not there:
+            self.lack("executable", f"{package} {name}", "")
+
+    def path(self, wanted: str) -> str:
+        """Where a file is, or the one that was meant.
+
+        Raises:
+            NotKnown: it is of another package, of which nobody knows the files here.
+        """
+        if os.path.exists(wanted):
+            return wanted
+        package, own = self._place.borrowed(wanted)
+        if package:
+            _add(self._borrowed, package)
+            return self.path(own)
+        if wanted.startswith(f"{self._place.stubs}/"):
+            name = self._place.told(wanted)
+            raise NotKnown(it(msg("needs {name}, a file of another package", name=name)))
+        meant = self._place.meant(wanted)
+        self.lack("file", wanted, meant)
+        return meant or wanted
+
+    def include(self, path: str, arguments: dict[str, str]) -> bool:
+        """Another launch file: followed where it is the submission's own."""
+        if self._place.borrowed(path)[0]:
+            path = self.path(path)
+        if path.startswith(f"{self._place.stubs}/share/"):
+            self._include_foreign(path, arguments)
+            return True
+        self._depth += 1
+        if self._depth > 20:
+            raise RecursionError("launch files that include each other")
+        self.context.launch_configurations.update(arguments)
+        self.run(path)
+        self._depth -= 1
+        return True
+
+    def _include_foreign(self, path: str, arguments: dict[str, str]) -> None:
+        from ament_index_python.packages import get_package_share_directory
+
+        package, _, file = path.removeprefix(f"{self._place.stubs}/share/").partition("/")
+        given = [f"{name}:={value}"[:1000] for name, value in arguments.items()]
+        if file not in known.FILES.get(package, (file,)):
+            self.lack("file", path, "")
+        _add(self._includes, Include(package, file, tuple(given)))
+
+        def expand(model: str) -> str:
+            return self.command(["xacro", model], "fail")
+
+        share = get_package_share_directory
+        for node in foreign.nodes_of(package, file, arguments, share, expand):
+            self.node(node)
+
+    def foreign(self, package: str, name: str) -> None:
+        """An action of another package, of which no more is known."""
+        _add(self._includes, Include(package, f"{name}()"[:1000], ()))
+
+    def command(self, words: list[str], on_stderr: str) -> str:
+        """What a `Command` prints.
+
+        Raises:
+            SubstitutionFailure: as the original does: it is not there, fails, or complains.
+        """
+        from ament_index_python.packages import get_package_prefix
+        from launch.substitutions import SubstitutionFailure
+
+        if words[:2] == ["ros2", "run"] and len(words) > 3:
+            words = words[3:]
+        if words[:1] == ["ros2"]:
+            said = commands.ros2(words, get_package_prefix)
+            if said is None:
+                command = " ".join(words[:3])
+                asks = msg(
+                    "`{command}` asks a running system, which nobody has here", command=command
+                )
+                self.remark(asks)
+            return said or ""
+        shown = self._place.told(" ".join(words))
+        if words and os.path.basename(words[0]) == "xacro":
+            code, out, errors = self.xacro(words[1:])
+            if code:  # the launch file has done what it should
+                _add(self._refused, f"xacro: {_end(errors)}")
+                return ""
+        else:
+            code, out, errors = commands.other(words, self.path)
+        if code:
+            raise SubstitutionFailure(
+                f"executed command failed. Command: {shown}. It says: {_end(errors)}"
+            )
+        if errors.strip() and on_stderr == "fail":
+            raise SubstitutionFailure(
+                f"executed command showed stderr output. Command: {shown}. It says: {_end(errors)}"
+            )
+        return out
+
+    # Files ----------------------------------------------------------------------------------------
+
+    def run(self, path: str) -> None:
+        """Evaluate a launch file."""
+        from launch._core import walk
+
+        read = self.path(path)
+        before = self.context.locals_.get("current_launch_file_path")
+        self.context.locals_["current_launch_file_path"] = path
+        if path.endswith(".py"):
+            walk(_python(path, read), self.context)
+        else:
+            from grader.inspection.examining import xml_launch, yaml_launch
+
+            is_yaml = path.endswith((".yaml", ".yml"))
+            walk((yaml_launch if is_yaml else xml_launch).entities(read), self.context)
+        self.context.locals_["current_launch_file_path"] = before
+
+    def xacro(self, words: list[str]) -> commands.Ended:
+        """What xacro does: its exit code, and what it prints to either side."""
+        return commands.xacro([self._given(word) for word in words])
+
+    def _given(self, word: str) -> str:
+        return word if word.startswith("-") or ":=" in word else self.path(word)
+
+    def _by_argument(self, node: dict[str, Any]) -> list[dict[str, Any]]:
+        """The file that a robot_state_publisher reads where it has no parameter, with a warning."""
+        has_one = any(each["name"] == "robot_description" for each in node["parameters"])
+        files = [each for each in node["arguments"] if each.endswith((".urdf", ".xml", ".xacro"))]
+        if has_one or not files or node["executable"] != "robot_state_publisher":
+            return []
+        self.remark(
+            msg(
+                "robot_state_publisher gets the description as a file, which it still reads, with "
+                "a warning: give it the parameter robot_description"
+            )
+        )
+        try:
+            with open(os.path.abspath(files[0]), encoding="utf-8") as file:
+                text = file.read()
+        except OSError:
+            return []
+        return [{"name": "robot_description", "value": text, "wrapped": True}]
+
+    def _parameter(self, given: dict[str, Any]) -> Parameter:
+        value, name = given["value"], str(given["name"])[:LONG]
+        if isinstance(value, str) and (len(value) > LONG or name == "robot_description"):
+            if value not in self._texts:
+                self._texts.append(value)
+            return Parameter(name, "", self._texts.index(value), given["wrapped"])
+        if isinstance(value, str):
+            self._look_for_paths([value])
+        told = value if isinstance(value, str) else json.dumps(value, default=str)
+        return Parameter(name, told[:1000], -1, given["wrapped"])
+
+    def _look_for_paths(self, words: list[str]) -> None:
+        """Files that a node is told to read have to be there."""
+        for before, word in zip(("", *words), words, strict=False):
+            path = word.removeprefix("file://")
+            if before in _FILE_OPTIONS and not path.startswith("/"):
+                path = os.path.abspath(path)  # from where the launch file is started
+            if path.startswith("/") and path.endswith(SUFFIXES) and " " not in path:
+                if path.startswith(f"{self._place.stubs}/"):
+                    continue
+                self.path(path)
+
+    def lack(self, kind: str, name: str, source: str) -> None:
+        """Something is named that is not there; `source` is where the file lies that was meant."""
+        own = self._place.own(source) if source else ""
+        _add(self._lacking, Lacking(kind, name, own, ""))
+
+
+def _add(to: list[Any], entry: Any) -> None:
+    if entry not in to and len(to) < _MOST:
+        to.append(entry)
+
+
+def _python(path: str, read: str) -> Any:
+    """The launch description of a launch file in Python."""
+    from launch.launch_description_sources import InvalidPythonLaunchFileError
+
+    with open(read, "rb") as file:  # as bytes: a byte order mark is no fault
+        code = compile(file.read(), read, "exec")
+    names: dict[str, Any] = {"__name__": "python_launch_file", "__file__": path}
+    exec(code, names)
+    function = names.get("generate_launch_description")
+    if function is None:
+        raise InvalidPythonLaunchFileError(
+            f"launch file at '{os.path.basename(path)}' does not contain the required function "
+            "'generate_launch_description()'"
+        )
+    made = function()
+    from launch import LaunchDescription
+
+    if not isinstance(made, LaunchDescription):
+        raise TypeError(
+            f"generate_launch_description() returned {type(made).__name__}; expected a "
+            "LaunchDescription"
+        )
+    return made
+
+
+def _end(text: str) -> str:
+    return end_of(" ".join(text.split()), _LONGEST_SAID)

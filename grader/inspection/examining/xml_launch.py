@@ -1,0 +1,334 @@
+"""Launch files in XML, as ROS's frontend reads them: each element becomes an action of a double."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+from xml.etree import ElementTree
+
+from grader.inspection.examining.steps import not_known
+
+_SUBSTITUTIONS_OF_ROS_1 = ("find", "arg", "optenv", "param")
+_SUBSTITUTION = re.compile(r"\$\(([\w-]+)")
+_OF_ROS_1 = ("param", "rosparam", "remap", "env", "machine", "test", "master")
+
+
+def entities(path: str) -> list[Any]:
+    """The actions of a launch file.
+
+    Raises:
+        Exception: it is not what ROS reads.
+    """
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    if "<!DOCTYPE" in text:
+        raise not_known("a DOCTYPE")
+    root = ElementTree.fromstring(text)
+    if root.tag != "launch":
+        raise RuntimeError(f"expected 'launch' as root element, found '{root.tag}'")
+    return [action(each) for each in root]
+
+
+def action(element: ElementTree.Element) -> Any:
+    """The action that an element means."""
+    from launch import actions
+    from launch_ros import actions as ros
+
+    take = _Attributes(element)
+    more = {"condition": take.condition()}
+    match element.tag:
+        case "arg":
+            made = actions.DeclareLaunchArgument(
+                take.plain("name"),
+                default_value=take("default"),
+                description=take.plain("description", ""),
+                choices=[each.get("value", "") for each in element.findall("choice")] or None,
+                **more,
+            )
+            take.rest("choice")
+        case "let" | "set_env" | "append_env":
+            kinds: dict[str, Any] = {
+                "let": actions.SetLaunchConfiguration,
+                "set_env": actions.SetEnvironmentVariable,
+                "append_env": actions.AppendEnvironmentVariable,
+            }
+            if element.tag == "append_env":
+                said = {name: take(name) for name in ("prepend", "separator")}
+                more |= {name: value for name, value in said.items() if value is not None}
+            made = kinds[element.tag](take.needed("name"), take.needed("value"), **more)
+        case "unset_env":
+            made = actions.UnsetEnvironmentVariable(take.needed("name"), **more)
+        case "node" | "lifecycle_node":
+            made = _node(element, take, more)
+        case "include":
+            made = actions.IncludeLaunchDescription(
+                _source(take.needed("file")),
+                launch_arguments=[
+                    (_Attributes(each).needed("name"), _Attributes(each).needed("value"))
+                    for each in element
+                    if each.tag in ("arg", "let")
+                ],
+                **more,
+            )
+        case "group":
+            scoped = take.plain("scoped", "true").lower() not in ("false", "0")
+            take("forwarding")
+            made = actions.GroupAction([action(each) for each in element], scoped=scoped, **more)
+        case "push_ros_namespace" | "push-ros-namespace":
+            made = ros.PushROSNamespace(take.needed("namespace"), **more)
+        case "set_parameter":
+            made = ros.SetParameter(take.needed("name"), take.needed("value"), **more)
+        case "executable":
+            import shlex
+
+            words = [substitutions(word) for word in shlex.split(take.plain("cmd"))]
+            take.ignore("cwd", "name", "output", "shell", "launch-prefix", "respawn", "on_exit")
+            made = actions.ExecuteProcess(cmd=words, **more)
+        case "timer" | "ros_timer":
+            made = actions.TimerAction(
+                period=take.needed("period"), actions=[action(each) for each in element], **more
+            )
+        case "log" | "log_info":
+            take.ignore("message", "level")
+            made = actions.LogInfo(msg="", **more)
+        case "shutdown":
+            take.ignore("reason")
+            made = actions.Shutdown(**more)
+        case "set_remap" | "set_use_sim_time" | "set_ros_log_dir":
+            return actions.LogInfo(msg="")
+        case other if other in _OF_ROS_1:
+            raise RuntimeError(f"Unrecognized entity of the type: {other} (it is one of ROS 1)")
+        case other:
+            raise not_known(f"<{other}>")
+    take.must_be_through()
+    return made
+
+
+def _source(file: Any) -> Any:
+    from launch.launch_description_sources import AnyLaunchDescriptionSource
+
+    return AnyLaunchDescriptionSource(file)
+
+
+def _node(element: ElementTree.Element, take: _Attributes, more: dict[str, Any]) -> Any:
+    from launch_ros.actions import Node
+
+    parameters: list[Any] = []
+    remappings = []
+    for child in element:
+        of = _Attributes(child)
+        if child.tag == "param":
+            parameters.append(_param(child, of))
+        elif child.tag == "remap":
+            remappings.append((of.needed("from"), of.needed("to")))
+        elif child.tag != "env":
+            raise ValueError(f"Unexpected nested entity '{child.tag}' in node")
+    arguments = take.plain("args", "")
+    take.ignore("output", "respawn", "respawn_delay", "launch-prefix", "ros_args", "env", "machine")
+    take.ignore("exec_name", "emulate_tty", "sigkill_timeout", "sigterm_timeout", "on_exit", "cwd")
+    take.ignore("log_cmd", "cached_output")
+    return Node(
+        package=take.needed("pkg"),
+        executable=take.needed("exec"),
+        name=take("name"),
+        namespace=take("namespace"),
+        parameters=parameters,
+        remappings=remappings,
+        arguments=[substitutions(word) for word in _words(arguments)],
+        **more,
+    )
+
+
+def _param(element: ElementTree.Element, take: _Attributes) -> Any:
+    from launch_ros.parameter_descriptions import ParameterFile, ParameterValue
+
+    if (file := take("from")) is not None:
+        take("allow_substs")
+        take.must_be_through()
+        return ParameterFile(file)
+    name, kind = take.plain("name"), take.plain("type", "")
+    if len(element):
+        inner = [_param(each, _Attributes(each)) for each in element if each.tag == "param"]
+        return {name: {k: v for each in inner for k, v in each.items()}}
+    value = take.needed("value")
+    take.ignore("value-sep", "sep")
+    take.must_be_through()
+    kinds = {"str": str, "string": str, "int": int, "float": float, "bool": bool}
+    if kind and kind not in kinds:
+        return {name: value}
+    return {name: ParameterValue(_joined(value), value_type=kinds.get(kind))}
+
+
+def _joined(value: Any) -> Any:
+    """A value that YAML reads, though it may hold no substitution."""
+    from launch._core import TextSubstitution
+
+    return [TextSubstitution(text=value)] if isinstance(value, str) else value
+
+
+def _words(text: str) -> Iterator[str]:
+    """Words at blanks that are in no `$(...)` and no quotes."""
+    depth, quote, word = 0, "", ""
+    for at, sign in enumerate(text):
+        if sign in "'\"" and not depth:
+            quote = "" if quote == sign else quote or sign
+            if quote != sign and quote:
+                word += sign
+            continue
+        depth += text.startswith("$(", at)
+        if sign == ")" and depth:
+            depth -= 1
+        if sign.isspace() and not depth and not quote:
+            if word:
+                yield word
+            word = ""
+        else:
+            word += sign
+    if word:
+        yield word
+
+
+class _Attributes:
+    """The attributes of an element, each to be taken once; ROS refuses what nobody takes."""
+
+    def __init__(self, element: ElementTree.Element) -> None:
+        self._tag = element.tag
+        self._left = dict(element.attrib)
+
+    def __call__(self, name: str) -> Any:
+        text = self._left.pop(name, None)
+        return None if text is None else substitutions(text)
+
+    def needed(self, name: str) -> Any:
+        if name not in self._left:
+            raise AttributeError(f"Attribute '{name}' of Entity '{self._tag}' not found")
+        return self(name)
+
+    def plain(self, name: str, default: str | None = None) -> str:
+        if name not in self._left and default is None:
+            raise AttributeError(f"Attribute '{name}' of Entity '{self._tag}' not found")
+        return self._left.pop(name, default or "")
+
+    def condition(self) -> Any:
+        from launch.conditions import IfCondition, UnlessCondition
+
+        for name, kind in (("if", IfCondition), ("unless", UnlessCondition)):
+            if name in self._left:
+                return kind(self(name))
+        return None
+
+    def ignore(self, *names: str) -> None:
+        for name in names:
+            self._left.pop(name, None)
+
+    def rest(self, *names: str) -> None:
+        self.ignore(*names)
+
+    def must_be_through(self) -> None:
+        if self._left:
+            raise ValueError(f"Unexpected attribute(s) found in `{self._tag}`: {set(self._left)}")
+
+
+# Substitutions: `$(name argument ...)`, one in another --------------------------------------------
+
+
+def substitutions(text: str) -> Any:
+    """A text with `$(...)` as the substitutions that it means."""
+    parts, _ = _parse(text, 0, top=True)
+    return parts if parts else ""
+
+
+def _parse(text: str, at: int, top: bool, quote: str = "") -> tuple[list[Any], int]:
+    """Parts up to the end of a text, an argument or a quoted one, and where that is."""
+    from launch._core import TextSubstitution
+
+    parts: list[Any] = []
+    plain = ""
+
+    def flush() -> None:
+        nonlocal plain
+        if plain:
+            parts.append(TextSubstitution(text=plain))
+            plain = ""
+
+    while at < len(text):
+        if (found := _SUBSTITUTION.match(text, at)) is not None:
+            flush()
+            arguments, at = _arguments(text, found.end())
+            parts.append(_substitution(found[1], arguments))
+            continue
+        sign = text[at]
+        if sign == "\\" and at + 1 < len(text):
+            plain += text[at + 1]
+            at += 2
+            continue
+        if not top and not quote and (sign.isspace() or sign == ")"):
+            break
+        if quote and sign == quote:
+            break
+        if not top and not quote and sign in "'\"":
+            flush()
+            inner, at = _parse(text, at + 1, top=False, quote=sign)
+            parts += inner
+            at += 1
+            continue
+        plain += sign
+        at += 1
+    flush()
+    return parts, at
+
+
+def _arguments(text: str, at: int) -> tuple[list[list[Any]], int]:
+    """The arguments of a `$(name ...)`, and where it ends."""
+    found: list[list[Any]] = []
+    while at < len(text):
+        if text[at].isspace():
+            at += 1
+        elif text[at] == ")":
+            return found, at + 1
+        else:
+            parts, at = _parse(text, at, top=False)
+            found.append(parts)
+    raise RuntimeError(f"a substitution has no end: {text[:80]!r}")
+
+
+def _substitution(name: str, arguments: list[list[Any]]) -> Any:
+    from launch import substitutions as plain
+    from launch_ros import substitutions as ros
+
+    kinds: dict[str, Any] = {
+        "var": plain.LaunchConfiguration,
+        "env": plain.EnvironmentVariable,
+        "command": plain.Command,
+        "eval": plain.PythonExpression,
+        "anon": plain.AnonName,
+        "not": plain.NotSubstitution,
+        "and": plain.AndSubstitution,
+        "or": plain.OrSubstitution,
+        "equals": plain.EqualsSubstitution,
+        "not-equals": plain.NotEqualsSubstitution,
+        "if": plain.IfElseSubstitution,
+        "file-content": plain.FileContent,
+        "find-pkg-share": ros.FindPackageShare,
+        "find-pkg-prefix": ros.FindPackagePrefix,
+    }
+    if name in ("dirname", "filename"):
+        return plain.ThisLaunchFileDir() if name == "dirname" else plain.ThisLaunchFile()
+    if name == "find-exec":
+        return plain.FindExecutable(name=arguments[0])
+    if name == "exec-in-pkg":
+        return ros.ExecutableInPackage(executable=arguments[0], package=arguments[1])
+    if name == "env" and len(arguments) == 2:
+        return plain.EnvironmentVariable(arguments[0], default_value=arguments[1])
+    if name == "var" and len(arguments) == 2:
+        return plain.LaunchConfiguration(arguments[0], default=arguments[1])
+    if name == "command" and len(arguments) == 2:
+        return plain.Command(arguments[0], on_stderr=arguments[1])
+    if name == "path-join":
+        return plain.PathJoinSubstitution(arguments)
+    if name in _SUBSTITUTIONS_OF_ROS_1:
+        raise RuntimeError(f"Unknown substitution: {name}")
+    if name not in kinds:
+        raise not_known(f"$({name})")
+    return kinds[name](*arguments)

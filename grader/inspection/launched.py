@@ -1,0 +1,162 @@
+"""What each launch file would start, as a table; what is missing of it is marked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from grader import text
+from grader.inspection.trace import (
+    PREFIX,
+    Lacking,
+    LaunchedNode,
+    LaunchFile,
+    PackageTrace,
+    Skipped,
+)
+from grader.message import NOTHING, Message, Text, joined, msg, msg_many
+from grader.recording.view import Cell, Table
+
+HEADINGS = (
+    *(msg("Package"), msg("Program"), msg("Name")),
+    *(msg("Parameters and arguments"), msg("Said in")),
+)
+#: A page has no more launch files, rows and lines of a cell.
+_MOST_TABLES, _MOST_ROWS, _MOST_LINES = 12, 60, 12
+_LONGEST = 160
+
+
+def tables(trace: PackageTrace) -> tuple[Table, ...]:
+    """One for each launch file."""
+    return tuple(_table(trace, launch) for launch in trace.launches[:_MOST_TABLES])
+
+
+def _table(trace: PackageTrace, launch: LaunchFile) -> Table:
+    rows = [_node(trace, launch, node) for node in launch.nodes]
+    rows += [
+        _row("", "", "", (msg("the program {name}", name=_clip(each)),), launch.file)
+        for each in launch.processes
+    ]
+    for each in launch.includes:
+        told: tuple[Text, ...] = (msg("includes {file}", file=_clip(each.file)), *each.arguments)
+        rows.append(_row(each.package, "", "", told, launch.file))
+    rows += [_skipped(each) for each in launch.skipped]
+    rows += [_lacking(each) for each in launch.lacking if each.source or not _is_told(launch, each)]
+    title = msg("What {file} would start", file=_clip(launch.file))
+    return Table(title, HEADINGS, tuple(rows[:_MOST_ROWS]), _note(launch, len(rows)))
+
+
+def _is_told(launch: LaunchFile, lacking: Lacking) -> bool:
+    """Whether a node's row says that it is missing."""
+    for node in launch.nodes:
+        names = {"package": node.package, "executable": f"{node.package} {node.executable}"}
+        if names.get(lacking.kind) == lacking.name:
+            return True
+        said = (*node.arguments, *(each.value for each in node.parameters))
+        if lacking.kind == "file" and _names(said, lacking.name):
+            return True
+    return False
+
+
+def _note(launch: LaunchFile, rows: int) -> Message:
+    said = []
+    if launch.problem is not None:
+        where = msg(
+            " ({file}, line {line})", file=_clip(launch.problem.file), line=launch.problem.line
+        )
+        said.append(
+            msg(
+                "It ends with {error}{place}.",
+                error=launch.problem.text.map_texts(_clip),
+                place=where if launch.problem.line else "",
+            )
+        )
+    elif not rows:
+        said.append(msg("It starts nothing."))
+    if launch.declared:
+        said.append(
+            msg("Arguments: {names}, at their defaults.", names=_clip(", ".join(launch.declared)))
+        )
+    if rows > _MOST_ROWS:
+        said.append(msg("{count} more rows are not shown.", count=rows - _MOST_ROWS))
+    return joined(said, " ") if said else NOTHING
+
+
+def _node(trace: PackageTrace, launch: LaunchFile, node: LaunchedNode) -> tuple[Cell, ...]:
+    told: list[Text] = [
+        msg("{name} = {value}", name=_clip(each.name), value=_value(trace, each.value, each.text))
+        for each in node.parameters
+    ]
+    if node.arguments:
+        told.append(" ".join(node.arguments))
+    told += [msg("remaps {names}", names=_clip(each)) for each in node.remappings]
+    if node.condition:
+        told.append(msg("{condition}: it is so by default", condition=_clip(node.condition)))
+    if node.later:
+        told.append(msg("later, when something else happens"))
+    missing = {(each.kind, each.name) for each in launch.lacking}
+    package, executable = node.package, node.executable
+    named = "/".join(filter(None, (node.namespace.strip("/"), node.name)))
+    return (
+        Cell((_clip(package),), ("package", package) in missing),
+        Cell((_clip(executable),), ("executable", f"{package} {executable}") in missing),
+        Cell(_lines((named,))),
+        Cell(_lines(told), any(k == "file" and _names(told, n) for k, n in missing)),
+        Cell((_place(node.file or launch.file, node.line),)),
+    )
+
+
+def _names(told: Sequence[Text], file: str) -> bool:
+    return any(file in str(each) for each in told)
+
+
+def _skipped(each: Skipped) -> tuple[Cell, ...]:
+    condition = _clip(each.condition) or msg("its condition")
+    told = msg("not started: {condition} is not so by default", condition=condition)
+    return _row(each.package, each.executable, "", (told,), _place(each.file, each.line))
+
+
+def _lacking(each: Lacking) -> tuple[Cell, ...]:
+    name = _clip(each.name)
+    told: Text = {
+        "file": msg("the file {name}", name=name),
+        "package": msg("the package {name}", name=name),
+        "executable": msg("the executable {name}", name=name),
+    }.get(each.kind) or f"the {each.kind} {name}"
+    there = msg("the package has {source}, not there", source=_clip(each.source))
+    lines = (told, there) if each.source else (told,)
+    return (Cell(("",)),) * 3 + (Cell(_lines(lines), True), Cell((_clip(each.by),)))
+
+
+def _row(
+    package: str, program: str, name: str, told: tuple[Text, ...], where: Text
+) -> tuple[Cell, ...]:
+    words = (_clip(each) for each in (package, program, name))
+    return (*(Cell((each,)) for each in words), Cell(_lines(told)), Cell((_clipped(where),)))
+
+
+def _value(trace: PackageTrace, value: str, number: int) -> Text:
+    if number < 0:
+        return value
+    said = trace.texts[number]
+    if not said.strip():
+        return msg("an empty text")
+    return msg_many("a text of {n:,} character", "a text of {n:,} characters", len(said))
+
+
+def _lines(told: Sequence[Text]) -> tuple[Text, ...]:
+    more = (
+        (msg("and {count} more", count=len(told) - _MOST_LINES),) if len(told) > _MOST_LINES else ()
+    )
+    return (*map(_clipped, told[:_MOST_LINES]), *more)
+
+
+def _place(file: str, line: int) -> Text:
+    return msg("{file}, line {line}", file=_clip(file), line=line) if line else _clip(file)
+
+
+def _clip(said: str) -> str:
+    return text.clip(text.one_line(text.plain(said.replace(f"{PREFIX}/", ""))), _LONGEST)
+
+
+def _clipped(said: Text) -> Text:
+    return said.map_texts(_clip) if isinstance(said, Message) else _clip(said)

@@ -1,0 +1,102 @@
+"""What ended an evaluation, in sentences of others, and what to do about the usual errors."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grader.inspection.trace import Obstacle
+from grader.message import Message, msg
+from grader.text import clip_inside, without_controls
+
+#: A text of the submission's in a sentence is no longer.
+_LONGEST: Final = 200
+
+
+def how_it_ends(file: str, problem: Obstacle) -> Message:
+    """'setup.py ends with NameError: ... (setup.py, line 3)', '... did not come to an end ...'."""
+    what = problem.text.values.get("what")
+    if problem.kind == "limit" and isinstance(what, Message):
+        return msg("{file} {what}", file=file, what=what.map_texts(shown))
+    return msg(
+        "{file} ends with {error}{place}", file=file, error=said(problem), place=placed(problem)
+    )
+
+
+def shown(text: str) -> str:
+    """A text of the submission's as it may stand in a sentence."""
+    return clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
+
+
+def said(problem: Obstacle) -> Message:
+    """What a problem says, in a sentence."""
+    return problem.text.map_texts(shown)
+
+
+def placed(problem: Obstacle) -> str | Message:
+    """' (launch/display.launch.py, line 9)', with a blank before it; '' for no place."""
+    if not problem.file:
+        return ""
+    if not problem.line:
+        return f" ({problem.file})"
+    return msg(" ({file}, line {line})", file=problem.file, line=problem.line)
+
+
+_NAMES: Final = msg(
+    "Compare the names of the arguments with those of your ROS release: "
+    "node_executable and node_name are called executable and name since "
+    "Foxy."
+)
+#: Words of the error that a launch file ends with, all of which it has -> what to do. The first
+#: that fit count.
+_ADVICE: Final = (
+    (
+        ("file not found", "xacro/"),
+        msg(
+            "Command joins its parts as they stand: a blank is missing, Command(['xacro ', path])."
+        ),
+    ),
+    (("keyword", "unexpected"), _NAMES),
+    (("keyword", "'executable'"), _NAMES),
+    (
+        ("launch configuration", "does not exist"),
+        msg(
+            "DeclareLaunchArgument(NAME, default_value=...) has to stand in the "
+            "list before what uses it. Compare the names letter by letter."
+        ),
+    ),
+    (
+        ("Failed to normalize", "float"),
+        msg("Arguments of a program are texts: write '0.1', not 0.1."),
+    ),
+    (
+        ("values to unpack",),
+        msg(
+            "launch_arguments takes pairs: {{'NAME': value}}.items(), with .items()"
+            " behind the dict."
+        ),
+    ),
+    (
+        ("'parameters' given to Node", "dict"),
+        msg("parameters is a list: parameters=[{{...}}], with brackets round the dict."),
+    ),
+    (
+        ("generate_launch_description", "NoneType"),
+        msg("The function's last line is: return LaunchDescription([...])."),
+    ),
+    (
+        ("required function", "generate_launch_description"),
+        msg("Name it so, letter by letter: ros2 launch calls generate_launch_description()."),
+    ),
+    (
+        ("it is one of ROS 1",),
+        msg("In ROS 2 <param> stands within its <node>, and a node has pkg=, exec= and no type=."),
+    ),
+    (("xacro",), msg("Run xacro by hand on the same file: it says the same, with file and line.")),
+    (("as yaml",), msg("Wrap it: ParameterValue(Command([...]), value_type=str).")),
+)
+_BY_HAND: Final = msg("`ros2 launch` says the same, with all lines of the traceback.")
+
+
+def advice(error: str) -> Message:
+    """What to do about an error, by what it says."""
+    return next((help for words, help in _ADVICE if all(word in error for word in words)), _BY_HAND)

@@ -1,0 +1,12 @@
+"""Each test is a look of its own: what the children of others took is none of its account."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.inspection.examining import steps
+
+
+@pytest.fixture(autouse=True)
+def _account():
+    steps.open_account()

@@ -1,0 +1,30 @@
+"""What a launch file's error is answered by."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.inspection.said import advice
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (
+            "SubstitutionFailure: launch configuration 'modell' does not exist",
+            "DeclareLaunchArgument",
+        ),
+        ("ValueError: too many values to unpack (expected 2)", ".items()"),
+        ("TypeError: Failed to normalize given item of type '<class 'float'>'", "'0.1'"),
+        ("TypeError: Expected 'parameters' given to Node to be one of ['list'], dict", "[{...}]"),
+        (
+            "TypeError: generate_launch_description() returned NoneType; expected a "
+            "LaunchDescription",
+            "return LaunchDescription",
+        ),
+        ("RuntimeError: Unrecognized entity of the type: param (it is one of ROS 1)", "ROS 2"),
+        ("NameError: name 'x' is not defined", "`ros2 launch` says the same"),
+    ],
+)
+def test_a_usual_error_has_its_own_advice(error, words):
+    assert words in str(advice(error))
