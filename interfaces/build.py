@@ -24,7 +24,7 @@ HERE = Path(__file__).resolve().parent
 # on it is the second.
 PACKAGES = {"turtlesim": "turtlesim", "turtlesim_msgs": "turtlesim", "tf2_msgs": "tf2_msgs"}
 
-# Packages whose types ours use. An action uses goal ids and the status topic by itself, a service
+# The packages that these depend on. Every action uses goal ids and the status topic, every service
 # its events.
 DEPENDENCIES = (
     *("builtin_interfaces", "action_msgs", "service_msgs", "unique_identifier_msgs"),
@@ -51,7 +51,7 @@ def extensions() -> list[Extension]:
 
 
 class BuildInterfaces(build_ext):
-    """A `build_ext` that generates the sources first, and collects the files beside the extension."""
+    """A `build_ext` that first generates the sources, and collects files beside the extension."""
 
     def run(self) -> None:
         """Build all packages and the .pth file that makes the ament index work."""
