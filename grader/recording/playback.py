@@ -104,7 +104,7 @@ class Playback:
     Attributes:
         title: name and score, in a line.
         summary: the diagnosis, in a line; '' where nothing was judged.
-        takes: the nominal run, and the varied ones.
+        runs: the nominal one, and the varied ones.
         judged: the verdicts, in the order of the checks.
         other: to compare with.
     """
