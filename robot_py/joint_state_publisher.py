@@ -82,7 +82,7 @@ class JointStatePublisher(Node):
         except ValueError as error:  # rclpy's, of an empty list, which has no type
             raise UnusableStart(f"a parameter cannot be used: {error}") from None
         for name, default, kind in PARAMETERS:
-            # what it was started with is declared already, whatever its type: so is the original's
+            # overrides are declared already, with any type, as in the original
             if not self.has_parameter(name):
                 self.declare_parameter(name, default, ParameterDescriptor(type=kind))
         self._joints = JointStates(self._options())

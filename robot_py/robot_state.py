@@ -229,7 +229,7 @@ class RobotState:
         if len(state.names) != len(state.positions):
             return Published(None, (_complaint(state),))
         if state.stamp_ns < 0:
-            # the original ends here, by an exception that nobody catches
+            # the original ends here, by an uncaught exception
             return Published(None, (NodeLog(Severity.ERROR, NEGATIVE),))
         logs: tuple[NodeLog, ...] = ()
         if self._heard_ns > now_ns:

@@ -125,7 +125,7 @@ def apply(arena: Arena, event: Event) -> object:
     """
     named = getattr(event, "turtle", None)
     if named is not None and named not in arena.turtles:
-        return None  # nobody subscribes to the topics of a turtle that is not there
+        return None  # the topics of a missing turtle have no subscriber
     match event:
         case kinds.CmdVel():
             arena.command(event.turtle, event.linear, event.angular)

@@ -178,7 +178,7 @@ class BufferCore:
             return list(self._frames.caches)
 
     def _lookup(self, target: str, source: str, time_ns: int) -> tuple[FramePose, int]:
-        if target == source:  # even of a frame that nobody knows
+        if target == source:  # even of an unknown frame
             return IDENTITY, time_ns or self._latest_ns(source)
         self._check_frame("lookupTransform argument target_frame", target)
         self._check_frame("lookupTransform argument source_frame", source)

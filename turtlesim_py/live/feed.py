@@ -19,7 +19,7 @@ from turtlesim_py.world.floats import json_number
 from turtlesim_py.world.stroke import Span
 from turtlesim_py.world.turtle import METER_PX, Reading, Turtle
 
-#: Changes of so many ticks travel together: 31 times a second.
+#: Changes of this many ticks are delivered together: 31 times a second.
 TICKS_TOGETHER = 2
 #: The most calls that one change names; a flood of them is no news.
 MOST_CALLS = 20

@@ -29,7 +29,7 @@ from turtlesim_py.live.messages import Rejected
 OnMessage = Callable[[Mapping[str, Any]], None]
 #: As every publisher of turtlesim.
 PUBLISHER_QOS: Final = QoSProfile(depth=10)
-#: A service that nobody serves is reported after this time [s].
+#: A missing service is reported after this time [s].
 PATIENCE_S: Final = 2.0
 #: Between two polls [s]: 50 times a second, as often as a page is drawn. Each serves so many
 #: messages at most: a flood of them is dropped by the middleware, and does not starve viewers.

@@ -23,7 +23,7 @@ _TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
 _BYTES = frozenset(("uint8", "octet", "byte", "char"))
 _FLOATS = frozenset(("float", "double", "float32", "float64", "long double"))
 _INTS = {f"{sign}int{bits}": (sign, bits) for sign in ("", "u") for bits in (8, 16, 32, 64)}
-#: A list from a viewer may have so many items.
+#: The most items of a list from a viewer.
 MOST_ITEMS = 100_000
 
 

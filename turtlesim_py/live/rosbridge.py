@@ -23,15 +23,15 @@ from turtlesim_py.live.messages import Rejected
 if TYPE_CHECKING:
     from turtlesim_py.live.graph import Graph
 
-#: A viewer may have so many of each kind open.
+#: The most open topics, and tasks, of a viewer.
 MOST_OPEN = 32
-#: A viewer may send so many frames a second, on average; so many at once.
+#: The most frames of a viewer: a second on average, and at once.
 FRAMES_PER_S, FRAMES_AT_ONCE = 200.0, 400.0
 #: The topic that only viewers have: the changes of the arena.
 LIVE = "/turtlesim_live"
 #: The longest pause between two messages of a topic that a viewer may ask for: a day.
 LONGEST_PAUSE_MS = 86_400_000
-#: What may stand for half a character.
+#: An escape that may be half of a surrogate pair.
 _MAYBE_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 
 

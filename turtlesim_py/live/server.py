@@ -32,9 +32,9 @@ from turtlesim_py.live.site import Site, is_loopback, plain
 if TYPE_CHECKING:
     from turtlesim_py.live.graph import Graph
 
-#: A frame of a viewer's may have so many bytes.
+#: The longest frame from a viewer [bytes].
 LONGEST_FRAME: Final = 256 * 1024
-#: A viewer that has not read so many bytes yet is sent no more until it has [bytes].
+#: A viewer with more unread bytes is sent nothing until it has read them [bytes].
 MOST_WAITING: Final = 1_000_000
 MOST_VIEWERS: Final = 100
 #: How often to see whether a slow viewer has caught up [s].
@@ -232,7 +232,7 @@ class LiveServer:
             self._watching.add(viewer)
             viewer.is_behind = True
             now = self._loop.time()
-            pause = viewer.next_whole_at - now  # one that comes and goes all the time has to wait
+            pause = viewer.next_whole_at - now  # a viewer that comes and goes has to wait
             viewer.next_whole_at = max(viewer.next_whole_at, now) + WHOLE_EVERY_S
             if pause > 0:
                 self._loop.call_later(pause, self._catch_up, viewer)

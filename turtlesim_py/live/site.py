@@ -93,7 +93,7 @@ class Site:
         origin = headers.get("origin")
         if origin is None:
             return ""
-        # what stands behind a forwarded port: the name by which the browser knows it
+        # behind a forwarded port: the name by which the browser knows this page
         forwarded = headers.get("x-forwarded-host", "").split(",")[0].strip()
         if _host(origin) in _LOCAL or (forwarded and _host(origin) == _host(f"//{forwarded}")):
             return ""

@@ -33,8 +33,8 @@ NEAR_RAD = 0.01
 STILL = 0.0001
 #: Between two commands [s]: a tick of the simulator.
 PERIOD_S = 0.016
-#: A server that has not met the client yet sends its answer to nobody: it is asked again after so
-#: many periods.
+#: A server that has not discovered the client yet loses its answer: the request is repeated after
+#: this many periods.
 ANSWERED_WITHIN = 125
 
 

@@ -165,7 +165,7 @@ class Keyboard:
     def _pause(self, number: int, _: object) -> None:
         self._release()
         handler = signal.signal(number, signal.SIG_DFL)
-        signal.raise_signal(number)  # here the program stands still
+        signal.raise_signal(number)  # here the program is stopped
         signal.signal(number, handler)
         self._acquire()
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from turtlesim_py import browser
 from turtlesim_py.ros import node, program
 
-#: Where the page is, unless somebody has that port.
+#: The port of the page, unless it is in use.
 USUAL_PORT = 8080
 #: Printed by --help.
 ABOUT = """\

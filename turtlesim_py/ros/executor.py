@@ -243,7 +243,7 @@ def _serve_request(service: Service) -> None:
         response = service.srv_type.Response()
         try:
             response = service.callback(request, response)
-        finally:  # an empty answer is better than none: somebody waits for it
+        finally:  # an empty answer is better than none: a client waits for it
             with suppress(InvalidHandle):
                 service.send_response(response, header)
 

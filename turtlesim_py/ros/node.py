@@ -285,7 +285,7 @@ class TurtlesimNode(RclcppNode):
             turtle = self.arena.turtles[name]
             numbers = (turtle.x_m, turtle.y_down_m, turtle.heading_rad)
             x, y, theta = map(printf_f, numbers)
-            # In brackets stands the namespace, not the turtle: so does the original.
+            # The brackets have the namespace, not the turtle, as in the original.
             self.get_logger().debug(
                 f"[{self.get_namespace()}]: pos_x: {x} pos_y: {y} theta: {theta}"
             )

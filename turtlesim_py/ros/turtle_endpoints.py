@@ -21,8 +21,8 @@ from turtlesim_py.world.turtle import Pose, Reading
 
 #: Reliable and volatile, the last 7 messages: the original's choice for every topic.
 TOPIC_QOS = QoSProfile(depth=7)
-#: Pose and Color as they travel: behind a header, five singles or three bytes. The way through a
-#: message object would be the dearest part of a tick. They are the same under both names.
+#: Pose and Color in CDR: a header, then five singles or three bytes. Message objects would cost
+#: more than all else in a tick. Both packages have the same types.
 CDR = b"\0\1\0\0"  # little-endian
 POSE_BYTES = Struct("<4s5f")
 COLOR_BYTES = Struct("<4s3Bx")
@@ -88,7 +88,7 @@ class RotateAction:
         elif event.status == "ABORTED":
             handle.abort()
         else:
-            if not handle.is_cancel_requested:  # the turtle is gone, nobody has asked
+            if not handle.is_cancel_requested:  # the turtle is gone, without a request
                 handle._update_state(GoalEvent.CANCEL_GOAL)
             handle.canceled()
         response = self._type.Impl.GetResultService.Response(

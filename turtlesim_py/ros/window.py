@@ -119,7 +119,7 @@ class Window:
             folder.mkdir(parents=True, exist_ok=True)
             path = _reserve_next(folder)
             PIL.Image.fromarray(self._picture()).save(path, format="PNG")
-        # a home that nobody has, a circle of links, a name that no file can have
+        # an unknown home, a circle of links, a name that no file can have
         except (OSError, RuntimeError, ValueError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
             response.success = False

@@ -41,7 +41,7 @@ from grader.translations import current, number, tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
-#: Printed on paper: so many of the last lines and characters of a node's output.
+#: Printed on paper: at most this many last lines and characters of a node's output.
 _PAPER_LINES, _PAPER_LIMIT = 25, 4000
 
 
