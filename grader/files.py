@@ -71,11 +71,18 @@ def write(path: Path, content: str) -> None:
             _write_beside(_target(path), data)
 
 
-def check_writable(path: Path) -> None:
+def check_writable(path: Path, schema: str | None = None, inputs: Iterable[Path] = ()) -> None:
     """Find out whether a file can be written, without changing anything.
 
+    Args:
+        schema: how the schema of what may be replaced begins, such as "turtlesim-grader/error/";
+            None for any file.
+        inputs: what the call reads; folders do not count, since whatever lies in them has a
+            schema of its own.
+
     Raises:
-        UsageError: it cannot.
+        UsageError: it cannot; or there is a file, neither empty nor of this schema, or it is one of
+            the inputs.
     """
     why_not: str | Message | None
     try:
@@ -84,6 +91,9 @@ def check_writable(path: Path) -> None:
         why_not = error.strerror or str(error)
     if why_not:
         raise cannot_write(path, why_not)
+    check_is_no_input(path, inputs)
+    if schema is not None:
+        _check_schema(path, schema)
 
 
 def _why_not(path: Path) -> Message | None:
@@ -103,18 +113,7 @@ def _why_not(path: Path) -> Message | None:
     return None
 
 
-def check_replaceable(path: Path, schema: str, inputs: Iterable[Path]) -> None:
-    """Refuse to replace a file that the grader has not written, or that this call reads.
-
-    Args:
-        schema: how the schema of what may be replaced begins: "turtlesim-grader/error/".
-        inputs: what the call reads; folders do not count, since whatever lies in them has a
-            schema of its own.
-
-    Raises:
-        UsageError: there is a file, neither empty nor of this schema, or it is one of the inputs.
-    """
-    check_is_no_input(path, inputs)
+def _check_schema(path: Path, schema: str) -> None:
     if _descriptor(path) is not None or not path.is_file():
         return
     with writing(path), path.open("rb") as file:
@@ -218,8 +217,8 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     """Find out whether `put` will work, without changing anything.
 
     Args:
-        schema, inputs: see `check_replaceable`; without a schema an older file of this name counts
-            as ours.
+        schema, inputs: see `check_writable`; without a schema an older file of this name counts as
+            ours.
 
     Raises:
         UsageError: it will not; or an older file is not ours.
@@ -228,7 +227,8 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     if mode is not None and stat.S_ISDIR(mode):
         raise cannot_write(path, msg("it is a folder; expected a file, or nothing"))
     if mode is not None and stat.S_ISREG(mode) and schema is not None:
-        check_replaceable(path, schema, inputs)
+        check_is_no_input(path, inputs)
+        _check_schema(path, schema)
     check_writable(path.parent / uuid.uuid4().hex)
 
 

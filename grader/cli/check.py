@@ -57,8 +57,7 @@ def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
     asked, args.exercise = args.exercise, args.exercise or DEFAULT
     if args.json:
-        files.check_writable(args.json)
-        files.check_replaceable(args.json, FAMILY, options.inputs(args))
+        files.check_writable(args.json, FAMILY, options.inputs(args))
     place = find(args.recording)
     recordings = load_all(place.recording)
     exercise = _exercise(asked, place, recordings)

@@ -192,8 +192,7 @@ def _withdraw(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
         files.check_can_put(out / name)
     files.check_can_fill(out / ARTIFACTS["recording"])
     if copy:
-        files.check_writable(copy)
-        files.check_replaceable(copy, FAMILY, read)
+        files.check_writable(copy, FAMILY, read)
     if out.is_dir():
         with files.sole_writer(out):
             files.clear(out / RESULT)

@@ -158,8 +158,7 @@ def prepare(args: argparse.Namespace) -> None:
     if args.error_json is not None:
         from grader.result.error import FAMILY
 
-        files.check_writable(args.error_json)
-        files.check_replaceable(args.error_json, FAMILY, inputs(args))
+        files.check_writable(args.error_json, FAMILY, inputs(args))
         files.withdraw(args.error_json)
 
 
