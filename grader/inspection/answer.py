@@ -23,7 +23,7 @@ class DataFiles:
 
 
 @dataclass(frozen=True)
-class Told:
+class SetUpFacts:
     """What a set-up says.
 
     Attributes:
@@ -57,7 +57,7 @@ class SetUp:
     """
 
     folder: str
-    told: Told
+    told: SetUpFacts
     problem: Obstacle | None
 
 

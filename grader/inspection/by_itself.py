@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.inspection.said import said
+from grader.inspection.error_texts import described
 from grader.inspection.trace import LaunchedNode, LaunchFile, PackageTrace
 from grader.message import NOTHING, Message, joined, msg, plain_text
 
@@ -16,7 +16,7 @@ def not_read(trace: PackageTrace, module: str, function: str) -> list[Message]:
             "{file} was not run, and what it starts cannot be read ({unread}): "
             "judged is {program} alone",
             file=launch.file,
-            unread=said(launch.problem),
+            unread=described(launch.problem),
             program=name,
         )
         for launch in trace.launches

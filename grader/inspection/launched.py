@@ -37,33 +37,35 @@ def _table(trace: PackageTrace, launch: LaunchFile) -> Table:
         for each in launch.processes
     ]
     for each in launch.includes:
-        told: tuple[Text, ...] = (msg("includes {file}", file=_clip(each.file)), *each.arguments)
-        rows.append(_row(each.package, "", "", told, launch.file))
+        details: tuple[Text, ...] = (msg("includes {file}", file=_clip(each.file)), *each.arguments)
+        rows.append(_row(each.package, "", "", details, launch.file))
     rows += [_skipped(each) for each in launch.skipped]
-    rows += [_lacking(each) for each in launch.lacking if each.source or not _is_told(launch, each)]
+    rows += [
+        _lacking(each) for each in launch.lacking if each.source or not _is_named(launch, each)
+    ]
     title = msg("What {file} would start", file=_clip(launch.file))
     return Table(title, HEADINGS, tuple(rows[:_MOST_ROWS]), _note(launch, len(rows)))
 
 
-def _is_told(launch: LaunchFile, lacking: Lacking) -> bool:
+def _is_named(launch: LaunchFile, lacking: Lacking) -> bool:
     """Whether a node's row says that it is missing."""
     for node in launch.nodes:
         names = {"package": node.package, "executable": f"{node.package} {node.executable}"}
         if names.get(lacking.kind) == lacking.name:
             return True
-        said = (*node.arguments, *(each.value for each in node.parameters))
-        if lacking.kind == "file" and _names(said, lacking.name):
+        texts = (*node.arguments, *(each.value for each in node.parameters))
+        if lacking.kind == "file" and _names(texts, lacking.name):
             return True
     return False
 
 
 def _note(launch: LaunchFile, rows: int) -> Message:
-    said = []
+    notes = []
     if launch.problem is not None:
         where = msg(
             " ({file}, line {line})", file=_clip(launch.problem.file), line=launch.problem.line
         )
-        said.append(
+        notes.append(
             msg(
                 "It ends with {error}{place}.",
                 error=launch.problem.text.map_texts(_clip),
@@ -71,28 +73,28 @@ def _note(launch: LaunchFile, rows: int) -> Message:
             )
         )
     elif not rows:
-        said.append(msg("It starts nothing."))
+        notes.append(msg("It starts nothing."))
     if launch.declared:
-        said.append(
+        notes.append(
             msg("Arguments: {names}, at their defaults.", names=_clip(", ".join(launch.declared)))
         )
     if rows > _MOST_ROWS:
-        said.append(msg("{count} more rows are not shown.", count=rows - _MOST_ROWS))
-    return joined(said, " ") if said else NOTHING
+        notes.append(msg("{count} more rows are not shown.", count=rows - _MOST_ROWS))
+    return joined(notes, " ") if notes else NOTHING
 
 
 def _node(trace: PackageTrace, launch: LaunchFile, node: LaunchedNode) -> tuple[Cell, ...]:
-    told: list[Text] = [
+    details: list[Text] = [
         msg("{name} = {value}", name=_clip(each.name), value=_value(trace, each.value, each.text))
         for each in node.parameters
     ]
     if node.arguments:
-        told.append(" ".join(node.arguments))
-    told += [msg("remaps {names}", names=_clip(each)) for each in node.remappings]
+        details.append(" ".join(node.arguments))
+    details += [msg("remaps {names}", names=_clip(each)) for each in node.remappings]
     if node.condition:
-        told.append(msg("{condition}: it is so by default", condition=_clip(node.condition)))
+        details.append(msg("{condition}: it is so by default", condition=_clip(node.condition)))
     if node.later:
-        told.append(msg("later, when something else happens"))
+        details.append(msg("later, when something else happens"))
     missing = {(each.kind, each.name) for each in launch.lacking}
     package, executable = node.package, node.executable
     named = "/".join(filter(None, (node.namespace.strip("/"), node.name)))
@@ -100,63 +102,65 @@ def _node(trace: PackageTrace, launch: LaunchFile, node: LaunchedNode) -> tuple[
         Cell((_clip(package),), ("package", package) in missing),
         Cell((_clip(executable),), ("executable", f"{package} {executable}") in missing),
         Cell(_lines((named,))),
-        Cell(_lines(told), any(k == "file" and _names(told, n) for k, n in missing)),
+        Cell(_lines(details), any(k == "file" and _names(details, n) for k, n in missing)),
         Cell((_place(node.file or launch.file, node.line),)),
     )
 
 
-def _names(told: Sequence[Text], file: str) -> bool:
-    return any(file in str(each) for each in told)
+def _names(details: Sequence[Text], file: str) -> bool:
+    return any(file in str(each) for each in details)
 
 
 def _skipped(each: Skipped) -> tuple[Cell, ...]:
     condition = _clip(each.condition) or msg("its condition")
-    told = msg("not started: {condition} is not so by default", condition=condition)
-    return _row(each.package, each.executable, "", (told,), _place(each.file, each.line))
+    details = msg("not started: {condition} is not so by default", condition=condition)
+    return _row(each.package, each.executable, "", (details,), _place(each.file, each.line))
 
 
 def _lacking(each: Lacking) -> tuple[Cell, ...]:
     name = _clip(each.name)
-    told: Text = {
+    details: Text = {
         "file": msg("the file {name}", name=name),
         "package": msg("the package {name}", name=name),
         "executable": msg("the executable {name}", name=name),
     }.get(each.kind) or f"the {each.kind} {name}"
     there = msg("the package has {source}, not there", source=_clip(each.source))
-    lines = (told, there) if each.source else (told,)
+    lines = (details, there) if each.source else (details,)
     return (Cell(("",)),) * 3 + (Cell(_lines(lines), True), Cell((_clip(each.by),)))
 
 
 def _row(
-    package: str, program: str, name: str, told: tuple[Text, ...], where: Text
+    package: str, program: str, name: str, details: tuple[Text, ...], where: Text
 ) -> tuple[Cell, ...]:
     words = (_clip(each) for each in (package, program, name))
-    return (*(Cell((each,)) for each in words), Cell(_lines(told)), Cell((_clipped(where),)))
+    return (*(Cell((each,)) for each in words), Cell(_lines(details)), Cell((_clipped(where),)))
 
 
 def _value(trace: PackageTrace, value: str, number: int) -> Text:
     if number < 0:
         return value
-    said = trace.texts[number]
-    if not said.strip():
+    content = trace.texts[number]
+    if not content.strip():
         return msg("an empty text")
-    return msg_many("a text of {n:,} character", "a text of {n:,} characters", len(said))
+    return msg_many("a text of {n:,} character", "a text of {n:,} characters", len(content))
 
 
-def _lines(told: Sequence[Text]) -> tuple[Text, ...]:
+def _lines(details: Sequence[Text]) -> tuple[Text, ...]:
     more = (
-        (msg("and {count} more", count=len(told) - _MOST_LINES),) if len(told) > _MOST_LINES else ()
+        (msg("and {count} more", count=len(details) - _MOST_LINES),)
+        if len(details) > _MOST_LINES
+        else ()
     )
-    return (*map(_clipped, told[:_MOST_LINES]), *more)
+    return (*map(_clipped, details[:_MOST_LINES]), *more)
 
 
 def _place(file: str, line: int) -> Text:
     return msg("{file}, line {line}", file=_clip(file), line=line) if line else _clip(file)
 
 
-def _clip(said: str) -> str:
-    return text.clip(text.one_line(text.plain(said.replace(f"{PREFIX}/", ""))), _LONGEST)
+def _clip(content: str) -> str:
+    return text.clip(text.one_line(text.plain(content.replace(f"{PREFIX}/", ""))), _LONGEST)
 
 
-def _clipped(said: Text) -> Text:
-    return said.map_texts(_clip) if isinstance(said, Message) else _clip(said)
+def _clipped(content: Text) -> Text:
+    return content.map_texts(_clip) if isinstance(content, Message) else _clip(content)

@@ -314,8 +314,8 @@ class PackageTrace:
 
     def sha256(self) -> str:
         """A hash of all of it; equal hashes mean equal findings."""
-        told = to_json(self, STRANGERS._replace(write=str))  # sentences in English
-        return hashlib.sha256(json.dumps(told, sort_keys=True).encode("ascii")).hexdigest()
+        data = to_json(self, STRANGERS._replace(write=str))  # sentences in English
+        return hashlib.sha256(json.dumps(data, sort_keys=True).encode("ascii")).hexdigest()
 
 
 def encode(trace: PackageTrace) -> bytes:

@@ -23,7 +23,7 @@ from typing import Final
 from grader import linux
 from grader.errors import GraderFailure
 from grader.inspection import answer, inspector
-from grader.inspection.answer import Inspection, SetUp, Told
+from grader.inspection.answer import Inspection, SetUp, SetUpFacts
 from grader.inspection.by_itself import unlike_launched
 from grader.inspection.trace import FAILED, PackageTrace
 from grader.message import Message, msg
@@ -85,7 +85,7 @@ def inspect(
     asked = {"set_ups": list(folders), "program": program, "inspectors": inspectors}
     found, ending = _inspected(submission, asked, budget)
     if found is None or [each.folder for each in found.set_ups] != list(folders):
-        found = Inspection(tuple(SetUp(each, Told(), None) for each in folders))
+        found = Inspection(tuple(SetUp(each, SetUpFacts(), None) for each in folders))
     return found, ending.run.flags
 
 

@@ -17,7 +17,7 @@ from grader.message import NOTHING, Message, msg
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.inspection.answer import SetUp, Told
+    from grader.inspection.answer import SetUp, SetUpFacts
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
 #: So many folders with set-up files are inspected.
@@ -64,14 +64,14 @@ class PackageFolder:
     set_up: SetUp | None = None
 
     @property
-    def declared(self) -> Told | None:
+    def declared(self) -> SetUpFacts | None:
         """What its set-up files declare."""
         return self.set_up.told if self.set_up else None
 
     @property
     def problem(self) -> Message:
         """A sentence on the error that ended its set-up; '' where there was none."""
-        from grader.inspection.said import how_it_ends
+        from grader.inspection.error_texts import how_it_ends
 
         if self.set_up is None or self.set_up.problem is None:
             return NOTHING

@@ -9,11 +9,11 @@ from typing import Final
 from xml.etree import ElementTree
 
 from grader.inspection.examining import paths
+from grader.inspection.examining.launch_record import LaunchRecord
 from grader.inspection.examining.launches import prepare, watch_files
 from grader.inspection.examining.layout import Workspace
 from grader.inspection.examining.packages import is_description
 from grader.inspection.examining.steps import end_of
-from grader.inspection.examining.taken import Taken
 from grader.inspection.trace import NamedMesh
 
 _MOST_FILES: Final = 500
@@ -45,7 +45,7 @@ def named_meshes(text: str, place: Workspace) -> tuple[NamedMesh, ...] | None:
             key = uri, element.tag == "mesh"
             if key not in found and len(found) < _MOST_FILES:
                 state, path = _resolved(uri.strip(), place)
-                named, at = place.told(uri)[:1000], place.told(path)[:1000]
+                named, at = place.shown(uri)[:1000], place.shown(path)[:1000]
                 found[key] = NamedMesh(named, state, at, key[1])
     return tuple(found.values())
 
@@ -90,8 +90,8 @@ def expanded(place: Workspace) -> list[dict[str, str]]:
     For packages whose launch files hand none to a robot_state_publisher.
     """
     prepare(place)
-    taken = Taken(place)
-    watch_files(taken, place)
+    record = LaunchRecord(place)
+    watch_files(record, place)
     made: list[dict[str, str]] = []
     sources = {source: path for path, source in place.judged.files.items()}
     for file in place.judged.package.files:
@@ -104,7 +104,7 @@ def expanded(place: Workspace) -> list[dict[str, str]]:
             continue  # a part that another file includes
         code, errors = 0, ""
         if "xacro" in text:
-            code, text, errors = taken.xacro([str(path)])
+            code, text, errors = record.xacro([str(path)])
         made.append({"file": file, "text": "" if code else text, "errors": end_of(errors, 1000)})
     return made
 
@@ -116,8 +116,8 @@ def varied(place: Workspace, source: str) -> list[dict[str, str]]:
         source: the xacro file, where it is laid out.
     """
     prepare(place)
-    taken = Taken(place)
-    watch_files(taken, place)
+    record = LaunchRecord(place)
+    watch_files(record, place)
     found: list[dict[str, str]] = []
     size = 0
     share = place.prefix / "share"
@@ -139,8 +139,8 @@ def varied(place: Workspace, source: str) -> list[dict[str, str]]:
             doubled = f"${{2 * ({value})}}" if value != match["value"] else repr(2 * float(value))
             other = f"{text[: match.start('value')]}{doubled}{text[match.end('value') :]}"
             path.write_text(other, encoding="utf-8")
-            code, made, _ = taken.xacro([source])
+            code, made, _ = record.xacro([source])
             path.write_text(text, encoding="utf-8")
             size += len(made)
-            found.append({"name": match["name"], "text": "" if code else place.told(made)})
+            found.append({"name": match["name"], "text": "" if code else place.shown(made)})
     return found

@@ -95,13 +95,15 @@ def links(trace: PackageTrace) -> Tree | None:
     seen: set[str] = set()
     for depth, link in descend(robot.root, below, seen):
         on = held.get(link)
-        told: list[str | Message] = (
+        details: list[str | Message] = (
             [msg("the root")] if on is None else [name_of(on.name), on.type.value]
         )
         several = claimed[link] > 1
         if several:
-            told.append(msg("claimed by {count} joints", count=claimed[link]))
-        nodes.append(TreeNode(depth, name_of(link), joined(told, ", "), "wrong" if several else ""))
+            details.append(msg("claimed by {count} joints", count=claimed[link]))
+        nodes.append(
+            TreeNode(depth, name_of(link), joined(details, ", "), "wrong" if several else "")
+        )
     lost = [link for link in robot.links if link not in seen]
     nodes += [TreeNode(0, name_of(each), msg("hangs on nothing"), "lost") for each in lost]
     more = len(nodes) - MOST_NODES
@@ -119,10 +121,10 @@ def meshes(trace: PackageTrace) -> dict[str, Floats]:
     }
 
 
-def _surface(told: str) -> Floats | None:
+def _surface(encoded: str) -> Floats | None:
     """A surface of a trace; None where it is none."""
     try:
-        numbers = np.frombuffer(base64.b64decode(told, validate=True), "<f4").astype(np.float64)
+        numbers = np.frombuffer(base64.b64decode(encoded, validate=True), "<f4").astype(np.float64)
     except ValueError:
         return None
     whole = len(numbers) % 9 == 0 and (np.abs(numbers) < _LARGEST).all()
@@ -162,14 +164,14 @@ def _words(
     trace: PackageTrace, robot: Model, lost: tuple[str, ...], left_out: tuple[str, ...]
 ) -> Message:
     found = _described(trace)
-    said = [
+    notes = [
         msg(
             "as {by} describes it, all joints at 0",
             by=name_of(found.by) if found is not None else "",
         )
     ]
     if lost:
-        said.append(
+        notes.append(
             msg("white, at the origin, for they hang on nothing: {names}", names=named(lost))
         )
-    return in_words(robot, said, left_out)
+    return in_words(robot, notes, left_out)

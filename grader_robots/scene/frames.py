@@ -26,14 +26,14 @@ class Hung:
         parents: all of which it was said.
         senders: who said it.
         is_static: whether it was said on /tf_static, at last.
-        said: the transforms to its last parent, as they came.
+        transforms: those to its last parent, as they came.
     """
 
     parent: str
     parents: set[str] = field(default_factory=set)
     senders: set[str] = field(default_factory=set)
     is_static: bool = False
-    said: list[Transform] = field(default_factory=list)
+    transforms: list[Transform] = field(default_factory=list)
 
 
 def why_refused(transform: Transform) -> Message:
@@ -60,11 +60,11 @@ def hung(trace: RobotTrace) -> dict[str, Hung]:
         child, parent = bare(each.child), bare(each.parent)
         one = found.setdefault(child, Hung(parent))
         if one.parent != parent:
-            one.parent, one.said = parent, []
+            one.parent, one.transforms = parent, []
         one.parents.add(parent)
         one.senders.add(each.publisher)
         one.is_static = each.topic == TF_STATIC
-        one.said.append(each)
+        one.transforms.append(each)
     return found
 
 
@@ -122,24 +122,24 @@ def _node(depth: int, name: str, frame: Hung | None, is_lost: bool) -> TreeNode:
     if frame is None:
         return TreeNode(depth, name_of(name), msg("hangs on nothing"), mark)
     senders = sorted((_SENDERS[each] for each in frame.senders), key=str)
-    told: list[Text] = [_pace(frame), listed(senders)]
+    details: list[Text] = [_pace(frame), listed(senders)]
     if depth == 0:
-        told.append(msg("goes round in a circle by {frame}", frame=name_of(frame.parent)))
+        details.append(msg("goes round in a circle by {frame}", frame=name_of(frame.parent)))
     if len(frame.parents) > 1:
-        told.append(msg("parents: {names}", names=named(sorted(frame.parents))))
+        details.append(msg("parents: {names}", names=named(sorted(frame.parents))))
     if depth == 0 or len(frame.parents) > 1 or len(frame.senders) > 1:
         mark = "wrong"
-    return TreeNode(depth, name_of(name), joined(told, ", "), mark)
+    return TreeNode(depth, name_of(name), joined(details, ", "), mark)
 
 
 def _pace(frame: Hung) -> Message:
     if frame.is_static:
         return msg("static")
-    first, last = frame.said[0], frame.said[-1]
+    first, last = frame.transforms[0], frame.transforms[-1]
     duration_s = (last.tick - first.tick) * TICK_S
     if not duration_s:
-        return msg("{count} times", count=len(frame.said))
-    return msg("{rate:.1f} Hz", rate=(len(frame.said) - 1) / duration_s)
+        return msg("{count} times", count=len(frame.transforms))
+    return msg("{rate:.1f} Hz", rate=(len(frame.transforms) - 1) / duration_s)
 
 
 def _children(frames: dict[str, Hung]) -> dict[str, list[str]]:

@@ -55,8 +55,8 @@ class RobotScene(Scene):
         try:
             Robot.of(setting)
         except RefusedDescription as error:
-            said = "; ".join(finding.text for finding in error.findings)
-            return msg("expected a URDF that can be used: {why}", why=said or str(error))
+            findings = "; ".join(finding.text for finding in error.findings)
+            return msg("expected a URDF that can be used: {why}", why=findings or str(error))
         return NOTHING
 
     def how_to_try(self, program: str, package: str) -> str:

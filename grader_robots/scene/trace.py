@@ -180,8 +180,8 @@ class RobotRecorder:
         """What robot_state_publisher sends on /tf when a message is heard; None: nothing."""
         if not self.hears(topic, data) or topic != JOINT_STATES:
             return None
-        said = decoding.joint_states(0, data)
-        state = JointState(said.stamp_ns, said.names, said.positions)
+        names = decoding.joint_states(0, data)
+        state = JointState(names.stamp_ns, names.names, names.positions)
         return self._state.hear(state, now_ns).transforms
 
     def fixed(self, now_ns: int) -> Sequence[Placed]:
@@ -201,11 +201,11 @@ def to_messages(trace: RobotTrace) -> list[BagMessage]:
     ]
     last = max([trace.duration_ns, *(message.time_ns for message in found[-1:])])
     letters = {publisher: letter for letter, publisher in LETTERS.items()}
-    said = {
+    names = {
         topic: "".join(letters[m.publisher] for m in trace.messages if m.topic == topic)
         for topic in TOPICS
     }
-    return [*found, BagMessage(last, PUBLISHERS, STRING, string(json.dumps(said)))]
+    return [*found, BagMessage(last, PUBLISHERS, STRING, string(json.dumps(names)))]
 
 
 def from_channels(channels: Sequence[Channel], ticks: int) -> RobotTrace:
@@ -215,14 +215,14 @@ def from_channels(channels: Sequence[Channel], ticks: int) -> RobotTrace:
         ValueError, KeyError, TypeError: they are not what `to_messages` makes.
     """
     by_topic = {channel.topic: channel for channel in channels}
-    said = _publishers(by_topic.pop(PUBLISHERS))
+    names = _publishers(by_topic.pop(PUBLISHERS))
     found: list[tuple[int, Heard]] = []
     for topic, channel in by_topic.items():
         if channel.msgtype != TOPICS[topic]:
             raise ValueError(f"{topic}: expected a {TOPICS[topic]}, found a {channel.msgtype}")
         heard_at = channel.times_ns // TICK_NS
         each = zip(
-            *(channel.places.tolist(), heard_at.tolist(), said[topic], channel.messages()),
+            *(channel.places.tolist(), heard_at.tolist(), names[topic], channel.messages()),
             strict=True,
         )
         found += [(n, Heard(tick, topic, LETTERS[who], data)) for n, tick, who, data in each]
@@ -235,10 +235,10 @@ def _publishers(channel: Channel) -> dict[str, str]:
     if channel.msgtype != STRING or len(channel) != 1:
         found = f"{len(channel)} of {channel.msgtype}"
         raise ValueError(f"{PUBLISHERS}: expected one {STRING}, found {found}")
-    said: Any = json.loads(string_of(next(channel.messages())))
-    if not isinstance(said, dict) or not all(isinstance(each, str) for each in said.values()):
-        raise ValueError(f"{PUBLISHERS}: expected topics with letters, found {said!r:.80}")
-    return said
+    names: Any = json.loads(string_of(next(channel.messages())))
+    if not isinstance(names, dict) or not all(isinstance(each, str) for each in names.values()):
+        raise ValueError(f"{PUBLISHERS}: expected topics with letters, found {names!r:.80}")
+    return names
 
 
 def _check(trace: RobotTrace) -> None:

@@ -170,17 +170,17 @@ def _words(trace: RobotTrace, way: Odometry) -> tuple[Message, ...]:
     if not len(there):
         return (msg("nothing: no transform from odom to the robot's root was heard"),)
     first, last = (text.place(float(row[0]), float(row[1])) for row in (there[0], there[-1]))
-    told = [msg("the robot's way in odom, from {first} to {last}", first=first, last=last)]
+    drawn = [msg("the robot's way in odom, from {first} to {last}", first=first, last=last)]
     if (round_ := circle(trace)) is not None:
         centre = text.place(*round_[:2])
-        told.append(
+        drawn.append(
             msg(
                 "the circle nearest to it: {radius:.2f} m around {centre}",
                 radius=round_[2],
                 centre=centre,
             )
         )
-    return tuple(told)
+    return tuple(drawn)
 
 
 # The robot ------------------------------------------------------------------------------------
@@ -235,7 +235,7 @@ def places(trace: RobotTrace) -> dict[str, Floats]:
     heard = hung(trace)
     frames = {ODOM: np.eye(4)}
     for name in below(ODOM, heard):
-        last = heard[name].said[-1]
+        last = heard[name].transforms[-1]
         with np.errstate(all="ignore"):
             frames[name] = frames[heard[name].parent] @ transform(last.translation, last.rotation)
     links = trace.robot.model.links if trace.robot else {}
@@ -271,9 +271,9 @@ def _solid_words(
     trace: RobotTrace, model: Model, lost: tuple[str, ...], left_out: tuple[str, ...]
 ) -> Message:
     """What there is to see, for who cannot."""
-    said = []
+    notes = []
     if (root := places(trace).get(model.root)) is not None:
-        said.append(
+        notes.append(
             msg(
                 "at {place} in {odom} at the end",
                 place=text.place(float(root[0, 3]), float(root[1, 3])),
@@ -281,12 +281,12 @@ def _solid_words(
             )
         )
     if (round_ := circle(trace)) is not None:
-        said.append(msg("its way lies about a circle of {radius:.2f} m", radius=round_[2]))
+        notes.append(msg("its way lies about a circle of {radius:.2f} m", radius=round_[2]))
     if lost:
-        said.append(
+        notes.append(
             msg("white, at the origin, for want of a transform: {names}", names=named(lost))
         )
-    return in_words(model, said, left_out)
+    return in_words(model, notes, left_out)
 
 
 def sample_ticks(ticks: int) -> tuple[int, ...]:
@@ -298,17 +298,17 @@ def sample_ticks(ticks: int) -> tuple[int, ...]:
 def _placings(frame: Hung, ticks: tuple[int, ...]) -> tuple[Placing | None, ...]:
     """Where it was said to be at each tick, last; what is static always was there."""
     if frame.is_static or not ticks:
-        return (_placing(frame.said[-1]),)
-    at = np.searchsorted([each.tick for each in frame.said], ticks, side="right") - 1
-    each = tuple(None if row < 0 else _placing(frame.said[row]) for row in at.tolist())
+        return (_placing(frame.transforms[-1]),)
+    at = np.searchsorted([each.tick for each in frame.transforms], ticks, side="right") - 1
+    each = tuple(None if row < 0 else _placing(frame.transforms[row]) for row in at.tolist())
     return each[:1] if len(set(each)) == 1 else each
 
 
-def _placing(said: Transform) -> Placing | None:
-    if not is_finite(said.translation):
+def _placing(notes: Transform) -> Placing | None:
+    if not is_finite(notes.translation):
         return None
-    length = math.sqrt(sum(value * value for value in said.rotation))
+    length = math.sqrt(sum(value * value for value in notes.rotation))
     if not 0 < length < math.inf:
         return None
-    x, y, z, w = (value / length for value in said.rotation)
-    return Placing(said.translation, (x, y, z, w))
+    x, y, z, w = (value / length for value in notes.rotation)
+    return Placing(notes.translation, (x, y, z, w))

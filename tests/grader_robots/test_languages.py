@@ -11,6 +11,7 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
+from grader.inspection.error_texts import advice
 from grader.inspection.examining.examination import FROM_A_FILE, FROM_A_LAUNCH_FILE
 from grader.inspection.examining.steps import (
     _NO_END,
@@ -20,7 +21,6 @@ from grader.inspection.examining.steps import (
     not_there,
     problem_of,
 )
-from grader.inspection.said import advice
 from grader.inspection.trace import (
     InstalledScript,
     Lacking,

@@ -13,9 +13,9 @@ from typing import Any
 from grader import strict_json
 from grader.inspection import trace
 from grader.inspection.examining import launches, paths
+from grader.inspection.examining.launch_record import Evaluated
 from grader.inspection.examining.layout import Installed, Workspace
 from grader.inspection.examining.steps import Ended, attempt, step
-from grader.inspection.examining.taken import Evaluated
 from grader.inspection.trace import (
     Lacking,
     LaunchedNode,
@@ -267,7 +267,7 @@ def _unwrapped(file: str, nodes: Sequence[LaunchedNode]) -> list[Message]:
 def _cleaned(value: Any, workspace: Workspace) -> Any:
     """JSON with the places as a trace shows them."""
     if isinstance(value, str):
-        return workspace.told(value)
+        return workspace.shown(value)
     if isinstance(value, dict):
         return {str(key): _cleaned(each, workspace) for key, each in value.items()}
     if isinstance(value, list | tuple):

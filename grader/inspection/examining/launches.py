@@ -13,11 +13,11 @@ import sys
 from typing import Any, Final
 
 from grader import strict_json
-from grader.inspection.examining import foreign, known
+from grader.inspection.examining import external, known
+from grader.inspection.examining.launch_record import SUFFIXES, LaunchRecord
 from grader.inspection.examining.layout import DOUBLES, Installed, Workspace
 from grader.inspection.examining.packages import is_description
 from grader.inspection.examining.steps import NotKnown, in_folder, it, problem_of
-from grader.inspection.examining.taken import SUFFIXES, Taken
 from grader.message import msg
 
 #: Packages of ROS that have doubles.
@@ -30,24 +30,24 @@ def evaluate(place: Workspace, of: Installed, file: str) -> Any:
     prepare(place)
     from launch import LaunchContext
 
-    taken = Taken(place)
-    taken.context = LaunchContext()
-    taken.context.record = taken
-    watch_files(taken, place)
+    record = LaunchRecord(place)
+    record.context = LaunchContext()
+    record.context.record = record
+    watch_files(record, place)
     installed = {source: path for path, source in of.files.items()}
     if file in installed:
         path = str(place.prefix / installed[file])
     else:
         path = str(of.package.folder / file)
-        taken.lack("file", f"{place.prefix}/share/{of.name}/{file}", path)
+        record.lack("file", f"{place.prefix}/share/{of.name}/{file}", path)
     problem = None
     try:
-        taken.run(path)
+        record.run(path)
     except MemoryError:
         raise
     except BaseException as error:
         problem = problem_of(error, place.own)
-    return strict_json.to_json(taken.evaluated(file, problem, *_asked(place)), strict_json.OURS)
+    return strict_json.to_json(record.evaluated(file, problem, *_asked(place)), strict_json.OURS)
 
 
 def prepare(place: Workspace) -> None:
@@ -63,13 +63,13 @@ def prepare(place: Workspace) -> None:
 def _asked(place: Workspace) -> tuple[list[str], list[str]]:
     """Packages that were asked for: those that are there, and those that are not."""
     lines = place.asked.read_text(encoding="utf-8", errors="replace").splitlines()
-    said = [line.partition(" ") for line in lines]
-    there, missing = (dict.fromkeys(n for s, _, n in said if s == sign) for sign in "+-")
+    entries = [line.partition(" ") for line in lines]
+    there, missing = (dict.fromkeys(n for s, _, n in entries if s == sign) for sign in "+-")
     ours = {each.name for each in place.all}
     return [each for each in there if each not in ours][:_MOST], list(missing)[:_MOST]
 
 
-def watch_files(taken: Taken, place: Workspace) -> None:
+def watch_files(record: LaunchRecord, place: Workspace) -> None:
     """A file of the submission's that is read and is not there is the one that was meant."""
     real = io.open
 
@@ -77,9 +77,9 @@ def watch_files(taken: Taken, place: Workspace) -> None:
         if isinstance(file, str | os.PathLike) and "r" in mode and "+" not in mode:
             name = os.fspath(file)
             if isinstance(name, str) and not os.path.exists(name) and _is_meant(name, place):
-                file = taken.path(os.path.abspath(name))
+                file = record.path(os.path.abspath(name))
             if isinstance(name, str) and is_description(name):
-                taken.sources.append(os.path.abspath(os.fspath(file)))
+                record.sources.append(os.path.abspath(os.fspath(file)))
         return real(file, mode, *args, **kwargs)
 
     builtins.open = io.open = opened
@@ -115,4 +115,4 @@ class _Unknown:
         if top in DOUBLED or top.startswith("launch_"):
             what = msg("imports {name}, which the grader does not have", name=name)
             raise NotKnown(it(what))
-        return foreign.module(name)
+        return external.module(name)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from grader.inspection.answer import Told
+from grader.inspection.answer import SetUpFacts
 from grader.inspection.examining import cmake, known, paths
 from grader.inspection.examining.packages import MANIFEST, SourcePackage
 from grader.inspection.examining.setup_call import evaluate
@@ -23,7 +23,7 @@ from grader.inspection.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacl
 from grader.message import NOTHING, Message, msg
 
 #: Set-ups that were evaluated already, by their folders.
-Known = Mapping[Path, tuple[Told, Obstacle | None]]
+Known = Mapping[Path, tuple[SetUpFacts, Obstacle | None]]
 #: What stands in for ROS's packages, and where all of our code is.
 DOUBLES: Final = Path(__file__).parent / "doubles"
 CODE: Final = Path(__file__).resolve().parents[3]
@@ -78,10 +78,10 @@ def nothing(name: str, problem: Obstacle) -> Setup:
 
 
 def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) -> Installed:
-    said, read = _said(package, known)
-    lines = said.scripts[:_MOST]
-    scripts = [_script(line[:_LONGEST], package, said.packages) for line in lines]
-    name = (package.name or said.name or package.folder.name)[:_LONGEST]
+    facts, read = _set_up_facts(package, known)
+    lines = facts.scripts[:_MOST]
+    scripts = [_script(line[:_LONGEST], package, facts.packages) for line in lines]
+    name = (package.name or facts.name or package.folder.name)[:_LONGEST]
     folders: list[str] = []
     found: dict[str, str] = {}
     for where, source in read.files[:_MOST_FILES]:
@@ -94,15 +94,15 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
             to = os.path.normpath(os.path.join(where, os.path.basename(source)))
             if _copy(path, prefix, to):
                 found[to] = os.path.relpath(path, package.folder)
-    where = said.scripts_folder or "bin"
+    where = facts.scripts_folder or "bin"
     programs = [*read.programs, *(f"{where}/{script.name}" for script in scripts)]
-    programs += [f"{where}/{os.path.basename(each)}" for each in said.plain_scripts]
+    programs += [f"{where}/{os.path.basename(each)}" for each in facts.plain_scripts]
     for program in programs:
         _touch(prefix / os.path.normpath(program.lstrip("/")), prefix)
     _make_known(package, name, prefix)
     setup = Setup(
         name=name,
-        told=said.name[:_LONGEST],
+        told=facts.name[:_LONGEST],
         folder="" if package.folder == root else os.path.relpath(package.folder, root),
         build_type=package.build_type,
         manifest=package.manifest,
@@ -111,7 +111,7 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
         absent=_shown(read.absent),
         folders=_shown(folders),
         scripts=tuple(scripts),
-        scripts_folder=said.scripts_folder[:_LONGEST],
+        scripts_folder=facts.scripts_folder[:_LONGEST],
         installed=tuple(sorted(found)),
         sources=tuple(found[each] for each in sorted(found)),
         left=_left(package, set(found.values())),
@@ -119,21 +119,21 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
     return Installed(package, name, setup, found)
 
 
-def _said(package: SourcePackage, known: Known) -> tuple[Told, cmake.Read]:
+def _set_up_facts(package: SourcePackage, known: Known) -> tuple[SetUpFacts, cmake.Read]:
     """What the set-up says of itself, and what it installs."""
     file = cmake.FILE if package.is_cmake else "setup.py"
     if not paths.is_file(package.folder / file):
         problem = Obstacle("error", msg("there is no {file}", file=file))
-        return Told(), cmake.Read("", [], [], [], [problem])
+        return SetUpFacts(), cmake.Read("", [], [], [], [problem])
     if not package.is_cmake:
-        said, why = known.get(package.folder) or evaluate(package.folder)
-        files = [(each.folder, name) for each in said.data_files for name in each.files]
-        return said, cmake.Read(said.name, files, [], [], [why] if why else [])
+        facts, why = known.get(package.folder) or evaluate(package.folder)
+        files = [(each.folder, name) for each in facts.data_files for name in each.files]
+        return facts, cmake.Read(facts.name, files, [], [], [why] if why else [])
     try:
         read = attempt(lambda: cmake.read(package.folder), cmake.FILE)
     except Ended as ended:
-        return Told(), cmake.Read("", [], [], [], [ended.problem])
-    return Told(read.project), read
+        return SetUpFacts(), cmake.Read("", [], [], [], [ended.problem])
+    return SetUpFacts(read.project), read
 
 
 def _copy(path: Path, prefix: Path, to: str) -> bool:
@@ -284,7 +284,7 @@ class Workspace:
         """The home folder of who launches; it is empty."""
         return self.empty / "home"
 
-    def told(self, text: str) -> str:
+    def shown(self, text: str) -> str:
         """A text with the places as everybody knows them."""
         for path, shown in ((self.prefix, PREFIX), (self.stubs, ROS), (self.home, "~")):
             text = text.replace(str(path), shown)
@@ -304,7 +304,7 @@ class Workspace:
         gone = [file for file in files if not paths.is_file(self.prefix / file)]
         folders = [each for each in (self.home, self.stubs / "share") if not paths.is_folder(each)]
         gone.sort(key=lambda file: "/ament_index/" in file)  # nobody knows those
-        return next(iter([*gone, *(self.told(str(each)) for each in folders)]), "")
+        return next(iter([*gone, *(self.shown(str(each)) for each in folders)]), "")
 
     def knows(self, package: str) -> bool:
         """Whether it is a package of ROS that may be asked for, or one that is declared."""

@@ -42,16 +42,16 @@ def end() -> None:
         for look in count():
             found = set(_below()) if _is_seen() else _children()
             if found <= stopped or look > _MOST_LOOKS:
-                _tell(found, signal.SIGKILL)
+                _signal(found, signal.SIGKILL)
                 while os.waitpid(-1, os.WNOHANG)[0]:
                     pass
                 time.sleep(0.001)
             else:  # who is stopped has no more children
-                _tell(found - stopped, signal.SIGSTOP)
+                _signal(found - stopped, signal.SIGSTOP)
                 stopped |= found
 
 
-def _tell(processes: set[int], what: signal.Signals) -> None:
+def _signal(processes: set[int], what: signal.Signals) -> None:
     for each in processes:
         with suppress(OSError):
             os.kill(each, what)

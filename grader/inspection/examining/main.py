@@ -77,20 +77,20 @@ def inspect(
             files would start is asked for.
     """
     root = root.resolve()
-    said = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in set_ups)
-    known = {root / each.folder: (each.told, each.problem) for each in said}
+    evaluated = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in set_ups)
+    known = {root / each.folder: (each.told, each.problem) for each in evaluated}
 
     def worth(set_up: SetUp) -> tuple[bool, bool]:
         names = [line.partition("=")[0].strip() for line in set_up.told.scripts]
         return program in names, bool(names)
 
-    best = max(said, key=worth).folder if said else ""
-    judged = root / best if said else Path(folder).resolve() if folder else None
+    best = max(evaluated, key=worth).folder if evaluated else ""
+    judged = root / best if evaluated else Path(folder).resolve() if folder else None
     try:
         found, plain = attempt(lambda: _examine(root, package, scratch, judged, known, inspectors))
     except Ended as ended:  # nothing that a step was made of: so much can be said
         found, plain = PackageTrace(setup=layout.nothing("", ended.problem)), ()
-    return Inspection(said, best, found, plain)
+    return Inspection(evaluated, best, found, plain)
 
 
 def _examine(

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader import strict_json
-from grader.inspection.answer import DataFiles, Told
+from grader.inspection.answer import DataFiles, SetUpFacts
 from grader.inspection.examining import paths
 from grader.inspection.examining.steps import NONSENSE, Ended, in_folder, it, step
 from grader.inspection.trace import Obstacle
@@ -34,7 +34,7 @@ _KEYWORDS: Final = (
 _OFFLINE: Final = ("VALIDATE_PYPROJECT_NO_NETWORK", "NO_NETWORK")
 
 
-def evaluate(folder: Path) -> tuple[Told, Obstacle | None]:
+def evaluate(folder: Path) -> tuple[SetUpFacts, Obstacle | None]:
     """What the set-up of a folder says; and what ended it, where it came to no end."""
 
     def own(path: str) -> str:
@@ -42,7 +42,7 @@ def evaluate(folder: Path) -> tuple[Told, Obstacle | None]:
         return path.removeprefix(here) if path.startswith(here) else ""
 
     try:
-        return strict_json.from_json(Told, step(lambda: run_setup(folder), own)), None
+        return strict_json.from_json(SetUpFacts, step(lambda: run_setup(folder), own)), None
     except Ended as ended:
         problem = ended.problem
     except ValueError:
@@ -50,11 +50,11 @@ def evaluate(folder: Path) -> tuple[Told, Obstacle | None]:
     if not problem.file and not paths.is_file(folder / "setup.py"):
         names = ("pyproject.toml", "setup.cfg")
         problem = replace(problem, file=next(n for n in names if paths.is_file(folder / n)))
-    return Told(), problem
+    return SetUpFacts(), problem
 
 
 def run_setup(folder: Path) -> Any:
-    """In a copy of the process: evaluate a set-up in its folder; what it says (`Told`) as JSON.
+    """In a copy of the process: evaluate a set-up in its folder; return `SetUpFacts` as JSON.
 
     Where there is no setup.py, it is that of a frontend: a plain call of setup().
 
@@ -92,21 +92,21 @@ def run_setup(folder: Path) -> Any:
         setup()
     if not made:
         raise RuntimeError("setup.py never calls setup()")
-    return strict_json.to_json(_of_poetry(told(made[-1]), folder / "pyproject.toml"))
+    return strict_json.to_json(_of_poetry(facts_of(made[-1]), folder / "pyproject.toml"))
 
 
 def _no_entry_points(**_: object) -> Any:
     return importlib.metadata.EntryPoints()
 
 
-def told(of: Any) -> Told:
+def facts_of(of: Any) -> SetUpFacts:
     """What of a distribution counts.
 
     Raises:
         TypeError: `data_files` is no list of folders with files.
     """
     _, scripts_folder = of.get_option_dict("install").get("install_scripts", ("", ""))
-    return Told(
+    return SetUpFacts(
         name=str(of.metadata.name or ""),
         data_files=tuple(map(_data_files, of.data_files or [])),
         scripts=tuple(_scripts(of.entry_points)),
@@ -118,10 +118,10 @@ def told(of: Any) -> Told:
     )
 
 
-def _of_poetry(said: Told, file: Path) -> Told:
+def _of_poetry(facts: SetUpFacts, file: Path) -> SetUpFacts:
     """What Poetry has in pyproject.toml, which setuptools passes over."""
-    if said.scripts or not paths.is_file(file):
-        return said
+    if facts.scripts or not paths.is_file(file):
+        return facts
     poetry = tomllib.loads(file.read_text("utf-8-sig")).get("tool", {}).get("poetry", {})
     scripts = {}
     for name, target in poetry.get("scripts", {}).items():
@@ -130,9 +130,9 @@ def _of_poetry(said: Told, file: Path) -> Told:
             scripts[name] = target.get("reference") if isinstance(target, dict) else target
     lie_in = [each["from"] for each in poetry.get("packages", ()) if "from" in each]
     return replace(
-        said,
+        facts,
         scripts=tuple(f"{name} = {target}" for name, target in scripts.items()),
-        package_folders=(*said.package_folders, *(f"={at}" for at in lie_in)),
+        package_folders=(*facts.package_folders, *(f"={at}" for at in lie_in)),
     )
 
 

@@ -164,7 +164,7 @@ def step(work: Callable[[], Any], own: Own) -> Any:
     if _account.why_closed:
         raise Ended.by_limit(_account.why_closed)
     try:
-        said = _read(limited.call(answer, LIMITS, Watch(_account).is_stalled))
+        answered = _read(limited.call(answer, LIMITS, Watch(_account).is_stalled))
     except limited.NoEnd as hit:
         raise Ended.by_limit(hit.why if isinstance(hit, limited.Stalled) else _NO_END) from None
     except limited.LimitHit as hit:
@@ -176,9 +176,9 @@ def step(work: Callable[[], Any], own: Own) -> Any:
         raise Ended.by_limit(NONSENSE) from None
     finally:
         leftovers.end()
-    if isinstance(said, Obstacle):
-        raise Ended(said)
-    return said[0]
+    if isinstance(answered, Obstacle):
+        raise Ended(answered)
+    return answered[0]
 
 
 def attempt(work: Callable[[], Made], file: str = "", line: int = 0) -> Made:
@@ -210,12 +210,12 @@ def _read(answer: bytes) -> Obstacle | tuple[Any]:
     Raises:
         ValueError, RecursionError: it is none.
     """
-    said = json.loads(answer.decode("ascii"))
-    if not isinstance(said, dict) or said.keys() not in ({"made"}, {"problem"}):
+    answered = json.loads(answer.decode("ascii"))
+    if not isinstance(answered, dict) or answered.keys() not in ({"made"}, {"problem"}):
         raise ValueError(str(NONSENSE))
-    if "problem" in said:
-        return strict_json.from_json(Obstacle, said["problem"])
-    return (said["made"],)
+    if "problem" in answered:
+        return strict_json.from_json(Obstacle, answered["problem"])
+    return (answered["made"],)
 
 
 def _limit_processes() -> None:
@@ -247,8 +247,8 @@ def problem_of(error: BaseException, own: Own) -> Obstacle:
     if isinstance(error, NotKnown):
         return Obstacle(kind, reason(error), file, line)
     words = error.msg if isinstance(error, SyntaxError) else str(error)
-    told = f"{type(error).__name__}: {' '.join(words.split())}"
-    text = start_of(_ADDRESS.sub("at 0x...", told), _LONGEST)
+    raised = f"{type(error).__name__}: {' '.join(words.split())}"
+    text = start_of(_ADDRESS.sub("at 0x...", raised), _LONGEST)
     return Obstacle(kind, plain_text(text.rstrip(": ")), file, line)
 
 

@@ -54,8 +54,8 @@ def action(element: ElementTree.Element) -> Any:
                 "append_env": actions.AppendEnvironmentVariable,
             }
             if element.tag == "append_env":
-                said = {name: take(name) for name in ("prepend", "separator")}
-                more |= {name: value for name, value in said.items() if value is not None}
+                given = {name: take(name) for name in ("prepend", "separator")}
+                more |= {name: value for name, value in given.items() if value is not None}
             made = kinds[element.tag](take.needed("name"), take.needed("value"), **more)
         case "unset_env":
             made = actions.UnsetEnvironmentVariable(take.needed("name"), **more)

@@ -6,8 +6,8 @@ from typing import Final
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.error_texts import shown
 from grader.inspection.examining.known import DESKTOP
-from grader.inspection.said import shown
 from grader.inspection.trace import Description, NamedMesh
 from grader.message import Message, joined, msg
 from grader_robots.exercises.description_package.facts import (
@@ -69,14 +69,14 @@ def meshes(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     }[first.state]
     if first.uri.startswith("file://"):
         why = msg("a path of one machine, which no other has")
-    told = msg(
+    text = msg(
         "{file} names {uri}, and {why}.", file=first_source(readable), uri=shown(first.uri), why=why
     )
     if len(wrong) > 1:
-        told = joined([told, msg(" So {count} more.", count=len(wrong) - 1)])
+        text = joined([text, msg(" So {count} more.", count=len(wrong) - 1)])
     return Finding(
         1 - len(wrong) / len(meshes),
-        told,
+        text,
         msg(
             "The way to a mesh begins with package:// and your package's name, and "
             "goes on as below its share folder: package://{name}/meshes/FILE.",

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from grader.exercise.asking import CheckFunction
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.said import said
+from grader.inspection.error_texts import described
 from grader.inspection.trace import Description, LaunchFile, Obstacle, PackageTrace, Setup
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Recordings
@@ -120,7 +120,7 @@ def nothing_started() -> Finding:
 def not_judged(launch: LaunchFile, what: Message = NOTHING) -> Finding:
     """Of what nobody can tell, because a launch file uses what the grader does not know."""
     problem = launch.problem or Obstacle("", NOTHING)
-    values = {"file": launch.file, "why": said(problem)}
+    values = {"file": launch.file, "why": described(problem)}
     return unjudged(
         msg("Not judged: {what}, and {file} could not be evaluated: {why}.", what=what, **values)
         if what
@@ -140,7 +140,7 @@ def not_followed(facts: PackageFacts) -> Finding | None:
         msg(
             "Not judged: {file} could not be followed: {why}.",
             file=problem.file or "setup.py",
-            why=said(problem),
+            why=described(problem),
         ),
         msg("Tell whoever runs the course."),
     )

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.said import how_it_ends, shown
+from grader.inspection.error_texts import how_it_ends, shown
 from grader.inspection.trace import EMPTY, Lacking, LaunchFile, Obstacle
 from grader.message import Message, joined, msg
 from grader_robots.exercises.description_package.facts import (
@@ -60,11 +60,11 @@ def installed(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         )
     first = next(iter(found.values()))
     more = len(first) - 1
-    told = [first[0].rationale]
+    texts = [first[0].rationale]
     if more:
-        told.append(msg("The same holds for {more} more.", more=more))
-    told += [each[0].rationale for each in list(found.values())[1:3]]
-    return Finding(ONE_MISSING if len(found) == 1 else 0.0, joined(told, " "), first[0].help)
+        texts.append(msg("The same holds for {more} more.", more=more))
+    texts += [each[0].rationale for each in list(found.values())[1:3]]
+    return Finding(ONE_MISSING if len(found) == 1 else 0.0, joined(texts, " "), first[0].help)
 
 
 def stops(facts: PackageFacts) -> PackageFault | None:

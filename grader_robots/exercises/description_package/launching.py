@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
+from grader.inspection.error_texts import advice, how_it_ends, shown
 from grader.inspection.examining.known import FILES, KNOWN, SIMULATORS
-from grader.inspection.said import advice, how_it_ends, shown
 from grader.inspection.trace import LaunchedNode, LaunchFile, Obstacle
 from grader.message import joined, msg
 from grader_robots.exercises.description_package.facts import (
@@ -103,8 +103,8 @@ def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float
     """Of a launch file with faults, each of which costs what that part is worth."""
     first, *others = (fault.rationale for fault in faults)
     texts = joined([first, *(msg("{fault!u}", fault=each) for each in others)], " ")
-    told = msg("{file}: {faults}", file=file, faults=texts)
-    return Finding(_share(faults, worth), told, faults[0].help)
+    rationale = msg("{file}: {faults}", file=file, faults=texts)
+    return Finding(_share(faults, worth), rationale, faults[0].help)
 
 
 def _share(faults: Sequence[PackageFault], worth: Mapping[str, float]) -> float:

@@ -10,7 +10,7 @@ from typing import Final
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.said import shown
+from grader.inspection.error_texts import shown
 from grader.inspection.trace import Description
 from grader.message import NOTHING, Message, msg
 from grader_robots.exercises.description_package.facts import PackageFacts, not_judged, of_package
@@ -70,8 +70,8 @@ def _of(facts: PackageFacts, description: Description) -> Finding:
         if not description.is_launched and facts.not_known is not None:
             return not_judged(facts.not_known, msg("{where} alone gives no robot", where=where))
         refused = xacro_brief(str(description.problem.text), facts.name)
-        told = msg("{where}: {why}.", where=where, why=shown(refused))
-        return Finding(0, told, xacro_advice(refused))
+        rationale = msg("{where}: {why}.", where=where, why=shown(refused))
+        return Finding(0, rationale, xacro_advice(refused))
     if not text.strip():
         return Finding(
             0,
@@ -102,11 +102,11 @@ def _of(facts: PackageFacts, description: Description) -> Finding:
     reading = parse(text)
     model = reading.model
     for consequence, share in ((Consequence.REFUSED, 0.0), (Consequence.DROPPED, FAULTY)):
-        said = [each for each in reading.findings if each.consequence is consequence]
-        if said:
+        findings = [each for each in reading.findings if each.consequence is consequence]
+        if findings:
             line = (
-                msg(" (line {line})", line=said[0].line)
-                if said[0].line and "xacro" not in str(where)
+                msg(" (line {line})", line=findings[0].line)
+                if findings[0].line and "xacro" not in str(where)
                 else ""
             )
             what = (
@@ -119,11 +119,11 @@ def _of(facts: PackageFacts, description: Description) -> Finding:
                 msg(
                     "{where}: urdfdom says {text!r}{line}: {consequence}.",
                     where=where,
-                    text=shown(said[0].text),
+                    text=shown(findings[0].text),
                     line=line,
                     consequence=what,
                 ),
-                _help(said[0].text),
+                _help(findings[0].text),
             )
     assert model is not None
     fault = next(faults(model), "")
@@ -329,16 +329,16 @@ _ADVICE: Final = (
 _UNDEFINED: Final = re.compile(r"name '(\w+)' is not defined")
 
 
-def xacro_brief(said: str, package: str) -> str:
+def xacro_brief(errors: str, package: str) -> str:
     """The same without what is of no use, and with the package's own paths in it."""
-    text = " ".join(said.split()).partition(_CHECK_THAT)[0]
+    text = " ".join(errors.split()).partition(_CHECK_THAT)[0]
     text = text.replace("xacro: error: ", "xacro: ").replace(_SHARE.format(package), "")
     return re.sub(r" when processing file: \S+$", "", text)
 
 
-def xacro_advice(said: str) -> Message:
+def xacro_advice(errors: str) -> Message:
     """What to do about what xacro says."""
-    undefined = _UNDEFINED.search(said)
+    undefined = _UNDEFINED.search(errors)
     if undefined is not None:
         return msg(
             'Nothing above defines it: <xacro:property name="{name}" '
@@ -346,4 +346,4 @@ def xacro_advice(said: str) -> Message:
             "Compare letter by letter.",
             name=undefined[1],
         )
-    return next((help for words, help in _ADVICE if words in said), _BY_HAND)
+    return next((help for words, help in _ADVICE if words in errors), _BY_HAND)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.said import shown
+from grader.inspection.error_texts import shown
 from grader.inspection.trace import LaunchedNode, LaunchFile
 from grader.message import Message, msg
 from grader_robots.exercises.description_package.facts import (
@@ -84,34 +84,34 @@ def includes_spawner(launch: LaunchFile) -> bool:
 
 def _faults(facts: PackageFacts, launch: LaunchFile, node: LaunchedNode) -> Iterator[Message]:
     sources, needed = PROGRAMS[node.executable]
-    given = _given(node)
-    if None in given:
-        yield msg("gets {word!r}, which is no argument of it.", word=shown(given[None]))
-    origins = [each for each in sources if each in given]
+    received = _given(node)
+    if None in received:
+        yield msg("gets {word!r}, which is no argument of it.", word=shown(received[None]))
+    origins = [each for each in sources if each in received]
     if len(origins) != 1:
-        all_, told = ", ".join(sources), ", ".join(origins)
+        all_, found = ", ".join(sources), ", ".join(origins)
         yield (
-            msg("needs exactly one of {options}; it gets {given}.", options=all_, given=told)
-            if told
+            msg("needs exactly one of {options}; it gets {given}.", options=all_, given=found)
+            if found
             else msg("needs exactly one of {options}; it gets none.", options=all_)
         )
     for name in needed:
-        if not given.get(name):
+        if not received.get(name):
             yield msg("needs {name} with a name.", name=name)
     for name in _PLACES:
-        if name in given and not _is_number(given[name]):
+        if name in received and not _is_number(received[name]):
             yield msg(
-                "gets {name} {value!r}; expected a number.", name=name, value=shown(given[name])
+                "gets {name} {value!r}; expected a number.", name=name, value=shown(received[name])
             )
-    if "-topic" in given:
-        topic = given["-topic"].rsplit("/", 1)[-1]
+    if "-topic" in received:
+        topic = received["-topic"].rsplit("/", 1)[-1]
         if topic == "robot_description" and not any(map(_is_published, facts.launches)):
             yield msg("waits for the topic robot_description, and no launch file publishes it.")
         elif topic != "robot_description" and not _is_remapped(launch, topic):
             yield msg(
                 "waits for the topic {topic!r}, which nobody publishes; "
                 "robot_state_publisher publishes robot_description.",
-                topic=shown(given["-topic"]),
+                topic=shown(received["-topic"]),
             )
 
 

@@ -126,25 +126,25 @@ def joints_move(seen: RobotRun, tolerances: Tolerances) -> Finding:
     if not seen.joints.keys() & seen.moving.keys():
         names = joint_names(seen.recordings, tolerances)
         return Finding(0, names.rationale, names.help, names.evidence)
-    told: list[Message] = []
+    good: list[Message] = []
     wrong: list[Message] = []
     where: list[Evidence] = []
     for name, joint in seen.moving.items():
-        said = seen.joints.get(name)
-        if said is None or len(said.positions) < tolerances["least_messages"]:
+        motion = seen.joints.get(name)
+        if motion is None or len(motion.positions) < tolerances["least_messages"]:
             wrong.append(msg("{joint!r} has no positions to move by", joint=name))
             continue
-        fault, seen_of_it = _judge(said, joint.type, tolerances)
+        fault, seen_of_it = _judge(motion, joint.type, tolerances)
         if fault:
             wrong.append(msg("{joint!r} {movement}", joint=name, movement=fault))
             where.append(
                 seen.moment(
-                    int(said.ticks[-1]), msg("{joint}: {movement}", joint=name, movement=fault)
+                    int(motion.ticks[-1]), msg("{joint}: {movement}", joint=name, movement=fault)
                 )
             )
         else:
-            told.append(msg("{joint!r} {movement}", joint=name, movement=seen_of_it))
-    share = len(told) / max(len(seen.moving), 1)
+            good.append(msg("{joint!r} {movement}", joint=name, movement=seen_of_it))
+    share = len(good) / max(len(seen.moving), 1)
     help = HELP
     if wrong and all(map(_is_still, wrong)):
         help = msg("What makes the position grow each time: is it there, and is it ever reached?")
@@ -152,7 +152,7 @@ def joints_move(seen: RobotRun, tolerances: Tolerances) -> Finding:
         wrong.insert(0, seldom)
         help = msg("create_timer() takes seconds: 1 / 30 calls you thirty times a second.")
     wanted = tuple(_wanted(seen, name, tolerances) for name in seen.moving)
-    return Finding(share, sentence(wrong or told), help, tuple(where), expected=wanted)
+    return Finding(share, sentence(wrong or good), help, tuple(where), expected=wanted)
 
 
 def _is_still(wrong: Message) -> bool:
@@ -178,10 +178,10 @@ def _wanted(seen: RobotRun, name: str, tolerances: Tolerances) -> Expected:
         most=rounded(most),
         unit=unit,
     )
-    said = finite(seen.joints[name].positions) if name in seen.joints else np.empty(0)
-    if not len(said):
+    positions = finite(seen.joints[name].positions) if name in seen.joints else np.empty(0)
+    if not len(positions):
         return Expected(curve, text)
-    middle = float(said.min() + said.max()) / 2
+    middle = float(positions.min() + positions.max()) / 2
     return Expected(
         *(curve, text),
         within=(middle - most / 2, middle + most / 2),

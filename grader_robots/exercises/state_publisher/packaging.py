@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.said import said, shown
+from grader.inspection.error_texts import described, shown
 from grader.inspection.trace import PREFIX, LaunchedNode, LaunchFile
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.recording import Recordings
@@ -153,17 +153,17 @@ def _faults(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
 def _undescribed(facts: PackageFacts, launch: LaunchFile, texts: list[str]) -> PackageFault:
     """Why what robot_state_publisher gets is no URDF."""
     if why := launching.refused(facts, launch):
-        told = msg("{program} gets no description: {why}.", program=PUBLISHER, why=said(why))
-        return PackageFault("description", told, _TWO_NODES)
+        text = msg("{program} gets no description: {why}.", program=PUBLISHER, why=described(why))
+        return PackageFault("description", text, _TWO_NODES)
     if fault := launching.no_description(facts, launch):
         return fault
     found = next(text.strip() for text in texts if text.strip())
-    told = msg(
+    text = msg(
         "{parameter} has to be the text of the URDF, and is {what}.",
         parameter=DESCRIPTION,
         what=repr(shown(found.removeprefix(f"{PREFIX}/"))[:60]),
     )
-    return PackageFault("description", told, _TWO_NODES)
+    return PackageFault("description", text, _TWO_NODES)
 
 
 def _without_node(facts: PackageFacts, launch: LaunchFile) -> Message:

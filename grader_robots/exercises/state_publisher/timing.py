@@ -75,24 +75,24 @@ def publishes(seen: RobotRun, tolerances: Tolerances) -> Finding:
     if messages:
         each.append((msg("transforms"), list(messages.values())))
     wrong: list[Message] = []
-    told: list[Message] = []
+    good: list[Message] = []
     where = []
     for what, ticks in each:
         found = pace(ticks, trace.ticks, tolerances)
         low, high = tolerances["rate_least_hz"], tolerances["rate_most_hz"]
-        said = {"what": what, "hertz": found.hertz}
+        values = {"what": what, "hertz": found.hertz}
         if not 0.95 * low <= found.hertz <= 1.05 * high:
-            wrong.append(_NOT_AS_OFTEN.given(low=low, high=high, **said))
+            wrong.append(_NOT_AS_OFTEN.given(low=low, high=high, **values))
         elif found.steady < tolerances["rate_share"]:
             wrong.append(
                 msg(
                     "{what} came {hertz:.0f} times a second, but only {steady:.0f}% of the time",
                     steady=100 * found.steady,
-                    **said,
+                    **values,
                 )
             )
         else:
-            told.append(msg("{what} came {hertz:.0f} times a second, steadily", **said))
+            good.append(msg("{what} came {hertz:.0f} times a second, steadily", **values))
             continue
         where.append(seen.moment(found.gap_tick, msg("{what} do not come as usual", what=what)))
     share = 1 - len(wrong) / len(each)
@@ -101,7 +101,7 @@ def publishes(seen: RobotRun, tolerances: Tolerances) -> Finding:
         wrong.append(flood)
         share = min(share, 0.5)
     if not wrong:
-        return Finding(1, sentence(told))
+        return Finding(1, sentence(good))
     return Finding(
         share,
         sentence(wrong),
@@ -189,8 +189,8 @@ def stamps(seen: RobotRun, tolerances: Tolerances) -> Finding:
         share -= INCREASE
         wrong.append(msg("stamps do not increase from message to message"))
         where.append(seen.moment(back, msg("not later than the one before")))
-    told = {state.stamp_ns for state in states}
-    alone = [t for t in seen.sent if t.child.lstrip("/") == seen.root and t.stamp_ns not in told]
+    stamps = {state.stamp_ns for state in states}
+    alone = [t for t in seen.sent if t.child.lstrip("/") == seen.root and t.stamp_ns not in stamps]
     if len(way) and len(alone) > (1 - tolerances["same_share"]) * len(way):
         share -= SAME
         wrong.append(

@@ -118,7 +118,7 @@ def _absent(seen: RobotRun) -> Finding:
     ends = {"parent": ODOM, "child": seen.root}
     others = list(dict.fromkeys((t.topic, bare(t.parent), bare(t.child)) for t in seen.sent))
     if ("/tf", seen.root, ODOM) in others:
-        told = msg(
+        rationale = msg(
             "Your transform on /tf goes from {child!r} to {parent!r}: the frames are swapped.",
             **ends,
         )
@@ -127,7 +127,7 @@ def _absent(seen: RobotRun) -> Finding:
             parent=ODOM,
         )
     elif any(each == ("/tf_static", ODOM, seen.root) for each in others):
-        told = msg(
+        rationale = msg(
             "The transform from {parent!r} to {child!r} came on /tf_static, and what is static "
             "never moves.",
             **ends,
@@ -135,7 +135,7 @@ def _absent(seen: RobotRun) -> Finding:
         help = msg("Send what moves by a TransformBroadcaster: it goes to /tf.")
     elif others and not len(way):
         _, parent, child = others[0]
-        told = msg(
+        rationale = msg(
             "No transform from {parent!r} to {child!r} came on /tf, but one from {from_} to {to}.",
             **ends,
             from_=f"{parent!r:.40}",
@@ -145,7 +145,7 @@ def _absent(seen: RobotRun) -> Finding:
             "The robot stands in the world by {odom!r} and the root link of its URDF.", odom=ODOM
         )
     elif ("/tf", ODOM, seen.root) in others:
-        told = msg_many(
+        rationale = msg_many(
             "Only {n} transform from {parent!r} to {child!r} came on /tf: too few to see a way.",
             "Only {n} transforms from {parent!r} to {child!r} came on /tf: too few to see a way.",
             len(way),
@@ -153,9 +153,9 @@ def _absent(seen: RobotRun) -> Finding:
         )
         help = msg("Does your node go on to send its TransformStamped, time after time?")
     else:
-        told = msg("No transform from {parent!r} to {child!r} came on /tf.", **ends)
+        rationale = msg("No transform from {parent!r} to {child!r} came on /tf.", **ends)
         help = msg("Does your node send its TransformStamped each time, by a TransformBroadcaster?")
-    return Finding(0, told, help)
+    return Finding(0, rationale, help)
 
 
 def _circle(way: Odometry, tolerances: Tolerances) -> list[WayFault]:
@@ -320,7 +320,7 @@ def reachable(seen: RobotRun, tolerances: Tolerances) -> Finding:
                 for t in seen.trace.transforms
                 if bare(t.child) == child and t.publisher != "scene" and not why_refused(t)
             )
-            told = (
+            rationale = (
                 msg(
                     "The frame {frame!r} has two parents on /tf, {parents}.",
                     frame=child,
@@ -334,20 +334,20 @@ def reachable(seen: RobotRun, tolerances: Tolerances) -> Finding:
                 )
             )
             where = (seen.moment(first.tick, msg("{frame} has two places", frame=child)),)
-            return Finding(0, told, _ONE_TRANSFORM, where)
+            return Finding(0, rationale, _ONE_TRANSFORM, where)
     reached = {ODOM, *below(ODOM, frames)}
     lost = [link for link in seen.links if link not in reached]
     if lost or not seen.links:
         note = msg("{links}: no way from {odom}", links=listed(lost), odom=ODOM)
         where = (seen.moment(seen.trace.ticks, note),)
         if refused := next((t for t in seen.sent if why_refused(t)), None):
-            told = msg(
+            rationale = msg(
                 "tf2 refuses your transform from {parent} to {child}: {why}",
                 parent=f"{refused.parent!r:.40}",
                 child=f"{refused.child!r:.40}",
                 why=why_refused(refused),
             )
-            return Finding(0, sentence([told]), _ONE_TRANSFORM, where)
+            return Finding(0, sentence([rationale]), _ONE_TRANSFORM, where)
         return Finding(
             0,
             msg(

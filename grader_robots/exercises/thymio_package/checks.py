@@ -12,7 +12,7 @@ import numpy as np
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.said import shown
+from grader.inspection.error_texts import shown
 from grader.message import NOTHING, Message, msg
 from grader_robots.exercises.description_package import checks as of_packages
 from grader_robots.exercises.description_package.facts import PackageFacts, of_package, unjudged
@@ -68,7 +68,7 @@ def parameters(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     if model is None:
         return _no_robot(msg("Not judged: there is no robot to vary."))
     names = [str(each) for each in tolerances["numbers"]]
-    good, told, help_ = 0, NOTHING, NOTHING
+    good, first_fault, help_ = 0, NOTHING, NOTHING
     texts = _varied(facts)
     for name in names:
         if name not in texts:
@@ -76,15 +76,15 @@ def parameters(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         else:
             fault, advice = _fault(name, model, texts[name])
         good += not fault
-        told, help_ = told or fault, help_ or advice
+        first_fault, help_ = first_fault or fault, help_ or advice
     is_incomplete = any(each.consequence is Consequence.DROPPED for each in parsed.findings)
-    if told and not good and is_incomplete:
+    if first_fault and not good and is_incomplete:
         return _no_robot(msg("Not judged: there is no robot to vary: parts of it are dropped."))
-    if not told:
+    if not first_fault:
         return Finding(
             1, msg("What hangs on {names} moves along with them.", names=", ".join(names))
         )
-    return Finding(good / max(len(names), 1), msg("In the xacro, {told}.", told=told), help_)
+    return Finding(good / max(len(names), 1), msg("In the xacro, {told}.", told=first_fault), help_)
 
 
 def _no_robot(why: Message) -> Finding:

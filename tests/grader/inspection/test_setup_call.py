@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.inspection.answer import DataFiles, Told
+from grader.inspection.answer import DataFiles, SetUpFacts
 from grader.inspection.examining.setup_call import evaluate, run_setup
 from grader.inspection.examining.steps import Ended, step
 from grader.strict_json import from_json
@@ -15,7 +15,7 @@ SETUP = "from setuptools import setup\n"
 ONLY_CALLS = f"{SETUP}setup()\n"
 
 
-def told(folder: Path, **files: str) -> Told:
+def told(folder: Path, **files: str) -> SetUpFacts:
     """What is said by files: setup_py, setup_cfg, pyproject_toml, ..."""
     for name, text in files.items():
         (folder / ".".join(name.rsplit("_", 1))).write_text(text)
@@ -23,7 +23,7 @@ def told(folder: Path, **files: str) -> Told:
     def own(path: str) -> str:
         return path.removeprefix(f"{folder}/") if path.startswith(f"{folder}/") else ""
 
-    return from_json(Told, step(lambda: run_setup(folder), own))
+    return from_json(SetUpFacts, step(lambda: run_setup(folder), own))
 
 
 def test_what_setup_cfg_lists_is_installed(tmp_path):
@@ -43,7 +43,7 @@ share/walker/launch = launch/*
 [install]
 install_scripts=$base/lib/walker
 """
-    assert told(tmp_path, setup_py=ONLY_CALLS, setup_cfg=config) == Told(
+    assert told(tmp_path, setup_py=ONLY_CALLS, setup_cfg=config) == SetUpFacts(
         name="walker",
         data_files=(
             DataFiles("share/walker", ("package.xml",)),
@@ -65,7 +65,7 @@ scripts = {walk = "walker.walk:main"}
 packages = ["walker"]
 data-files = {"share/walker" = ["package.xml"]}
 """
-    assert told(tmp_path, setup_py=ONLY_CALLS, pyproject_toml=project) == Told(
+    assert told(tmp_path, setup_py=ONLY_CALLS, pyproject_toml=project) == SetUpFacts(
         name="walker",
         data_files=(DataFiles("share/walker", ("package.xml",)),),
         scripts=("walk = walker.walk:main",),
@@ -100,7 +100,7 @@ class Other(Distribution):
 
 setup(name="walker", cmdclass={"build_py": Fails, "install": Fails}, distclass=Other)
 """
-    assert told(tmp_path, setup_py=text) == Told(name="walker", has_commands=True)
+    assert told(tmp_path, setup_py=text) == SetUpFacts(name="walker", has_commands=True)
 
 
 def test_nothing_is_fetched(tmp_path):
@@ -189,6 +189,6 @@ c = {reference = "c.sh", type = "file"}
 def test_a_file_that_is_not_written_in_its_language_is_named(name, text, tmp_path):
     (tmp_path / name).write_text(text)
     found, problem = evaluate(tmp_path)
-    assert found == Told()
+    assert found == SetUpFacts()
     assert problem is not None
     assert problem.file == name

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.inspection.answer import Inspection, SetUp, Told
+from grader.inspection.answer import Inspection, SetUp, SetUpFacts
 from grader.submission.finding import find, find_inspected
 from grader.submission.set_ups import NotInspected
 from tests.files import lay
@@ -42,7 +42,7 @@ def test_an_unreadable_file_of_a_package_is_named(
         find(handed_in, None, scratch)
     assert asked.value.folders == (".",)
     forbid(monkeypatch, handed_in / "spiral/node.py")
-    said = SetUp(".", Told(scripts=("turtle_controller = spiral.node:main",)), None)
+    said = SetUp(".", SetUpFacts(scripts=("turtle_controller = spiral.node:main",)), None)
     with pytest.raises(SubmissionError, match=r"^spiral/node\.py cannot be read: Permission"):
         find_inspected(asked.value, Inspection((said,)), "in", None, scratch, "a")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.inspection.answer import SetUp, Told
+from grader.inspection.answer import SetUp, SetUpFacts
 from grader.submission.folder import SubmissionFolder
 from grader.submission.set_ups import PackageFolder, read_package
 from tests.files import lay
@@ -15,7 +15,7 @@ from tests.files import lay
 
 def read(folder: Path, *scripts: str, package_folders: tuple[str, ...] = ()) -> PackageFolder:
     lay(folder, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
-    declared = Told(scripts=scripts, package_folders=package_folders)
+    declared = SetUpFacts(scripts=scripts, package_folders=package_folders)
     return read_package(SetUp(".", declared, None), SubmissionFolder("pkg", folder))
 
 
@@ -57,7 +57,7 @@ def test_an_entry_that_no_tool_could_install_is_refused(
 def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path: Path, named: str) -> None:
     lay(tmp_path, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
     (tmp_path / named).write_text("go: pkg.node:main")
-    declared = Told(scripts=("go = pkg.node:main",))
+    declared = SetUpFacts(scripts=("go = pkg.node:main",))
     (script,) = read_package(SetUp(".", declared, None), SubmissionFolder("pkg", tmp_path)).scripts
     assert script.file == tmp_path / named
 

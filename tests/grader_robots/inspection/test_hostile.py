@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.inspection.answer import Told
+from grader.inspection.answer import SetUpFacts
 from grader.inspection.examining import main, paths, steps
 from grader.inspection.examining.steps import (
     NONSENSE,
@@ -222,10 +222,10 @@ def test_what_a_step_forks_does_not_answer_for_it():
     ],
 )
 def test_only_what_has_the_form_of_an_answer_is_one(key, value):
-    assert from_json(Told, ANSWER).scripts == ("a = a:main",)
+    assert from_json(SetUpFacts, ANSWER).scripts == ("a = a:main",)
     for forged in ({**ANSWER, key: value}, []):
         with pytest.raises(ValueError, match="expected"):
-            from_json(Told, forged)
+            from_json(SetUpFacts, forged)
 
 
 def test_texts_that_are_cut_have_no_part_of_a_path_and_no_address():

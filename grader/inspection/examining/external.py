@@ -97,7 +97,7 @@ def _action(of: str, condition: Any) -> Any:
     class Foreign(Action):  # type: ignore[misc, unused-ignore]
         def execute(self, context: Any) -> None:
             package, _, name = of.partition(".")
-            context.record.foreign(package, name)
+            context.record.add_external(package, name)
 
         def __getattr__(self, name: str) -> Any:
             raise not_there(of)

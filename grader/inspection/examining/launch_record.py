@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from grader.inspection.examining import commands, foreign, known, paths
+from grader.inspection.examining import commands, external, known, paths
 from grader.inspection.examining.layout import Workspace
 from grader.inspection.examining.steps import LIMITS, NotKnown, end_of, it
 from grader.inspection.trace import (
@@ -60,7 +60,7 @@ class Evaluated:
     others: tuple[str, ...]
 
 
-class Taken:
+class LaunchRecord:
     """What is taken down of a launch file; the `record` of a double's context."""
 
     def __init__(self, place: Workspace) -> None:
@@ -127,15 +127,15 @@ class Taken:
 
     def _from_where(self, node: dict[str, Any]) -> dict[str, Any]:
         """A node with the file and line that say that it starts."""
-        told = {"condition": "", **node}
-        path, line = told.pop("made", ("", 0))
+        described = {"condition": "", **node}
+        path, line = described.pop("made", ("", 0))
         file = self._place.own(path)
         current = self.context.locals_.get("current_launch_file_path") or ""
         return {
-            **told,
+            **described,
             "file": file or self._place.own(current),
             "line": line if file else 0,
-            "condition": told["condition"][:LONG],
+            "condition": described["condition"][:LONG],
         }
 
     def visited(self, kind: str) -> None:
@@ -154,9 +154,9 @@ class Taken:
             package, executable, arguments = "", "", []
         if package:
             self.executable(package, executable)
-            told = {"package": package, "executable": executable, "arguments": arguments}
-            told |= {"name": "", "namespace": "", "parameters": [], "remappings": []}
-            self.node({**told, "later": self.context.is_later})
+            described = {"package": package, "executable": executable, "arguments": arguments}
+            described |= {"name": "", "namespace": "", "parameters": [], "remappings": []}
+            self.node({**described, "later": self.context.is_later})
             return
         self._look_for_paths(words)
         _add(self._processes, " ".join(words)[:1000])
@@ -203,7 +203,7 @@ class Taken:
             _add(self._borrowed, package)
             return self.path(own)
         if wanted.startswith(f"{self._place.stubs}/"):
-            name = self._place.told(wanted)
+            name = self._place.shown(wanted)
             raise NotKnown(it(msg("needs {name}, a file of another package", name=name)))
         meant = self._place.meant(wanted)
         self.lack("file", wanted, meant)
@@ -214,7 +214,7 @@ class Taken:
         if self._place.borrowed(path)[0]:
             path = self.path(path)
         if path.startswith(f"{self._place.stubs}/share/"):
-            self._include_foreign(path, arguments)
+            self._include_external(path, arguments)
             return True
         self._depth += 1
         if self._depth > 20:
@@ -224,7 +224,7 @@ class Taken:
         self._depth -= 1
         return True
 
-    def _include_foreign(self, path: str, arguments: dict[str, str]) -> None:
+    def _include_external(self, path: str, arguments: dict[str, str]) -> None:
         from ament_index_python.packages import get_package_share_directory
 
         package, _, file = path.removeprefix(f"{self._place.stubs}/share/").partition("/")
@@ -237,10 +237,10 @@ class Taken:
             return self.command(["xacro", model], "fail")
 
         share = get_package_share_directory
-        for node in foreign.nodes_of(package, file, arguments, share, expand):
+        for node in external.nodes_of(package, file, arguments, share, expand):
             self.node(node)
 
-    def foreign(self, package: str, name: str) -> None:
+    def add_external(self, package: str, name: str) -> None:
         """An action of another package, of which no more is known."""
         _add(self._includes, Include(package, f"{name}()"[:1000], ()))
 
@@ -256,15 +256,15 @@ class Taken:
         if words[:2] == ["ros2", "run"] and len(words) > 3:
             words = words[3:]
         if words[:1] == ["ros2"]:
-            said = commands.ros2(words, get_package_prefix)
-            if said is None:
+            output = commands.ros2(words, get_package_prefix)
+            if output is None:
                 command = " ".join(words[:3])
                 asks = msg(
                     "`{command}` asks a running system, which nobody has here", command=command
                 )
                 self.remark(asks)
-            return said or ""
-        shown = self._place.told(" ".join(words))
+            return output or ""
+        shown = self._place.shown(" ".join(words))
         if words and os.path.basename(words[0]) == "xacro":
             code, out, errors = self.xacro(words[1:])
             if code:  # the launch file has done what it should
@@ -334,8 +334,8 @@ class Taken:
             return Parameter(name, "", self._texts.index(value), given["wrapped"])
         if isinstance(value, str):
             self._look_for_paths([value])
-        told = value if isinstance(value, str) else json.dumps(value, default=str)
-        return Parameter(name, told[:1000], -1, given["wrapped"])
+        text = value if isinstance(value, str) else json.dumps(value, default=str)
+        return Parameter(name, text[:1000], -1, given["wrapped"])
 
     def _look_for_paths(self, words: list[str]) -> None:
         """Files that a node is told to read have to be there."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.inspection.said import advice
+from grader.inspection.error_texts import advice
 
 
 @pytest.mark.parametrize(

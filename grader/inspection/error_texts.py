@@ -18,7 +18,10 @@ def how_it_ends(file: str, problem: Obstacle) -> Message:
     if problem.kind == "limit" and isinstance(what, Message):
         return msg("{file} {what}", file=file, what=what.map_texts(shown))
     return msg(
-        "{file} ends with {error}{place}", file=file, error=said(problem), place=placed(problem)
+        "{file} ends with {error}{place}",
+        file=file,
+        error=described(problem),
+        place=placed(problem),
     )
 
 
@@ -27,7 +30,7 @@ def shown(text: str) -> str:
     return clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
 
 
-def said(problem: Obstacle) -> Message:
+def described(problem: Obstacle) -> Message:
     """What a problem says, in a sentence."""
     return problem.text.map_texts(shown)
 
