@@ -1,11 +1,12 @@
 """Test whether the grader endures many gradings, and kill -9 at random moments.
 
-    .venv/bin/python benchmarks/endurance.py [--gradings N] [--seed N] [--kills SHARE]
+    .venv/bin/python benchmarks/endurance.py [--gradings N] [--seed N] [--kills SHARE] [--busy N]
 
 One grader process (`grader.grade`, as a course's service would call it) grades right, wrong and
 hostile fixtures in an order that the seed decides. Now and then the grader itself, a simulator or a
 fork server is killed in the middle of it. A grading whose grader was killed is done again; any
-other must have the verdict that it had at the beginning, when nothing was killed. After each it
+other must have the verdict and the trace that it had at the beginning, when nothing was killed;
+so must it while so many `--busy` processes use all the processor they get. After each it
 counts memory and descriptors of the grader, its processes, the files below its temporary folder,
 and shared memory. Exit code 1 if a verdict differed, if something was left behind, or if a figure
 grew.
@@ -18,13 +19,14 @@ import multiprocessing
 import os
 import random
 import statistics
+import subprocess
 import sys
 import tempfile
 import threading
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +47,8 @@ FIXTURES = [
         "hostile_rubric/pen_up",
     )),
 ]  # fmt: skip
+#: Ends by itself where this process has gone, however that ended.
+BUSY = "import os, sys\nwhile os.getppid() == int(sys.argv[1]):\n    for _ in range(100_000): pass"
 VICTIMS = ("grader", "simulator", "fork server")
 #: The range of the delay of a kill [s]; a grading takes about as long.
 MOMENTS_S = (0.0, 2.0)
@@ -63,12 +67,13 @@ GROWTH = {
 
 
 def scores(path: Path) -> dict[str, Any]:
-    """Grade in the grader's process; return the verdicts, which must be the same each time."""
+    """Grade in the grader's process; return what must be the same each time."""
     try:
-        verdicts = grader.grade(path).verdicts
+        result = grader.grade(path)
     except grader.GraderError as error:
         return {"error": (type(error).__name__, str(error.message))}
-    return {verdict.check: (verdict.status, verdict.score) for verdict in verdicts}
+    runs = [run.trace_sha256 for run in (result.run, *result.varied_runs)]
+    return {"runs": runs} | {each.check: (each.status, each.score) for each in result.verdicts}
 
 
 class Grader:
@@ -214,8 +219,12 @@ def main() -> int:
     parser.add_argument("--gradings", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kills", type=float, default=0.3, help="in so many of the gradings")
+    parser.add_argument("--busy", type=int, default=0, help="so many busy processes beside it")
     args = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="endurance-") as folder:
+    with tempfile.TemporaryDirectory(prefix="endurance-") as folder, ExitStack() as beside:
+        for _ in range(args.busy):
+            words = [sys.executable, "-c", BUSY, str(os.getpid())]
+            beside.callback(subprocess.Popen(words).kill)
         wrong = endure(args.gradings, args.seed, args.kills, Path(folder))
     for line in wrong:
         print(line)

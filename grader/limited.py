@@ -161,9 +161,8 @@ class _Copy:
             try:
                 mark, length = _HEAD.unpack(self._read(_HEAD.size, deadline, is_stalled))
                 if not 0 <= length <= self._limits.answer_bytes:
-                    raise LimitHit(
-                        msg("answered with more than {size}", size=_mb(self._limits.answer_bytes))
-                    )
+                    size = f"{self._limits.answer_bytes / 2**20:.0f} MB"
+                    raise LimitHit(msg("answered with more than {size}", size=size))
                 body = self._read(length, deadline, is_stalled)
             except EOFError:
                 raise self._why_it_ended() from None
@@ -301,7 +300,3 @@ def _write(descriptor: int, data: bytes) -> None:
     view = memoryview(data)
     while view:
         view = view[os.write(descriptor, view) :]
-
-
-def _mb(size: int) -> str:
-    return f"{size / 2**20:.0f} MB"

@@ -2,18 +2,13 @@
 
     python scripts/snapshot.py take DIR [--grader PATH/TO/grader] [--jobs N] [--only NAME...]
     python scripts/snapshot.py compare BEFORE AFTER
-    python scripts/snapshot.py repeat DIR [--gradings 200] [--at-once 4] [--busy 16] [--seed N]
 
 To check that a change leaves behaviour as it is, take a snapshot before and one after it. `take`
 uses only the command line, so it works for any two versions of the grader. `compare` compares,
 byte for byte, the result, the recordings and every report format; what differs between equal runs
 (wall time, dates and versions) is removed first, and pictures inside reports are compared by their
 pixels. Runs in real time are compared by their outcome alone.
-
-`repeat` shows that load has no influence: it grades random submissions of a snapshot again, while
-`--busy` processes use all the processor they get. It compares the score, the hash of every run's
-trace, its outcome and its clock. Runs in real time are not drawn. Both end with 1 if anything
-differs.
+It ends with 1 where anything differs.
 """
 
 from __future__ import annotations
@@ -24,17 +19,11 @@ import hashlib
 import io
 import json
 import os
-import random
 import re
 import shutil
-import signal
 import subprocess
 import sys
-import tempfile
-import time
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import contextmanager
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -51,10 +40,6 @@ FORMATS = (
 HELPERS = ("beginners.py", "mutants.py", "packages.py")
 #: The file of a recording that differs between equal runs.
 CIRCUMSTANCES = "circumstances.json"
-#: The fields of a repeated run that are compared.
-OF_A_RUN = ("time", "outcome", "exit_code", "ticks", "flags", "trace_sha256")
-#: Ends by itself when its parent has ended, however that happened.
-BUSY = "import os, sys\nwhile os.getppid() == int(sys.argv[1]):\n    for _ in range(100_000): pass"
 
 
 def lay_out() -> dict[str, tuple[Path, str]]:
@@ -193,93 +178,22 @@ def _result(folder: Path) -> dict[str, Any] | None:
     return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
 
 
-@contextmanager
-def _busy(count: int) -> Iterator[None]:
-    """Run so many processes that use all the processor they get."""
-    made: list[subprocess.Popen[bytes]] = []
-    try:
-        for _ in range(count):
-            made.append(subprocess.Popen([sys.executable, "-c", BUSY, str(os.getpid())]))
-        yield
-    finally:
-        for process in made:
-            process.kill()
-        for process in made:
-            process.wait()
-
-
-def _again(grader: str, case: tuple[Path, str], expected: dict[str, Any]) -> list[str]:
-    """Grade once more; return what differs from the expected result."""
-    with tempfile.TemporaryDirectory(prefix="snapshot-") as folder:
-        done = _run(grader, case, Path(folder) / "out")
-        found = _result(Path(folder) / "out")
-    if done.returncode or found is None:
-        return [f"exit {done.returncode}: {done.stderr[-300:].strip()}"]
-    if len(_runs(found)) != len(_runs(expected)):
-        return [f"{len(_runs(expected))} runs -> {len(_runs(found))}"]
-    pairs = [("score", expected["score"], found["score"])]
-    for number, (one, other) in enumerate(zip(_runs(expected), _runs(found), strict=True)):
-        pairs += [(f"run {number}: {key}", one.get(key), other.get(key)) for key in OF_A_RUN]
-    return [f"{what} {one!r} -> {other!r}" for what, one, other in pairs if one != other]
-
-
-def repeat(grader: str, folder: Path, drawn: int, at_once: int, busy: int, seed: int) -> int:
-    """Grade random submissions under load, and print what differs; return how many do."""
-    cases, expected = lay_out(), {path.name: _result(path) for path in folder.iterdir()}
-    possible = {
-        name: result
-        for name, result in sorted(expected.items())
-        if result and all(run["time"] == "virtual" for run in _runs(result))
-    }
-    if not possible:
-        raise SystemExit(f"{folder} holds nothing that was graded in virtual time")
-    print(f"seed {seed}; drawn from {len(possible)} submissions", flush=True)
-    names = random.Random(seed).choices(list(possible), k=drawn)
-    different, load = 0, 0.0
-    with _busy(busy), ThreadPoolExecutor(at_once) as pool:
-        jobs = {pool.submit(_again, grader, cases[name], possible[name]): name for name in names}
-        for number, job in enumerate(as_completed(jobs), 1):
-            different += bool(job.result())
-            load = max(load, os.getloadavg()[0])
-            for fault in job.result():
-                print(f"{jobs[job]}: {fault}", flush=True)
-            if number % 10 == 0:
-                print(f"{number} of {drawn} gradings, {different} differ", flush=True)
-    print(
-        f"{drawn} gradings of {len(set(names))} submissions, {at_once} at once, "
-        f"at a load of up to {load:.1f}: {different} differ"
-    )
-    return different
-
-
 def main() -> int:
     """Run a verb; 1 if something differs."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     verbs = parser.add_subparsers(dest="verb", required=True)
     taking, comparing = verbs.add_parser("take"), verbs.add_parser("compare")
-    repeating = verbs.add_parser("repeat")
     taking.add_argument("folder", type=Path)
     taking.add_argument("--jobs", type=int, default=2)
     taking.add_argument("--only", nargs="*", default=[], metavar="NAME")
+    taking.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
     comparing.add_argument("before", type=Path)
     comparing.add_argument("after", type=Path)
-    repeating.add_argument("folder", type=Path)
-    repeating.add_argument("--gradings", type=int, default=200, help="under load: %(default)s")
-    repeating.add_argument("--at-once", type=int, default=4, help="%(default)s")
-    repeating.add_argument("--busy", type=int, default=16, help="busy processes: %(default)s")
-    repeating.add_argument("--seed", type=int, help="of what is drawn; printed")
-    for each in (taking, repeating):
-        each.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
     args = parser.parse_args()
-    if args.verb == "take":
-        record(args.grader, args.folder, args.jobs, args.only)
-        return 0
     if args.verb == "compare":
         return int(compare(args.before, args.after) > 0)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # no busy process is left behind
-    seed = time.time_ns() % 2**32 if args.seed is None else args.seed
-    load = (args.gradings, args.at_once, args.busy, seed)
-    return int(repeat(args.grader, args.folder, *load) > 0)
+    record(args.grader, args.folder, args.jobs, args.only)
+    return 0
 
 
 if __name__ == "__main__":

@@ -92,7 +92,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     },
     # what an inspection answers, as data; the findings that its source shows, as they are recorded
     "grader.submission": GROUND
-    | below("grader.inspection", "answer", "said", "trace")
+    | below("grader.inspection", "answer", "error_texts", "trace")
     | {"grader.recording.observations"},
     "grader.run": GROUND
     | below("grader", "submission", "recording", "scenes", "inspection", "run"),
@@ -205,11 +205,6 @@ EXTENSION = {
 if (ROOT / "grader_robots").is_dir():
     MAY_IMPORT |= EXTENSION
 
-#: Importer -> what it imports against its rule or in a circle, and is to do without.
-KNOWN = {
-    "grader.recording.subject": {"grader.recording.playback"},
-}
-
 #: The world knows no ROS, no clock, no threads, no files.
 NOT_IN_WORLD = {"rclpy", "time", "threading", "asyncio", "os", "io", "pathlib", "tempfile"}
 WORLD_OPENS_FILES = {"open", "save", "read_text", "write_text", "read_bytes", "write_bytes"}
@@ -256,8 +251,7 @@ def imports() -> list[Import]:
                 imported = defining(origin, name)
                 if imported is None or imported == importer:
                     continue
-                if not any(inside(imported, known) for known in KNOWN.get(importer, ())):
-                    found.append(Import(importer, imported, node.lineno))
+                found.append(Import(importer, imported, node.lineno))
     return found
 
 

@@ -244,7 +244,8 @@ class _Session:
     def _fill(self) -> Iterator[Done]:
         """Submit tasks until enough are underway; yield those that cannot be sent."""
         most = AHEAD + self._threads()
-        while len(self._underway) < most and self._bytes() < MOST_BYTES:
+        underway = self._underway.values()
+        while len(underway) < most and sum(each.size for each in underway) < MOST_BYTES:
             task = self._moved.pop() if self._moved else next(self._waiting, None)
             if task is None:
                 return
@@ -287,9 +288,6 @@ class _Session:
             if fit and each.to is not None and not fit & set(each.to) and not future.done():
                 self._client.cancel([future])
                 yield from self._move(future)
-
-    def _bytes(self) -> int:
-        return sum(each.size for each in self._underway.values())
 
     def _collect(self) -> Iterator[Done]:
         """Wait a moment, and yield the tasks that are over."""

@@ -182,10 +182,6 @@ def _is_finite(value: Any) -> bool:  # JSON has no other numbers
     return isinstance(value, int | float) and _is_number(value) and math.isfinite(value)
 
 
-def _is_text(value: object) -> bool:
-    return isinstance(value, Message)
-
-
 def _is_whole(value: Any) -> bool:
     return type(value) is int and value >= 0
 
@@ -196,10 +192,11 @@ def _is_pair(value: Any) -> bool:
 
 
 _FINITE = "a finite number"
+_TEXT = ("a text", lambda v: isinstance(v, Message))
 #: Field of a finding, or of what is in it -> what it has to be, in words and as a function.
 _FIELDS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
     "share": ("a number from 0 to 1", lambda v: _is_number(v) and -1e-9 <= float(v) <= 1 + 1e-9),
-    **dict.fromkeys(("rationale", "help", "note", "curve", "text"), ("a text", _is_text)),
+    **dict.fromkeys(("rationale", "help", "note", "curve", "text"), _TEXT),
     "judged": ("True or False", lambda v: type(v) is bool),
     "tick": ("a whole number from 0", lambda v: v is None or _is_whole(v)),
     "run": ("a whole number from 0", _is_whole),

@@ -6,12 +6,10 @@ code ran: a claim, which whoever uses it holds against the files.
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 
 from grader.inspection import trace
 from grader.inspection.trace import Obstacle, PackageTrace
-from grader.strict_json import to_json
 
 
 @dataclass(frozen=True)
@@ -76,11 +74,6 @@ class Inspection:
     package: str = ""
     trace: PackageTrace = field(default_factory=PackageTrace)
     plain: tuple[str, ...] = ()
-
-
-def encode(inspection: Inspection) -> bytes:
-    """An inspection as JSON."""
-    return json.dumps(to_json(inspection), sort_keys=True).encode("ascii")
 
 
 def decode(data: bytes) -> Inspection:

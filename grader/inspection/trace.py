@@ -318,9 +318,9 @@ class PackageTrace:
         return hashlib.sha256(json.dumps(data, sort_keys=True).encode("ascii")).hexdigest()
 
 
-def encode(trace: PackageTrace) -> bytes:
-    """A trace as JSON; the same trace gives the same bytes."""
-    return json.dumps(to_json(trace), sort_keys=True).encode("ascii")
+def encode(made: object) -> bytes:
+    """Serialise a trace, or what holds one, as JSON; equal ones give the same bytes."""
+    return json.dumps(to_json(made), sort_keys=True).encode("ascii")
 
 
 def decode(data: bytes) -> PackageTrace:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, NamedTuple, Protocol
+from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -17,10 +17,6 @@ from grader import extensions
 from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
 from grader.recording.view import Floats, Pictures, Plane, View
-
-if TYPE_CHECKING:
-    from grader.recording.playback import Playback
-
 
 #: The scene of an exercise that names none.
 DEFAULT_SCENE: Final = "turtlesim"
@@ -208,10 +204,11 @@ class Subject(ABC):
         return ()
 
     @property
-    def player(self) -> Callable[[Playback], str] | None:
+    def player(self) -> Callable[[Any], str] | None:
         """Renders a page that plays runs, HTML that needs no other file; None: there is none.
 
-        It raises RecordingError where a run cannot be played.
+        It is called with a `grader.recording.playback.Playback`, and raises RecordingError where a
+        run cannot be played.
         """
         return None
 

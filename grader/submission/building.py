@@ -85,7 +85,9 @@ def _of_setup(
     if package.declared is None or package.declared.package_folders:
         return  # not where their names say
     packages = package.declared.packages
-    absent = [name for name in packages or () if not (package.folder / _path(name)).is_dir()]
+    absent = [
+        name for name in packages or () if not package.folder.joinpath(*name.split(".")).is_dir()
+    ]
     if absent:
         yield _not_built(
             msg(
@@ -169,10 +171,6 @@ def _may_be_there(folder: Path, name: str) -> bool:
         return (folder / name).is_file()
     except (OSError, ValueError):
         return False
-
-
-def _path(package: str) -> str:
-    return package.replace(".", "/")
 
 
 def _no(file: str, submitted: SubmissionFolder, folder: Path) -> Message:

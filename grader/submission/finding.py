@@ -50,7 +50,7 @@ from grader.submission.folder import (
 from grader.submission.launching import find_launched, is_launch_file
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
-from grader.submission.python_source import PythonSource, read_source
+from grader.submission.python_source import read_source
 from grader.submission.refusals import CPP, advice, missing, no_python, readable
 from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, PackageFolder
 from grader.submission.start import EntryPoint, Script, Submission
@@ -162,7 +162,8 @@ def _in_folder(
     candidates = [file for file in files if _may_be_node(file)]
     if not candidates:
         raise no_python(submitted, files)
-    starting = [file for file in candidates if _starts(read_source(file))] or candidates
+    sources = {file: read_source(file) for file in candidates}
+    starting = [f for f, read in sources.items() if read.has_guard or read.has_main] or candidates
     several = executable is None and len(_usual(submitted, starting)) > 1
     if several and (package := packages.holding(starting[0])):
         problem = package.problem or _no_script(submitted, package, starting)
@@ -322,10 +323,6 @@ def _usual(submitted: SubmissionFolder, candidates: list[Path]) -> list[Path]:
     """Return the files with the usual name, else those called main, else all of them."""
     usual = [[file for file in candidates if file.stem == s] for s in (submitted.usual, "main")]
     return usual[0] or usual[1] or candidates
-
-
-def _starts(source: PythonSource) -> bool:
-    return source.has_guard or source.has_main
 
 
 def _no_script(

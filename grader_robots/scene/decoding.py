@@ -127,16 +127,8 @@ def transforms(tick: int, data: bytes, number: int, topic: str, publisher: str) 
     return found
 
 
-def check(msgtype: str, data: bytes) -> None:
-    """See whether bytes are a message.
-
-    Raises:
-        ValueError: they are none.
-    """
-    _READERS[msgtype](data)
-
-
-_READERS: dict[str, Callable[[bytes], Any]] = {
+#: By the type of a message: reads its bytes, or raises ValueError.
+READERS: dict[str, Callable[[bytes], Any]] = {
     STRING: string_of,
     JOINT_STATE: lambda data: joint_states(0, data),
     TF_MESSAGE: lambda data: transforms(0, data, 0, "", ""),

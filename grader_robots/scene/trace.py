@@ -253,4 +253,4 @@ def _check(trace: RobotTrace) -> None:
         if not before <= tick <= trace.ticks + 1:
             raise ValueError(f"{topic}: a message at tick {tick} of {trace.ticks}")
         before = tick
-        decoding.check(TOPICS[topic], data)
+        decoding.READERS[TOPICS[topic]](data)

@@ -47,11 +47,11 @@ class Outcome:
 
 
 Graded = Callable[[str, str], Outcome]
-SetUpFacts = Callable[[str, list[str]], dict[str, dict[str, Any]]]
+Told = Callable[[str, list[str]], dict[str, dict[str, Any]]]
 
 
 @pytest.fixture(scope="session")
-def told() -> SetUpFacts:
+def told() -> Told:
     """Give what was seen of attacks that share a container; see `observing`."""
     for package in observing.PACKAGES:  # else whoever imports first would write into the copies
         compileall.compile_dir(container.ROOT / package, quiet=2)
@@ -86,7 +86,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 @pytest.fixture(scope="session")
-def graded(request: pytest.FixtureRequest, told: SetUpFacts) -> Graded:
+def graded(request: pytest.FixtureRequest, told: Told) -> Graded:
     """Give the outcome of an attack at a level, graded with others that are asked for."""
     sharing = request.config.stash[SHARING]
 

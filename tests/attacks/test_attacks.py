@@ -26,7 +26,7 @@ from tests.attacks.attacks import (
     TRIED_ELSEWHERE,
     what_happens,
 )
-from tests.attacks.conftest import Graded, SetUpFacts
+from tests.attacks.conftest import Graded, Told
 from tests.attacks.handed_in import SUBMISSIONS
 from tests.needs import needs
 
@@ -123,7 +123,7 @@ UNCONFINED = {
 
 
 @pytest.mark.parametrize("alone", UNCONFINED)
-def test_the_canaries_sing_where_nothing_confines_an_attack(told: SetUpFacts, alone: str) -> None:
+def test_the_canaries_sing_where_nothing_confines_an_attack(told: Told, alone: str) -> None:
     seen = told("unconfined", list(UNCONFINED))
     assert any(harm.startswith(UNCONFINED[alone]) for harm in seen[alone]["harm"]), seen
 

@@ -186,7 +186,10 @@ def compared(before: Entry, after: Entry) -> ChangedEntry | None:
     """Return the changes of a judged hand-in; None where there are none."""
     differences = tuple(_of_checks(before, after))
     # what is deducted from the score, e.g. for being late
-    then, now = (_deducted(entry) for entry in (before, after))
+    then, now = (
+        0.0 if entry.result is None else entry.result.score - (entry.score or 0.0)
+        for entry in (before, after)
+    )
     if abs(now - then) >= NO_CHANGE:
         why = tr(
             "{now} points are deducted from the score, not {before}",
@@ -245,7 +248,3 @@ def _why(was: Verdict | None, is_: Verdict | None) -> str:
             rationale=is_.rationale,
         )
     return translate(is_.rationale)
-
-
-def _deducted(entry: Entry) -> float:
-    return 0.0 if entry.result is None else entry.result.score - (entry.score or 0.0)

@@ -18,7 +18,6 @@ from rich.text import Text
 
 from grader.batch.entry import SUBMISSIONS, Entry
 from grader.batch.regrade.changes import ChangedEntry, Difference, OfCheck, Regrade
-from grader.exercise.verdict import Verdict
 from grader.reports.csv import cell
 from grader.reports.csv import table as as_csv
 from grader.reports.page import templating
@@ -199,13 +198,9 @@ def _whose(entry: Entry) -> list[str]:
 
 
 def _check(each: Difference) -> list[object]:
-    old, new = (_score_of(verdict) for verdict in (each.before, each.after))
+    old, new = (number(v.score) if v else "" for v in (each.before, each.after))
     verdicts = [str(WORDS[v.status]) if v else "" for v in (each.before, each.after)]
     return [cell(each.check or each.title), old, new, number(each.points), *verdicts]
-
-
-def _score_of(verdict: Verdict | None) -> float | int | str:
-    return number(verdict.score) if verdict else ""
 
 
 def _points(score: float | None) -> float | int | str:

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
-from itertools import combinations, islice, takewhile
+from itertools import combinations, islice
 from typing import Final
 
 import numpy as np
@@ -164,7 +163,9 @@ class Commands:
         self._alike: dict[Kind, list[Kind]] = {kind: [kind] for kind in members}
         by_length = sorted(members, key=len)
         for at, one in enumerate(by_length):
-            for other in takewhile(partial(_may_be_alike, one), by_length[at + 1 :]):
+            for other in by_length[at + 1 :]:
+                if len(one) < LEAST_SHARE * len(other):
+                    break  # all others are longer still
                 if are_alike(one, other):
                     self._alike[one].append(other)
                     self._alike[other].append(one)
@@ -203,10 +204,6 @@ def grams(commands: Sequence[TimedCommand]) -> Kind:
 def are_alike(one: Kind, other: Kind) -> bool:
     """Whether two kinds have nearly all n-grams in common."""
     return len(one & other) >= max(FEWEST, LEAST_SHARE * max(len(one), len(other)))
-
-
-def _may_be_alike(short: Kind, long: Kind) -> bool:
-    return len(short) >= LEAST_SHARE * len(long)
 
 
 def equal(one: Sequence[TimedCommand], other: Sequence[TimedCommand]) -> tuple[float, float]:

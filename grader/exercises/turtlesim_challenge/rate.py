@@ -128,7 +128,7 @@ def judge_calls(path: Path, tolerances: Tolerances) -> Finding:
             entries=msg_many("{n} entry", "{n} entries", counts[0]),
         )
         return by_what_is_shown(path, tolerances, text)
-    useless = [b for a, b in pairwise(calls) if _same_pen(a, b)]
+    useless = [b for a, b in pairwise(calls) if replace(a, tick=b.tick) == b]
     first = (useless or calls[needed:])[0]
     bursts = 1 + sum(b.tick - a.tick > AT_ONCE_TICKS for a, b in pairwise(calls))
     if bursts <= needed + tolerances["spare_calls"] and len(calls) < MANY * bursts:
@@ -159,7 +159,3 @@ def _several_at_once(path: Path, calls: Sequence[SetPen], needed: int) -> Findin
         msg("One call at each entry is enough, not two: a request says colour, width and `off`."),
         (path.at(second.tick, msg("the second call at once")),),
     )
-
-
-def _same_pen(earlier: SetPen, later: SetPen) -> bool:
-    return replace(earlier, tick=later.tick) == later

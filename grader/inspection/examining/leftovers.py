@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Final
 
 from grader import linux
-from grader.linux import ProcessStat
 
 _PROC: Final = Path("/proc")
 #: After so many looks, each of which stops those who were born meanwhile, all are ended at once.
@@ -40,7 +39,7 @@ def end() -> None:
     stopped: set[int] = set()
     with suppress(ChildProcessError):  # nothing is left
         for look in count():
-            found = set(_below()) if _is_seen() else _children()
+            found = set(linux.descendants(os.getpid())) if _is_seen() else _children()
             if found <= stopped or look > _MOST_LOOKS:
                 _signal(found, signal.SIGKILL)
                 while os.waitpid(-1, os.WNOHANG)[0]:
@@ -64,7 +63,7 @@ def used() -> tuple[int, bool]:
     """
     if not _is_seen():
         return 0, True
-    below = _below().values()
+    below = linux.descendants(os.getpid()).values()
     used = sum(stat.ticks + stat.waited_ticks for stat in below)
     return used, any(stat.state in ("R", "D") for stat in below)
 
@@ -93,8 +92,3 @@ def _children() -> set[int]:
             os.waitid(os.P_PID, number, os.WEXITED | os.WNOHANG | os.WNOWAIT)
             found.add(number)
     return found
-
-
-def _below() -> dict[int, ProcessStat]:
-    """All descendants of this process."""
-    return linux.descendants(os.getpid())

@@ -24,7 +24,7 @@ if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
 from grader import linux  # noqa: E402
-from grader.inspection import answer  # noqa: E402
+from grader.inspection import trace  # noqa: E402
 from grader.inspection.answer import Inspection, SetUp  # noqa: E402
 from grader.inspection.examining import layout, leftovers, packages, setup_call  # noqa: E402
 from grader.inspection.examining.examination import Examination  # noqa: E402
@@ -50,7 +50,7 @@ def _main() -> None:
         root, leaves = Path(order.pop("root")), order.pop("leaves")
         for each in order.pop("added", ()):
             (root / each).unlink()
-        data = answer.encode(inspect(root, Path(scratch).resolve(), **order))
+        data = trace.encode(inspect(root, Path(scratch).resolve(), **order))
     with open(leaves, "wb") as left:
         left.write(data)
 
@@ -124,8 +124,8 @@ def _examine(
     place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
     examination = Examination(place, scratch)
     examine = [resolve_name(place).examine for place in inspectors or ()]
-    trace = examination.trace(examine, is_whole=inspectors is not None)
-    return trace, tuple(examination.plain)
+    of_package = examination.trace(examine, is_whole=inspectors is not None)
+    return of_package, tuple(examination.plain)
 
 
 if __name__ == "__main__":

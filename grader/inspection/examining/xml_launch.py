@@ -33,6 +33,7 @@ def entities(path: str) -> list[Any]:
 def action(element: ElementTree.Element) -> Any:
     """The action that an element means."""
     from launch import actions
+    from launch.launch_description_sources import AnyLaunchDescriptionSource
     from launch_ros import actions as ros
 
     take = _Attributes(element)
@@ -46,7 +47,7 @@ def action(element: ElementTree.Element) -> Any:
                 choices=[each.get("value", "") for each in element.findall("choice")] or None,
                 **more,
             )
-            take.rest("choice")
+            take.ignore("choice")
         case "let" | "set_env" | "append_env":
             kinds: dict[str, Any] = {
                 "let": actions.SetLaunchConfiguration,
@@ -63,7 +64,7 @@ def action(element: ElementTree.Element) -> Any:
             made = _node(element, take, more)
         case "include":
             made = actions.IncludeLaunchDescription(
-                _source(take.needed("file")),
+                AnyLaunchDescriptionSource(take.needed("file")),
                 launch_arguments=[
                     (_Attributes(each).needed("name"), _Attributes(each).needed("value"))
                     for each in element
@@ -103,12 +104,6 @@ def action(element: ElementTree.Element) -> Any:
             raise not_known(f"<{other}>")
     take.must_be_through()
     return made
-
-
-def _source(file: Any) -> Any:
-    from launch.launch_description_sources import AnyLaunchDescriptionSource
-
-    return AnyLaunchDescriptionSource(file)
 
 
 def _node(element: ElementTree.Element, take: _Attributes, more: dict[str, Any]) -> Any:
@@ -201,9 +196,7 @@ class _Attributes:
         return None if text is None else substitutions(text)
 
     def needed(self, name: str) -> Any:
-        if name not in self._left:
-            raise AttributeError(f"Attribute '{name}' of Entity '{self._tag}' not found")
-        return self(name)
+        return substitutions(self.plain(name))
 
     def plain(self, name: str, default: str | None = None) -> str:
         if name not in self._left and default is None:
@@ -221,9 +214,6 @@ class _Attributes:
     def ignore(self, *names: str) -> None:
         for name in names:
             self._left.pop(name, None)
-
-    def rest(self, *names: str) -> None:
-        self.ignore(*names)
 
     def must_be_through(self) -> None:
         if self._left:

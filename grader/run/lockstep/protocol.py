@@ -224,7 +224,9 @@ def decode(data: bytes) -> Packet:
     try:
         match data[:1]:
             case b"T":
-                return _table(json.loads(data[1:]))
+                made = json.loads(data[1:])
+                added = tuple(EndpointInfo(**entry) for entry in made["added"])
+                return Table(added, tuple(made["removed"]))
             case b"I":
                 return _interests(json.loads(data[1:]))
         name, number, other, further, flag = _HEAD.unpack_from(data)
@@ -271,10 +273,6 @@ def _read_parcels(data: bytes) -> Parcels:
         found.append(Parcel(endpoint, client, number, tick, data[at : at + length]))
         at += length
     return found
-
-
-def _table(data: dict[str, Any]) -> Table:
-    return Table(tuple(EndpointInfo(**entry) for entry in data["added"]), tuple(data["removed"]))
 
 
 def _interests(data: Any) -> Interests:

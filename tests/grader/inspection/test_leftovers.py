@@ -9,6 +9,7 @@ import pytest
 
 BEGIN = """
 import ctypes, os, signal, sys, threading, time
+from grader import linux
 from grader.inspection.examining import leftovers
 
 def born():
@@ -52,14 +53,14 @@ for each in before:
 BORN_WHILE_LOOKED = """
 leftovers.adopt()
 ours = born()
-look, seen = leftovers._below, []
-def too_early():
-    found = look()
+look, seen = linux.descendants, []
+def too_early(process):
+    found = look(process)
     if len(seen) < 2:
         del found[ours[-1]]
     seen.append(found)
     return found
-leftovers._below = too_early
+linux.descendants = too_early
 leftovers.end()
 assert not any(map(is_there, ours)), "something is left"
 """

@@ -8,7 +8,8 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.exercise.building import NO_LIMITS
-from grader.inspection.answer import Inspection, decode, encode
+from grader.inspection.answer import Inspection, decode
+from grader.inspection.trace import encode
 from grader.run import inspecting
 from grader.run.handover import Plan
 from grader.run.limits import CpuBudget

@@ -16,7 +16,6 @@ from types import ModuleType
 from typing import Any
 
 from grader.inspection.examining.steps import not_known
-from grader.message import Message
 
 _MOST_ENTITIES = 10_000
 
@@ -49,15 +48,7 @@ def module(name: str, *given: Any, **more: Any) -> ModuleType:
 
 
 class Record:
-    """What a launch file would have started, and asked for; `grader...launches` makes a better."""
-
-    def node(self, node: dict[str, Any]) -> None: ...
-
-    def skipped(self, node: dict[str, Any]) -> None: ...
-
-    def process(self, words: list[str]) -> None: ...
-
-    def visited(self, kind: str) -> None: ...
+    """What a launch file would have started, and asked for: nothing of it is kept."""
 
     def include(self, path: str, arguments: dict[str, str]) -> bool:
         return False
@@ -68,11 +59,8 @@ class Record:
     def command(self, words: list[str], on_stderr: str) -> str:
         raise not_known("a command")
 
-    def executable(self, package: str, name: str) -> None: ...
-
-    def remark(self, remark: Message) -> None: ...
-
-    def declared(self, name: str) -> None: ...
+    def __getattr__(self, name: str) -> Any:
+        return lambda *_: None
 
 
 class LaunchContext:

@@ -160,18 +160,21 @@ class OpaqueFunction(Action):
         return function(context, *args, **kwargs)
 
 
+def _walk_later(entities: Any, context: LaunchContext) -> None:
+    """Visit what happens only when something else does; what a function decides is not known."""
+    if entities is not None and not callable(entities):
+        before, context.is_later = context.is_later, True
+        walk(entities, context)
+        context.is_later = before
+
+
 class RegisterEventHandler(Action):
     def __init__(self, event_handler: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.event_handler = event_handler
 
     def execute(self, context: LaunchContext) -> None:
-        entities = self.event_handler.entities
-        if entities is None or callable(entities):
-            return
-        before, context.is_later = context.is_later, True
-        walk(entities, context)
-        context.is_later = before
+        _walk_later(self.event_handler.entities, context)
 
 
 class ExecuteLocal(Action):
@@ -205,10 +208,7 @@ class ExecuteLocal(Action):
         self._afterwards(context)
 
     def _afterwards(self, context: LaunchContext) -> None:
-        if self._on_exit is not None and not callable(self._on_exit):
-            before, context.is_later = context.is_later, True
-            walk(self._on_exit, context)
-            context.is_later = before
+        _walk_later(self._on_exit, context)
 
 
 class ExecuteProcess(ExecuteLocal):

@@ -218,14 +218,19 @@ class PushROSNamespace(Action):
 PushRosNamespace = PushROSNamespace
 
 
-class SetParameter(Action):
-    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
+class _SetsParameters(Action):
+    def __init__(self, parameters: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._parameter = Parameter(name, value)
+        self._parameters = parameters
 
     def execute(self, context: LaunchContext) -> None:
         before = context.locals_.get(_PARAMETERS, ())
-        context.locals_[_PARAMETERS] = (*before, self._parameter)
+        context.locals_[_PARAMETERS] = (*before, self._parameters)
+
+
+class SetParameter(_SetsParameters):
+    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
+        super().__init__(Parameter(name, value), **kwargs)
 
 
 class SetUseSimTime(SetParameter):
@@ -233,14 +238,9 @@ class SetUseSimTime(SetParameter):
         super().__init__("use_sim_time", value, **kwargs)
 
 
-class SetParametersFromFile(Action):
+class SetParametersFromFile(_SetsParameters):
     def __init__(self, filename: Any, node_name: Any = None, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self._file = filename
-
-    def execute(self, context: LaunchContext) -> None:
-        before = context.locals_.get(_PARAMETERS, ())
-        context.locals_[_PARAMETERS] = (*before, ParameterFile(self._file))
+        super().__init__(ParameterFile(filename), **kwargs)
 
 
 class SetRemap(Action):
