@@ -21,7 +21,7 @@ from measuring import ROOT, command, head, machine, row, spread
 
 from grader import grading, judging, open_submission
 from grader.batch.page.thumb import thumb
-from grader.batch.similar import behaviour, sources
+from grader.batch.similar import features, sources
 from grader.exercise.loading import load_exercise
 from grader.reports import Report, render
 from grader.run.processes import cores
@@ -46,7 +46,7 @@ def steps(path: Path, place: Path) -> dict[str, float]:
         ends["three runs"] = time.perf_counter()
         if submission.copy is not None:
             sources.keep(submission.copy.folder, place / sources.SOURCE)
-        behaviour.features_file(place / sources.SOURCE, recordings.nominal)
+        features.features_file(place / sources.SOURCE, recordings.nominal)
         thumb(recordings)
         ends["for the pages of the class"] = time.perf_counter()
     judging.save_recordings(recordings, place / "recording")

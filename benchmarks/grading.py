@@ -33,7 +33,7 @@ from measuring import ROOT, Cost, Group, load, median, ratio, row, spread
 import grader
 from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
-from grader.run.processes import isolation
+from grader.run.processes import network
 from grader.scenes.scene import Limits
 from turtlesim_py.world.turtle import TICK_S
 
@@ -297,7 +297,7 @@ def main() -> None:
     print(measuring.machine())
     print("Medians (lowest-highest). CPU: user and system time of all processes.")
     few = max(2, options.repetitions - 2)  # of slow figures
-    with isolation.reserve_isolation() as number:
+    with network.reserve_isolation() as number:
         discovery = {"ROS_DOMAIN_ID": str(number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         env = os.environ | discovery
         if "runs" in options.only:

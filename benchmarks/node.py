@@ -33,7 +33,7 @@ from turtlesim.srv import Spawn
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from grader.run.processes import isolation
+from grader.run.processes import network
 from turtlesim_py.world.arena import TICK_NS, Arena
 from turtlesim_py.world.canvas import Canvas, Pen
 
@@ -281,7 +281,7 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # the simulator is not left behind
     head("", "unit", "median (lowest-highest)", "the original")
     bare_world()
-    with isolation.reserve_isolation() as number:
+    with network.reserve_isolation() as number:
         os.environ["ROS_DOMAIN_ID"] = str(number)
         os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         rclpy.init(args=[])

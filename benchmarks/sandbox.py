@@ -20,7 +20,7 @@ from pathlib import Path
 from measuring import ROOT, head, row, spread
 
 from grader import scratch
-from grader.run.processes import isolation, levels
+from grader.run.processes import levels, network
 from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
@@ -54,7 +54,7 @@ def measure(
     """Measure how long it takes to get a process and see its end [ms]."""
     times_ms = []
     for _ in range(times):
-        with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
             (folder / "tmp").mkdir()
             submission = folder / "submission"
             submission.mkdir()
@@ -81,7 +81,7 @@ def main() -> None:
     parser.add_argument("--repetitions", type=int, default=30, metavar="N")
     times = parser.parse_args().repetitions
     env = {"PATH": os.environ["PATH"], "PYTHONPATH": str(Path(ROOT))}
-    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+    with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         offered = levels.offered(isolated)
     head("level", "forked [ms]", "started [ms]")
     with fork_server(env) as warm:

@@ -41,7 +41,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Take what is this process's own, before anything asks where temporary files lie."""
     # here: the checked message fields have to be asked for before anything of ROS is imported
     from grader import scratch
-    from grader.run.processes import isolation
+    from grader.run.processes import network
 
     if not is_worker(config):
         config.pluginmanager.register(Leftovers(), "leftovers")
@@ -52,7 +52,7 @@ def pytest_configure(config: pytest.Config) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
     # held among all of this user's sessions, and then among all runs of this one
-    number = _open.enter_context(isolation.reserve_domain())
+    number = _open.enter_context(network.reserve_domain())
     if not is_worker(config):
         # where the folders of failing tests stay to be looked at
         os.environ["PYTEST_DEBUG_TEMPROOT"] = tempfile.gettempdir()

@@ -16,13 +16,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from grader import scratch
-from grader.run.processes import isolation, levels
+from grader.run.processes import levels, network
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
 
 
 def main(wanted: str, folder: str, *words: str) -> None:
-    with scratch.make_folder() as run, isolation.obtain_isolation(run) as isolated:
+    with scratch.make_folder() as run, network.obtain_isolation(run) as isolated:
         level = levels.best(isolated)
         print(level.name(), flush=True)
         if level.level != wanted:

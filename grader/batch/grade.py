@@ -24,7 +24,7 @@ from grader.batch.entry import Entry, HandIn, State
 from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR
 from grader.batch.page.thumb import THUMB, thumb
 from grader.batch.pool import Answer, Ending, Task
-from grader.batch.similar import behaviour, sources
+from grader.batch.similar import features, sources
 from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
 from grader.errors import (
     CheckFailed,
@@ -168,7 +168,7 @@ def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path)
     nominal = recordings.nominal
     files.put(place / THUMB, thumb(recordings))
     files.put(
-        place / behaviour.NAME, behaviour.features_file(place / sources.SOURCE, nominal, left_out)
+        place / features.NAME, features.features_file(place / sources.SOURCE, nominal, left_out)
     )
 
 

@@ -25,7 +25,7 @@ from grader import content, files, versions
 from grader.batch.class_file import CLASS
 from grader.batch.entry import ENTRY, SUBMISSIONS
 from grader.batch.page.thumb import THUMB
-from grader.batch.similar.behaviour import NAME as BEHAVIOUR
+from grader.batch.similar.features import NAME as BEHAVIOUR
 from grader.batch.similar.sources import SOURCE
 from grader.exercise.exercise import Exercise
 from grader.message import msg

@@ -12,7 +12,7 @@ from pathlib import Path
 from grader import scratch
 from grader.run.environment import environment
 from grader.run.limits import CpuBudget
-from grader.run.processes import isolation, levels
+from grader.run.processes import levels, network
 from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
@@ -82,7 +82,7 @@ def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
     Raises:
         GraderFailure: it cannot be isolated from other runs, or confined as was required.
     """
-    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+    with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         level = levels.best(isolated)
         isolation_name = ", ".join(filter(None, [level.name(), isolated.name]))
         env = environment(folder, isolated.env)

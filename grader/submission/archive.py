@@ -17,8 +17,8 @@ from typing import Final
 from grader.errors import SubmissionError
 from grader.message import Message, as_message, msg, plain_text
 from grader.submission import tar_archive, zip_archive
-from grader.submission.archive_members import PACK_AGAIN, Budget, ListTooLong, write
 from grader.submission.folder import MAX_BYTES, shown
+from grader.submission.safe_members import PACK_AGAIN, Budget, ListTooLong, write
 
 #: What an archive that is damaged, or made to look so, makes its reader raise.
 DAMAGED: Final = (

@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import IO, Final
 
 from grader.message import NOTHING, Message, msg
-from grader.submission.archive_members import (
+from grader.submission.folder import shown
+from grader.submission.safe_members import (
     PACK_AGAIN,
     Bounded,
     Budget,
     ListTooLong,
     Member,
 )
-from grader.submission.folder import shown
 
 MAX_HEADERS: Final = 50_000  # with those of caches and venvs, which are not written
 MAX_HEADER_BYTES: Final = 100_000  # of one header, with the long names that come before it

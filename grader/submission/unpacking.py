@@ -9,7 +9,7 @@ from grader.errors import SubmissionError
 from grader.submission.folder import shown
 
 if TYPE_CHECKING:
-    from grader.submission.archive_members import Budget
+    from grader.submission.safe_members import Budget
 
 #: A zip of a course's server, in it the student's own, in that a zip once more by mistake.
 MAX_LEVELS: Final = 3
@@ -42,7 +42,7 @@ class Unpacking:
             SubmissionError: it cannot be, or lies in too many others.
         """
         from grader.submission.archive import unpack  # here: most submissions are none
-        from grader.submission.archive_members import Budget
+        from grader.submission.safe_members import Budget
 
         if not self._places:
             raise SubmissionError(

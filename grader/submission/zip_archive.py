@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Final
 
 from grader.message import NOTHING, Message, msg
-from grader.submission.archive_members import PACK_AGAIN, Bounded, Member
 from grader.submission.folder import shown
+from grader.submission.safe_members import PACK_AGAIN, Bounded, Member
 
 #: Of the list of members, all of them. It is read at once, and becomes 50 times as large.
 MAX_LIST_BYTES: Final = 6_000_000

@@ -12,7 +12,7 @@ import pytest
 
 from grader import scratch
 from grader.errors import GraderFailure
-from grader.run.processes import cores, isolation
+from grader.run.processes import cores, network
 
 OTHER = 65534
 
@@ -72,11 +72,11 @@ def test_what_lies_where_locks_are_looked_for_stops_nobody(
     place: Path, lay: Callable[[Path], None]
 ) -> None:
     home = scratch.home()
-    names = [f"domain-{number}" for number in isolation.DOMAINS]
+    names = [f"domain-{number}" for number in network.DOMAINS]
     names += [f"core-{number}" for number in cores.available()]
     for name in (*names, "run-123456789012", "run-"):
         lay(home / f"{name}.lock")
-    with isolation.reserve_domain() as first, isolation.reserve_domain() as second:
+    with network.reserve_domain() as first, network.reserve_domain() as second:
         assert first != second
     with cores.reserve_core(0) as core:
         assert core in cores.available()
@@ -90,7 +90,7 @@ def test_what_lies_where_locks_are_looked_for_stops_nobody(
 
 
 def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
-    with isolation.reserve_domain() as number:
+    with network.reserve_domain() as number:
         found = (scratch.home() / f"domain-{number}.lock").lstat()
     assert stat.S_ISREG(found.st_mode)
     assert stat.S_IMODE(found.st_mode) == 0o600
@@ -125,7 +125,7 @@ def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(
     before = place.lstat()
     assert scratch.home() == Path(os.environ["XDG_RUNTIME_DIR"]) / "turtlesim-grader"
     assert scratch.home().stat().st_mode & 0o777 == 0o700
-    with scratch.make_folder(), isolation.reserve_domain(), cores.reserve_core(0):
+    with scratch.make_folder(), network.reserve_domain(), cores.reserve_core(0):
         pass
     assert place.lstat().st_mode == before.st_mode
     assert not (place.parent.parent / "made by the grader").exists()

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from grader import linux, system
-from grader.run.processes import isolation
+from grader.run.processes import network
 
 
 def test_submissions_are_run_where_linux_shows_its_processes(monkeypatch, tmp_path: Path) -> None:
@@ -17,8 +17,8 @@ def test_submissions_are_run_where_linux_shows_its_processes(monkeypatch, tmp_pa
 @pytest.mark.parametrize("libc", [None, object()])
 def test_namespaces_that_libc_does_not_know_are_refused(monkeypatch, libc) -> None:
     monkeypatch.setattr(linux, "_libc", libc)
-    monkeypatch.setattr(isolation, "_refused", set())
+    monkeypatch.setattr(network, "_refused", set())
     with pytest.raises(OSError, match=r"unshare \(net\)"):
         linux.unshare(linux.CLONE_NEWNET)
     with pytest.raises(OSError, match=r"unshare \(net\)"):
-        isolation._as_root()
+        network._as_root()

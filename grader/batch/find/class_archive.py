@@ -23,8 +23,8 @@ from grader.errors import UsageError
 from grader.message import NOTHING, Message, as_message, msg
 from grader.submission import tar_archive, zip_archive
 from grader.submission.archive import DAMAGED
-from grader.submission.archive_members import Budget, ListTooLong, Member
 from grader.submission.folder import MAX_BYTES, is_junk, listed, marks_generated, shown
+from grader.submission.safe_members import Budget, ListTooLong, Member
 
 MAX_FILES: Final = 500_000
 MAX_ALL_BYTES: Final = 50_000_000_000

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from grader.batch.similar.behaviour import Features, TimedCommand, hash_of
+from grader.batch.similar.features import Features, TimedCommand, hash_of
 
 NEAR_MM: Final = 10
 #: Behaviour counts in a class of at least so many, if two behave so, or at most one in so many.

@@ -20,8 +20,8 @@ from grader import files
 from grader.batch.entry import Entry
 from grader.batch.page.students import Student, students
 from grader.batch.similar import sources
-from grader.batch.similar.behaviour import Features
 from grader.batch.similar.compare import LARGE_CLASS, ONE_IN, Compared, Comparison, Pair, compare
+from grader.batch.similar.features import Features
 from grader.exercise.exercise import Exercise
 from grader.message import Message, msg
 from grader.reports.page import templating

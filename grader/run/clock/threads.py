@@ -14,7 +14,7 @@ from contextlib import suppress
 from typing import Any
 
 from grader.run.clock.scheduler import Runner, Scheduler
-from grader.run.clock.system_calls import Unsupported
+from grader.run.clock.unsupported_calls import Unsupported
 from grader.run.lockstep.faults import as_python_does
 from grader.run.lockstep.protocol import NEVER
 from grader.run.lockstep.real import get_ident

@@ -31,9 +31,9 @@ from grader import scratch
 from grader.errors import GraderError, GraderFailure, NotNow, NotOffered, UsageError
 from grader.message import Text, msg
 from grader.run.limits import rlimits
-from grader.run.processes import isolation
+from grader.run.processes import network
 from grader.run.processes.fork_server_main import ProcessCommand
-from grader.run.processes.isolation import Isolation
+from grader.run.processes.network import Isolation
 from grader.run.processes.refusal import TRIES, Refusal, insist
 from grader.run.processes.started_process import NotConfined, SubmissionProcess
 from grader.run.sandbox import filesystem, landlock, view
@@ -220,7 +220,7 @@ def here(level: str = "") -> Level:
     Raises:
         GraderFailure, NotOffered, NotNow: see `best`.
     """
-    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+    with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         return best(isolated, level)
 
 

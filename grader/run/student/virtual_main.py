@@ -31,7 +31,7 @@ from contextlib import suppress  # noqa: E402
 from typing import TYPE_CHECKING, Any  # noqa: E402
 
 from grader.message import NOTHING, Message, msg  # noqa: E402
-from grader.run.clock import surroundings, system_calls, threads  # noqa: E402
+from grader.run.clock import threads, time_and_chance, unsupported_calls  # noqa: E402
 from grader.run.clock.scheduler import Scheduler  # noqa: E402
 from grader.run.lockstep import contract, faults, real  # noqa: E402
 from grader.run.lockstep.protocol import Kind, Note, encode  # noqa: E402
@@ -70,8 +70,8 @@ def main() -> None:
     if fault:
         give_up(Kind.FAILED, fault)
     try:
-        surroundings.replace_user_and_devices()
-        system_calls.replace_signals(scheduler, refuse)
+        time_and_chance.replace_user_and_devices()
+        unsupported_calls.replace_signals(scheduler, refuse)
         link = install(scheduler, connection, int(page), refuse, witness, introduction)
     except Exception as error:
         give_up(Kind.FAILED, broken(error))
@@ -84,7 +84,7 @@ def main() -> None:
         connect()  # so that the counterparts are known
         witness.ending.raised(error)
 
-    system_calls.refuse_processes(refuse)
+    unsupported_calls.refuse_processes(refuse)
     loading.hide_the_grader(root, target)
     code = loading.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
@@ -104,10 +104,10 @@ def prepare(scheduler: Scheduler) -> tuple[Message, Callable[[], object]]:
     state: Callable[[], object] = object
     try:
         # before rclpy is imported, which uses all of it
-        surroundings.replace_clocks(scheduler)
+        time_and_chance.replace_clocks(scheduler)
         threads.install(scheduler)
-        state = surroundings.seed_chance()
-        system_calls.replace_select(scheduler)
+        state = time_and_chance.seed_chance()
+        unsupported_calls.replace_select(scheduler)
         if lack := contract.broken(contract.ENTITIES, contract.PROGRAM):
             return lack, state
         from grader.run.clock import rclpy_time
@@ -165,7 +165,7 @@ def is_met(kind: str, entity: Any) -> Callable[[], bool]:
 
 def broken(error: Exception) -> Message:
     """Return why virtual time does not work here."""
-    if isinstance(error, system_calls.Unsupported):
+    if isinstance(error, unsupported_calls.Unsupported):
         return msg("virtual time does not work here: {lack}", lack=str(error))
     return faults.failed(faults.whose(error) or repr(error))
 

@@ -16,7 +16,7 @@ from grader.batch.class_file import CLASS, ClassFile
 from grader.batch.entry import ENTRY, Entry, entries
 from grader.batch.page.thumb import THUMB, Thumb
 from grader.batch.pool import Answer
-from grader.batch.similar import behaviour, sources
+from grader.batch.similar import features, sources
 from grader.batch.store import RECORDING, STUDENTS, Store
 from grader.cli import main
 from grader.errors import UsageError
@@ -142,10 +142,10 @@ def test_what_pages_show_of_a_run_is_left_out_where_it_is_no_file_of_ours(
     out: Path, how: str
 ) -> None:
     folder = Store(out).student("right")
-    for name in (THUMB, behaviour.NAME):
+    for name in (THUMB, features.NAME):
         replaced(folder / name, NO_FILE[how])
     assert Thumb.read(folder) is None
-    assert behaviour.Features.read(folder) is None
+    assert features.Features.read(folder) is None
 
 
 def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(out: Path) -> None:

@@ -14,7 +14,7 @@ from grader.recording import reading, saving
 from grader.recording.recording import Recordings
 from grader.recording.subject import load_subject
 from grader.run import finish, inspecting, virtual_time
-from grader.run.clock.system_calls import _OTHER_PROCESS
+from grader.run.clock.unsupported_calls import _OTHER_PROCESS
 from grader.run.lockstep.faults import failed
 from grader.run.opening import open_submission
 from grader.run.simulator import link, real_time

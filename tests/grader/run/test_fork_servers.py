@@ -18,7 +18,7 @@ from grader.recording.recording import Recording
 from grader.run import fork_servers, virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
-from grader.run.processes import FORK_SERVER, isolation, levels
+from grader.run.processes import FORK_SERVER, levels, network
 from grader.scenes.scene import Limits
 
 ROOT = Path(__file__).parents[3]
@@ -127,13 +127,13 @@ def test_a_forked_submission_finds_all_that_a_started_one_does(
 ) -> None:
     refused = {
         "private network": set(),
-        "user namespace": {isolation._as_root},
-        "ROS domain": {isolation._as_root, isolation._as_user},
+        "user namespace": {network._as_root},
+        "ROS domain": {network._as_root, network._as_user},
     }
-    monkeypatch.setattr(isolation, "_refused", refused[level])
+    monkeypatch.setattr(network, "_refused", refused[level])
     monkeypatch.setattr(levels, "_found", {})
     # the same for both runs, and none that any other grader takes
-    monkeypatch.setattr(isolation, "DOMAINS", (39,))
+    monkeypatch.setattr(network, "DOMAINS", (39,))
     before = forks()
     forked = graded(PORTRAIT, tmp_path)
     assert [now - then for now, then in zip(forks(), before, strict=True)] == [1, 1]

@@ -17,7 +17,7 @@ from grader.run import environment, real_time, virtual_time
 from grader.run.finish import SimulatorLost
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
-from grader.run.processes import isolation, levels
+from grader.run.processes import levels, network
 from grader.run.run_context import RunContext
 from grader.scenes.scene import Limits
 from grader.submission.start import Submission
@@ -372,14 +372,14 @@ def test_locks_that_a_submission_has_taken_are_free_when_its_run_is_over(
     home = tmp_path / "runs"
     home.mkdir()
     monkeypatch.setattr(scratch, "home", lambda: home)
-    for number in isolation.DOMAINS:
+    for number in network.DOMAINS:
         (home / f"domain-{number}.lock").touch()
     script = tmp_path / "keeps.py"
     script.write_text(KEEPS_ALL_LOCKS.format(home=str(home)))
     with open_submission(script) as submission:
         recording = real_time.run(submission, Plan(Limits(0.2, 0.2, 2)))
         assert recording.output == "b'kept'\n"
-        for number in isolation.DOMAINS:
+        for number in network.DOMAINS:
             lock = scratch.acquire_lock(f"domain-{number}")
             assert lock is not None
             lock.close()

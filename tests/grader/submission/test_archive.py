@@ -11,7 +11,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.submission.archive import unpack
-from grader.submission.archive_members import Budget
+from grader.submission.safe_members import Budget
 
 
 def pack(archive: Path, *members: str | zipfile.ZipInfo, data: str = "x") -> Path:

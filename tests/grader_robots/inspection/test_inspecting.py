@@ -13,7 +13,7 @@ from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
 from grader.inspection.trace import FAILED
 from grader.run import inspecting
-from grader.run.processes import isolation, levels
+from grader.run.processes import levels, network
 from tests import runs
 from tests.grader.run.test_opening import FORGES
 from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, recorded, written
@@ -34,7 +34,7 @@ def test_two_looks_are_equal_and_are_what_is_found_without_confinement():
 
 def test_it_is_confined_as_a_submission_s_process_is():
     run = runs.recordings(REFERENCE, EXERCISE).nominal.run
-    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+    with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         assert run.isolation.startswith(levels.best(isolated).name())
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person, entries
-from grader.batch.similar import behaviour, sources
+from grader.batch.similar import features, sources
 from grader.batch.similar.page import Class, compare_class
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording
@@ -54,8 +54,8 @@ def hand_in(
         (copy / file).parent.mkdir(parents=True, exist_ok=True)
         (copy / file).write_bytes(data)
     left_out = sources.keep(copy, folder / sources.SOURCE)
-    made = behaviour.features_file(folder / sources.SOURCE, nominal, left_out)
-    (folder / behaviour.NAME).write_bytes(made)
+    made = features.features_file(folder / sources.SOURCE, nominal, left_out)
+    (folder / features.NAME).write_bytes(made)
     entry = Entry(HandIn(who, (Person(who, name),)), "failed", 100.0, folder=folder)
     entry.put()
     return entry

@@ -10,8 +10,8 @@ import pytest
 
 from grader import strict_json
 from grader.batch.entry import entries
-from grader.batch.similar import behaviour, sources
-from grader.batch.similar.behaviour import Features
+from grader.batch.similar import features, sources
+from grader.batch.similar.features import Features
 from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in, text
 from tests.grader.driving import Spiral, drive
 
@@ -117,11 +117,11 @@ def test_it_comes_back_as_it_was_and_the_same_makes_the_same_bytes(tmp_path):
     recording = drive(Spiral(), 2000)
     one = hand_in(tmp_path / "out", "alice", {"a.py": text("quick")}, recording)
     other = hand_in(tmp_path / "out", "bob", {"a.py": text("quick")}, recording)
-    data = (one.folder / behaviour.NAME).read_bytes()
-    assert data == (other.folder / behaviour.NAME).read_bytes()
-    found = strict_json.of_line(Features, data, behaviour.BOUNDS)
+    data = (one.folder / features.NAME).read_bytes()
+    assert data == (other.folder / features.NAME).read_bytes()
+    found = strict_json.of_line(Features, data, features.BOUNDS)
     assert strict_json.line(found) == data
-    assert found.commands[0].time_ns == 0 and len(found.path) == 2 * behaviour.POINTS
+    assert found.commands[0].time_ns == 0 and len(found.path) == 2 * features.POINTS
     assert found.path[:2] == (0, 0)
 
 
@@ -143,4 +143,4 @@ def test_it_comes_back_as_it_was_and_the_same_makes_the_same_bytes(tmp_path):
 )
 def test_what_is_none_of_ours_is_refused(data):
     with pytest.raises(ValueError):
-        strict_json.of_line(Features, data, behaviour.BOUNDS)
+        strict_json.of_line(Features, data, features.BOUNDS)

@@ -30,8 +30,8 @@ def drawn() -> list[str]:
     """What a process draws by each way, twice."""
     code = (
         "import _random, os, random, secrets, ssl, uuid\n"
-        "from grader.run.clock import surroundings\n"
-        "surroundings.seed_chance(), surroundings.replace_user_and_devices()\n"
+        "from grader.run.clock import time_and_chance\n"
+        "time_and_chance.seed_chance(), time_and_chance.replace_user_and_devices()\n"
         f"for way in {WAYS!r}: print(way, eval(way), eval(way), sep='\\t')"
     )
     command = [sys.executable, "-c", code]

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from grader.run.clock import surroundings
+from grader.run.clock import time_and_chance
 from grader.run.clock.scheduler import Scheduler
 from grader.run.lockstep import faults
 
@@ -18,7 +18,7 @@ ASKED_NS: list[int] = []
 def scheduler(monkeypatch: pytest.MonkeyPatch) -> Scheduler:
     scheduler = Scheduler()
     monkeypatch.setattr(scheduler, "sleep", ASKED_NS.append)
-    monkeypatch.setattr(surroundings, "SCHEDULER", scheduler, raising=False)
+    monkeypatch.setattr(time_and_chance, "SCHEDULER", scheduler, raising=False)
     return scheduler
 
 
@@ -28,7 +28,7 @@ def test_sleeping_wrongly_is_the_program_s_mistake_in_python_s_words(seconds: An
     with pytest.raises((TypeError, ValueError, OverflowError)) as real:
         time.sleep(seconds)
     with pytest.raises(type(real.value)) as ours:
-        surroundings._sleep(seconds)
+        time_and_chance._sleep(seconds)
     assert str(ours.value) == str(real.value)
     assert faults.whose(ours.value) == ""
 
@@ -37,6 +37,6 @@ def test_sleeping_wrongly_is_the_program_s_mistake_in_python_s_words(seconds: An
 @pytest.mark.parametrize(("seconds", "ns"), [(0, 0), (1, 10**9), (0.25, 250_000_000)])
 def test_sleeping_is_the_scheduler_s_work(seconds: float, ns: int) -> None:
     ASKED_NS.clear()
-    surroundings._sleep(seconds)
+    time_and_chance._sleep(seconds)
     assert [ns] == ASKED_NS
     assert Fraction(ns, 10**9) == seconds

@@ -16,7 +16,7 @@ import pytest
 
 from grader.errors import GraderFailure
 from grader.run.fork_servers import shadows
-from grader.run.processes import fork_server_main, isolation
+from grader.run.processes import fork_server_main, network
 from grader.run.processes.fork_server import ForkServer, ServerLost
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import (
@@ -94,7 +94,7 @@ def read_until(process: StartedProcess, text: str) -> None:
 @pytest.mark.parametrize("way", ["none", "_as_root", "_as_user"])
 def test_a_forked_process_finds_all_that_a_started_one_does(server: ForkServer, way: str) -> None:
     try:
-        spaces = getattr(isolation, way)() if way != "none" else isolation.Namespaces()
+        spaces = getattr(network, way)() if way != "none" else network.Namespaces()
     except OSError:
         pytest.skip("this system does not allow it")
     passed, other = os.pipe()
@@ -115,7 +115,7 @@ def test_a_forked_process_finds_all_that_a_started_one_does(server: ForkServer, 
 
 
 def test_a_forked_process_hears_only_its_own_network(server: ForkServer) -> None:
-    spaces = isolation.private_network()
+    spaces = network.private_network()
     if spaces is None:
         pytest.skip("this system allows none")
     words = ["-c", "print(open('/proc/net/dev').read().count(':'))"]

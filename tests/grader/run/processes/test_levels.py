@@ -17,7 +17,7 @@ from grader import cli, scratch
 from grader.cli import run
 from grader.errors import GraderFailure, NotNow, UsageError
 from grader.run import run_context
-from grader.run.processes import isolation, levels, refusal
+from grader.run.processes import levels, network, refusal
 from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
@@ -88,9 +88,9 @@ def test_no_run_is_made_below_what_was_required(monkeypatch: pytest.MonkeyPatch)
 def _without_descriptors(free: int) -> list[str]:
     """What is told where so few are free, and the level when there are enough again."""
     levels._found.clear()
-    isolation._refused.clear()
+    network._refused.clear()
     refusal.PAUSES_S = (0.0, 0.0)
-    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+    with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         before = resource.getrlimit(resource.RLIMIT_NOFILE)
         next_one = os.dup(0)
         os.close(next_one)

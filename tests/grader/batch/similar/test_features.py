@@ -2,8 +2,8 @@
 
 import pytest
 
-from grader.batch.similar.behaviour import POINTS, Features, TimedCommand
 from grader.batch.similar.compare import LARGE_CLASS, Compared, compare, equal
+from grader.batch.similar.features import POINTS, Features, TimedCommand
 
 
 def behaves(number, end_mm=4000, step=31):

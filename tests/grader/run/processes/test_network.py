@@ -13,7 +13,7 @@ import pytest
 
 from grader import scratch
 from grader.errors import NotNow
-from grader.run.processes import isolation, refusal
+from grader.run.processes import network, refusal
 from grader.run.run_context import RunContext, open_context
 
 #: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning
@@ -48,10 +48,10 @@ PIPES = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
 @pytest.fixture(params=["private network", "ROS domain"])
 def kind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     if request.param == "private network":
-        if isolation.private_network() is None:
+        if network.private_network() is None:
             pytest.skip("this system allows none")
     else:
-        monkeypatch.setattr(isolation, "_refused", {isolation._as_root, isolation._as_user})
+        monkeypatch.setattr(network, "_refused", {network._as_root, network._as_user})
     return str(request.param)
 
 
@@ -78,7 +78,7 @@ def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind: str) -> None:
         assert talker.communicate()[0].split() == ["up", "0"]
 
 
-@pytest.mark.parametrize("way", [isolation._as_root, isolation._as_user])
+@pytest.mark.parametrize("way", [network._as_root, network._as_user])
 def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
     try:
         namespaces = way()
@@ -104,18 +104,18 @@ def test_what_is_refused_for_good_is_not_asked_for_again_and_the_rest_is(
 ) -> None:
     asked = [0]
 
-    def refuse() -> isolation.Namespaces:
+    def refuse() -> network.Namespaces:
         asked[-1] += 1
         raise OSError(number, os.strerror(number), "unshare (net)")
 
-    monkeypatch.setattr(isolation, "_as_root", refuse)
-    monkeypatch.setattr(isolation, "_as_user", refuse)
-    monkeypatch.setattr(isolation, "_refused", set())
+    monkeypatch.setattr(network, "_as_root", refuse)
+    monkeypatch.setattr(network, "_as_user", refuse)
+    monkeypatch.setattr(network, "_refused", set())
     monkeypatch.setattr(refusal, "PAUSES_S", (0.0, 0.0))
     told = []
     for _ in range(2):
         try:
-            assert isolation.private_network() is None
+            assert network.private_network() is None
         except NotNow as error:
             told.append(str(error))
         asked.append(0)
@@ -131,7 +131,7 @@ import os, sys
 from pathlib import Path
 from grader.errors import NotNow
 from grader import linux
-from grader.run.processes import isolation, refusal
+from grader.run.processes import network, refusal
 refusal.PAUSES_S = (0.0, 0.0)
 user, group = os.getuid(), os.getgid()
 linux.unshare(linux.CLONE_NEWUSER)
@@ -140,7 +140,7 @@ for name, text in ("setgroups", "deny"), ("uid_map", f"0 {user} 1"), ("gid_map",
 linux.unshare(linux.CLONE_NEWNET)
 Path("/proc/sys/user/max_net_namespaces").write_text(sys.argv[1])
 try:
-    print(isolation.private_network())
+    print(network.private_network())
 except NotNow as error:
     print(error.message)
 """
@@ -151,7 +151,7 @@ except NotNow as error:
     [("0", "None"), ("1", "net): No space left on device"), ("9", "{'")],
 )
 def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most: str, told: str) -> None:
-    if isolation.private_network() is None:
+    if network.private_network() is None:
         pytest.skip("this system allows none")
     done = subprocess.run(
         [sys.executable, "-c", FEW_NETWORKS, most],
