@@ -4,8 +4,8 @@
 |---|---|
 | `scheduler` | which thread runs, and when time moves |
 | `threads` | locks and threads that pass the baton on |
-| `system_calls` | `select`, asyncio, signals; refuses other processes, which it cannot follow |
-| `surroundings` | `time` and `datetime`; random numbers and whatever else differs every time |
+| `unsupported_calls` | `select`, asyncio, signals; refuses other processes, which it cannot follow |
+| `time_and_chance` | `time` and `datetime`; random numbers and whatever else differs every time |
 | `rclpy_time` | puts rclpy into virtual time: wait sets, clocks, queries of the graph |
 | `executor` | rclpy's executors, faster |
 | `link` | this end of the link to the simulator: asks for time, sends and receives |
