@@ -59,7 +59,7 @@ def in_no_time(monkeypatch, drawn):
 
     monkeypatch.setitem(grading.RUNNERS, "virtual", made)
     monkeypatch.setattr(live, "PATIENCE_S", 0.0)
-    monkeypatch.setattr(TurtlesimPage, "tell", tell)
+    monkeypatch.setattr(TurtlesimPage, "update", tell)
     return order
 
 

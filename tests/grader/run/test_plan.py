@@ -44,6 +44,7 @@ def test_every_field_and_its_type_survive():
         "i",
         "s",
         True,
+        ("robot_description",),
     )
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))
