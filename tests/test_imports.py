@@ -151,7 +151,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # what was handed in is looked at before it is opened, and archives of a class are unpacked
     "grader.batch.find": GROUND
     | {"grader.batch"}
-    | below("grader.submission", "folder", "unpacking", "archive", "archive_members")
+    | below("grader.submission", "folder", "unpacking", "archive", "safe_members")
     | below("grader.submission", "tar_archive", "zip_archive"),
     "grader.batch.store": GROUND
     | {"grader.batch"}

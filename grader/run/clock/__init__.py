@@ -4,7 +4,7 @@
 |---|---|
 | `scheduler` | which thread runs, and when time moves |
 | `threads` | locks and threads that pass the baton on |
-| `unsupported_calls` | `select`, asyncio, signals; refuses other processes, which it cannot follow |
+| `unsupported_calls` | `select`, asyncio, signals; refuses other processes |
 | `time_and_chance` | `time` and `datetime`; random numbers and whatever else differs every time |
 | `rclpy_time` | puts rclpy into virtual time: wait sets, clocks, queries of the graph |
 | `executor` | rclpy's executors, faster |

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from grader import extensions
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.check import judge
@@ -16,6 +17,7 @@ from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
 from grader.testing import drive
 
+SCENES = ", ".join(extensions.points(extensions.SCENES))
 DESCRIPTION = {
     "exercise": "corner",
     "title": "Drive to the corner",
@@ -130,7 +132,7 @@ def test_a_mistake_in_its_code_is_told_with_file_and_line(tmp_path, files, words
         ({"varied_runs": [1]}, "varied_runs: expected names with numbers"),
         ({"tolerances": [1]}, "tolerances: expected names with values"),
         ({"points": {"fly": 1}}, "points: no check is named 'fly'; there are moves"),
-        ({"scene": "moon"}, "scene: expected one of package, robot, turtlesim, found 'moon'"),
+        ({"scene": "moon"}, f"scene: expected one of {SCENES}, found 'moon'"),
         ({"starter": "begin"}, "there is no 'begin'"),
     ],
 )

@@ -28,7 +28,6 @@ from grader.message import NOTHING, plain_text
 from grader.recording.reading import load
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.saving import save_all
-from grader.recording.subject import load_subject
 
 SETUP = Setup(
     "a", "a", "", "ament_python", NOTHING, ("b",), None, (), (), (), "", ("x",), ("y",), ()
@@ -109,11 +108,3 @@ def test_a_recording_of_it_is_written_and_read_again(tmp_path):
     again = load(tmp_path)
     assert again.trace == TRACE
     assert not (tmp_path / "scenario.json").exists()
-
-
-def test_a_package_is_drawn_whatever_its_description_is():
-    scene = load_subject("package")
-    for text in ("", "<robot", "<robot><link name='a'/><link/></robot>", "<!DOCTYPE a><robot/>"):
-        trace = replace(TRACE, texts=(text, text))
-        assert scene.pictures(trace).window.shape == (500, 500, 3)
-    assert scene.pictures(PackageTrace()).window.shape == (500, 500, 3)

@@ -31,7 +31,7 @@ def test_there_is_a_name_for_every_folder_with_a_scene():
 def test_a_name_that_no_scene_has_is_told_which_there_are(name):
     with pytest.raises(KeyError) as error:
         load_scene(name)
-    known = "package, robot, turtlesim"
+    known = ", ".join(NAMES)
     assert error.value.args[0] == f"grader.scenes: there is no {name!r}; there are: {known}"
 
 

@@ -104,3 +104,9 @@ def test_very_many_links_are_shown_as_far_as_there_is_room():
 def test_nothing_that_was_found_is_a_page_of_nothing():
     view = PACKAGE.view(PackageTrace())
     assert view.parts == () and tuple(map(str, view.drawn)) == ("no robot description was found",)
+
+
+def test_a_package_is_drawn_whatever_its_description_is():
+    for text in ("", "<robot", "<robot><link name='a'/><link/></robot>", "<!DOCTYPE a><robot/>"):
+        assert PACKAGE.pictures(trace(text)).window.shape == (500, 500, 3)
+    assert PACKAGE.pictures(PackageTrace()).window.shape == (500, 500, 3)
