@@ -29,7 +29,7 @@ pytest_plugins = ["tests.apart", "tests.needs"]
 EXAMPLES = int(os.environ.get("EXAMPLES") or 0)
 #: So many hand-ins and recordings, as nobody makes them, are drawn by each search for a failure of
 #: the grader.
-CASES = max(30, 2 * EXAMPLES)
+CASES = max(15, 2 * EXAMPLES)
 settings.register_profile(
     "ours",
     max_examples=EXAMPLES or 30,
