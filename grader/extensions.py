@@ -32,7 +32,7 @@ def points(group: Group) -> Mapping[str, list[EntryPoint]]:
 
     A distribution that is found twice on the path counts once.
     """
-    # an installation changes the folder; reading all that is installed takes tens of milliseconds
+    # an installation changes the folder
     return _points(group, tuple((folder, _changed_ns(folder)) for folder in sys.path))
 
 
@@ -100,9 +100,15 @@ def _changed_ns(folder: str) -> int:
         return 0
 
 
+@lru_cache(maxsize=1)
+def _installed(_path: tuple[tuple[str, int], ...]) -> Any:
+    """Read the entry points of all groups, which takes tens of milliseconds; see `select`."""
+    return entry_points()
+
+
 @lru_cache(maxsize=8)
-def _points(group: Group, _path: tuple[tuple[str, int], ...]) -> Mapping[str, list[EntryPoint]]:
+def _points(group: Group, path: tuple[tuple[str, int], ...]) -> Mapping[str, list[EntryPoint]]:
     found: dict[str, dict[str, EntryPoint]] = {}
-    for point in (*_ours(group).values(), *entry_points(group=group)):
+    for point in (*_ours(group).values(), *_installed(path).select(group=group)):
         found.setdefault(point.name, {}).setdefault(described(point), point)
     return {name: list(each.values()) for name, each in sorted(found.items())}

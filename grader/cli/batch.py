@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.text import Text
 
+from grader.cli import GRADER_FAILED, JUDGED
 from grader.cli.run import LEVELS, add_of_runs
 from grader.errors import UsageError
 from grader.message import Message, msg, msg_many
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from grader.batch.find.finding import Found
     from grader.batch.store import Store
     from grader.result.visible import View
-
-JUDGED, GRADER_FAILED = 0, 3
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

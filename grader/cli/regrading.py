@@ -17,13 +17,12 @@ from grader.batch.regrade import judging, shown
 from grader.batch.regrade.changes import Regrade
 from grader.batch.regrade.judging import CHANGES_CSV, CHANGES_PAGE
 from grader.batch.store import BEFORE, Store
-from grader.cli import class_progress
+from grader.cli import GRADER_FAILED, JUDGED, class_progress
 from grader.result.visible import View
 from grader.translations import tr, tr_many
 
 #: The folder of the table and the page, in the folder of the class.
 REGRADE = "regrade"
-DONE, GRADER_FAILED = 0, 3
 
 
 def run(args: Namespace, jobs: int, view: View) -> int:
@@ -51,13 +50,13 @@ def run(args: Namespace, jobs: int, view: View) -> int:
             console.print(
                 tr("Nothing of the class was changed. To write it: the same call with --apply")
             )
-            return GRADER_FAILED if found.failures else DONE
+            return GRADER_FAILED if found.failures else JUDGED
         with _progress(messages, len(found.entries), tr("writing")) as show:
             judging.apply(found, store, show, view, args.assignment)
     console.print(
         Text(tr("Written. What was before: {before}", before=out / BEFORE)), soft_wrap=True
     )
-    return GRADER_FAILED if found.failures else DONE
+    return GRADER_FAILED if found.failures else JUDGED
 
 
 def _write(found: Regrade, into: Path, console: Console) -> None:

@@ -44,7 +44,7 @@ class Inspector(ABC):
         return ()
 
     def odd_traces(self) -> Mapping[str, Trace]:
-        """Return traces that a package may leave and nobody expects; their names begin "that"."""
+        """Return traces that a package may leave and nobody expects, by their descriptions."""
         return {}
 
 
