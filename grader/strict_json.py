@@ -3,8 +3,8 @@
 The annotations of a dataclass define what is accepted: `str`, `int`, `float`, `bool`, `datetime`
 (with its zone), `Path`, `Literal`, `tuple[T, ...]`, `tuple[T, T]`, `NamedTuple`, `Mapping[str, T]`,
 `T | None`, dataclasses (of several, the one that has such keys), and `Annotated`: with `Bounds`,
-and with functions that get a value and return the value to keep, or raise ValueError. A `Message`
-is an object with key and values, see `grader.message`, unless the bounds have another form for it.
+and with functions that get a value and return the value to keep, or raise ValueError. A class with
+a form of its own has `serialise` and `parse`, as `Message` has; bounds may replace these.
 """
 
 from __future__ import annotations
@@ -30,8 +30,6 @@ from typing import (
     get_type_hints,
 )
 
-from grader.message import Message
-
 _Number = TypeVar("_Number", int, float)
 Made = TypeVar("Made")
 
@@ -47,7 +45,7 @@ class Bounds(NamedTuple):
         number: the absolute value of a whole number is below this.
         clean: returns the text to keep; None keeps it as it is.
         may_lack: whether a field that has a default may be absent.
-        write, read: a message as JSON, and back; None for an object with key and values.
+        write, read: take the place of a class's own `serialise` and `parse`; None for these.
     """
 
     characters: float = 2000
@@ -55,8 +53,8 @@ class Bounds(NamedTuple):
     number: float = 2**53
     clean: Callable[[str], str] | None = None
     may_lack: bool = False
-    write: Callable[[Message], Any] | None = None
-    read: Callable[[Any], Message] | None = None
+    write: Callable[[Any], Any] | None = None
+    read: Callable[[Any], Any] | None = None
 
 
 _IN_WORDS = {
@@ -82,7 +80,7 @@ def loads(text: str) -> Any:
 
 def to_json(value: Any, bounds: Bounds = STRANGERS) -> Any:
     """Convert to JSON that `from_json` accepts: what is longer is cut."""
-    if isinstance(value, Message):
+    if hasattr(value, "serialise"):
         return bounds.write(value) if bounds.write else value.serialise()
     if is_dataclass(value):
         return {
@@ -180,10 +178,10 @@ def _value(kind: Any, data: Any, bounds: Bounds) -> Any:
         return {_value(args[0], n, bounds): _value(args[1], d, bounds) for n, d in texts.items()}
     if hasattr(kind, "_fields"):
         return kind(*_list(tuple(get_type_hints(kind).values()), data, bounds))
-    if kind is Message:
+    if hasattr(kind, "parse"):
         if bounds.read:
             return bounds.read(data)
-        return Message.parse(data, lambda text: _scalar(str, text, bounds))
+        return kind.parse(data, lambda text: _scalar(str, text, bounds))
     if is_dataclass(kind):
         return _object(kind, data, bounds)
     return _scalar(kind, data, bounds)

@@ -60,11 +60,7 @@ def grade(args: argparse.Namespace, live: Live | None) -> int:
 def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
     """Grade once: run, judge, write, print; `live` shows the runs while they go on."""
     out = out_of(args)
-    if args.out is None:
-        files.check_leads_nowhere_else(out, Path.cwd())
-    path: Path = args.submission
-    files.check_leads_nowhere_else(out, path if path.is_dir() else path.parent)
-    _withdraw(out, args.json, options.inputs(args))
+    _withdraw(out, args)
     exercise = load_exercise(args.exercise)
     with ExitStack() as held:
         opening = exercise.opening
@@ -178,7 +174,7 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     return report
 
 
-def _withdraw(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
+def _withdraw(out: Path, args: argparse.Namespace) -> None:
     """Check that a result can be written, and remove an older one.
 
     An old result must not remain after a refused call or a failed run.
@@ -186,7 +182,10 @@ def _withdraw(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
     Raises:
         UsageError: one of the paths cannot be written; then nothing has changed.
     """
-    read = list(inputs)
+    copy, path, read = args.json, args.submission, list(options.inputs(args))
+    if args.out is None:
+        files.check_leads_nowhere_else(out, Path.cwd())
+    files.check_leads_nowhere_else(out, path if path.is_dir() else path.parent)
     files.check_can_put(out / RESULT, FAMILY, read)
     for name in (ARTIFACTS["canvas"], ARTIFACTS["output"], PAGE):
         files.check_can_put(out / name)

@@ -59,9 +59,8 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     points = _points(data["points"], checks)
     words = translated.translated(data.get(translated.PART), checks, tolerances)
     checks = checks.with_words(words.titles, words.rubrics)
-    exercise = Exercise(
+    return Exercise(
         name=data["exercise"],
-        title=authored(str(data["title"]), words.title),
         limits=limits,
         varied=varied,
         points=points,
@@ -76,11 +75,12 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, setting, place.folder),
-        task=authored(data.get("task", ""), words.task),
         visible=policies.visible(data.get("visible"), checks, points),
+        late=policies.late(data.get("late"), round(sum(points.values()), 2)),
         explained=words.tolerances,
+        title=authored(str(data["title"]), words.title),
+        task=authored(data.get("task", ""), words.task),
     )
-    return replace(exercise, late=policies.late(data.get("late"), exercise.max_score))
 
 
 def _subject(name: object) -> tuple[str, Subject]:
