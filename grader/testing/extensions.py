@@ -66,7 +66,7 @@ def check_report(name: str) -> list[Message]:
         except Exception as error:  # whatever another package does
             problems.append(msg("{what}: raises {error}", what=what, error=repr(error)))
             continue
-        if not isinstance(first, str) or not first.strip():
+        if not str(first or "").strip():
             problems.append(msg("{what}: writes nothing", what=what))
         elif first != second:
             problems.append(msg("{what}: writes something else the second time", what=what))

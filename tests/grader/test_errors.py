@@ -11,6 +11,7 @@ from grader.errors import (
     GraderFailure,
     NotNow,
     NotOffered,
+    SceneFailure,
     SubmissionError,
     Whose,
 )

@@ -14,18 +14,11 @@ import select
 import signal
 import socket
 import time
-import traceback
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from pathlib import Path
-from typing import Any, Final, Self, get_args
+from collections.abc import Mapping
+from typing import Any, Final, Self
 
 from grader import linux
-from grader.errors import SceneFailure
-from grader.message import msg
 from grader.run.limits import SIMULATOR_BYTES
-from grader.scenes.scene import Reason
-from grader.text import without_controls
 
 #: So much may wait to be received [bytes]; then the run waits so long for that, in all [s].
 MOST_BYTES: Final = 8_000_000
@@ -34,10 +27,6 @@ PATIENCE_S: Final = 10.0
 LATE_S: Final = 0.1
 #: The last line of a run whose news was sent to its end.
 END: Final = {"over": True}
-#: What stands in for rclpy's middleware in virtual time.
-STAND_IN: Final = Path(__file__).parents[1] / "lockstep"
-#: So much of what a scene raises or returns is shown [characters].
-LONGEST_WORDS: Final = 300
 
 
 def protect_process() -> None:
@@ -51,39 +40,6 @@ def protect_process() -> None:
 def send_message(control: socket.socket, what: str, **more: Any) -> None:
     """Send a message between the grader and the simulator, either way; wait until it is sent."""
     control.sendall(_line({"say": what, **more}))
-
-
-@contextmanager
-def scene_at_work(scene: str) -> Iterator[None]:
-    """Raise a `SceneFailure` for an exception of a scene's own code.
-
-    A lack of memory, and what rclpy or its stand-in raises, may be the submission's doing or ours.
-    """
-    try:
-        yield
-    except Exception as error:
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        is_of_rclpy = type(error).__module__.startswith("rclpy._")
-        is_stand_in = STAND_IN in Path(place.filename).parents
-        if is_of_rclpy or is_stand_in or isinstance(error, MemoryError):
-            raise
-        where = {"file": Path(place.filename).name, "line": str(place.lineno)}
-        what = without_controls(f"{type(error).__name__}: {error}", "?")[:LONGEST_WORDS]
-        raised = msg(
-            "the scene {scene} raised {what} ({file}, line {line})", scene=scene, what=what, **where
-        )
-        raise SceneFailure(raised) from error
-
-
-def expect_reason(scene: str, found: Reason) -> Reason:
-    """Return what a scene has returned for a tick; raise a `SceneFailure` where it is no reason."""
-    if found not in (known := get_args(Reason)):
-        shown = {"found": repr(found)[:LONGEST_WORDS], "known": ", ".join(map(repr, known))}
-        failed = msg(
-            "the scene {scene} returned {found}, expected one of {known}", scene=scene, **shown
-        )
-        raise SceneFailure(failed)
-    return found
 
 
 def _line(news: Mapping[str, Any]) -> bytes:

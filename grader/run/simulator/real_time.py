@@ -26,13 +26,8 @@ from grader.errors import SceneFailure
 from grader.message import Message, msg
 from grader.run import handover
 from grader.run.handover import Plan
-from grader.run.simulator.process import (
-    FeedWriter,
-    expect_reason,
-    protect_process,
-    scene_at_work,
-    send_message,
-)
+from grader.run.simulator.process import FeedWriter, protect_process, send_message
+from grader.run.simulator.scene_at_work import expect_reason, scene_at_work
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason
 from turtlesim_py.ros import program

@@ -37,13 +37,8 @@ from grader.run.processes import cores
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import Foresight
 from grader.run.simulator.link import Refused, StudentLink
-from grader.run.simulator.process import (
-    FeedWriter,
-    expect_reason,
-    protect_process,
-    scene_at_work,
-    send_message,
-)
+from grader.run.simulator.process import FeedWriter, protect_process, send_message
+from grader.run.simulator.scene_at_work import expect_reason, scene_at_work
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason
 
