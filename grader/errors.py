@@ -6,7 +6,7 @@
 | `SubmissionError` | submission | 2 |
 | `ExerciseError` | exercise | 2 |
 | `CheckFailed` | exercise | 3 |
-| `GraderFailure`, `NotNow`, `NotOffered` | grader | 3 |
+| `GraderFailure`, `NotNow`, `NotOffered`, `SceneFailure` | grader | 3 |
 """
 
 from __future__ import annotations
@@ -88,6 +88,10 @@ class GraderFailure(GraderError):
 
 class NotNow(GraderFailure):
     """The system refused what it may allow the next time; see `grader.run.processes.refusal`."""
+
+
+class SceneFailure(GraderFailure):
+    """The scene beside a submission raised an exception, or returned what it must not."""
 
 
 class NotOffered(GraderFailure):

@@ -139,7 +139,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.__init__": RECORDED | below("grader", "errors", "grading", "judging", "run.opening"),
     "grader.testing": GROUND
     | RECORDED
-    | below("grader", "grading", "judging", "run", "diagnosis", "scenes")
+    | below("grader", "grading", "judging", "run", "diagnosis", "scenes", "reports", "result")
     | {"turtlesim_py.world.turtle"},
     # a class is graded by what stands in docs/python-api.md, and shown as single results are
     "grader.batch": GROUND

@@ -114,6 +114,13 @@ def _show(
                 exercise=result.exercise,
             )
         )
+    else:
+        left = tr(
+            "No result is written: no {name} of this recording lies beside it. --json FILE writes "
+            "one.",
+            name=RESULT,
+        )
+        print(for_terminal(left), file=sys.stderr)
     terminal.show_with_page(Report.of(result, folder, recordings), page)
 
 

@@ -230,7 +230,7 @@ def _check_varied(varied: VariedRuns, farthest_m: float) -> None:
     if varied.farthest_m > farthest_m:
         raise Mistake(
             (part, "farthest_m"),
-            "expected at most {farthest_m:g}: there are walls; found {found_m:g}",
+            "expected at most {farthest_m:g}, the farthest start in this scene; found {found_m:g}",
             farthest_m=farthest_m,
             found_m=varied.farthest_m,
         )

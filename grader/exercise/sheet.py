@@ -46,6 +46,7 @@ class Start:
 
 def sheet(exercise: Exercise, subject: Subject, start: Start) -> str:
     """Return the sheet."""
+    trial = subject.how_to_try(start.program, start.package)
     parts = (
         [
             f"# {translate(exercise.title)}",
@@ -53,7 +54,7 @@ def sheet(exercise: Exercise, subject: Subject, start: Start) -> str:
         ],
         _judged(exercise, subject),
         _tolerances(exercise),
-        [_heading(tr("How to try it")), subject.how_to_try(start.program, start.package)],
+        [_heading(tr("How to try it")), trial] if trial else [],
         _how_to_submit(start, exercise),
     )
     texts = (text.strip("\n") for part in parts for text in part)

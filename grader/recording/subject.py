@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol
 import numpy as np
 
 from grader import extensions
+from grader.errors import UsageError
 from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
 from grader.recording.view import Floats, Pictures, Plane, View
@@ -250,6 +251,14 @@ def load_subject(name: str) -> Subject:
 
     Raises:
         KeyError: nothing of this name is installed.
+        UsageError: it cannot be loaded, or has another name than its entry point.
     """
     subject: Subject = extensions.load(extensions.SCENES, name)
+    if (own := getattr(subject, "name", None)) != name:
+        raise UsageError(
+            "the entry point {name} is of {point}, whose name is {own}; the two must be the same",
+            name=repr(name),
+            point=extensions.described(extensions.find(extensions.SCENES, name)),
+            own=repr(own),
+        )
     return subject

@@ -18,6 +18,10 @@ _LENGTH = Struct("<Q")
 _COLUMNS = np.dtype([("time_ns", "<i8"), ("topic", "<i8"), ("size", "<i8")])
 
 
+class NotRead(ValueError):
+    """A subject's own `from_channels` cannot read what lies in the messages."""
+
+
 def pack(trace: Trace, subject: Subject) -> bytes:
     """Serialise a trace."""
     messages = subject.to_messages(trace)
@@ -37,8 +41,9 @@ def unpack(packed: bytes, subject: Subject) -> Trace:
     """Parse a trace.
 
     Raises:
-        ValueError: the bytes are none.
+        ValueError: the bytes are none; a `NotRead` where the subject says so.
     """
+    failure: type[ValueError] = ValueError
     try:
         (length,) = _LENGTH.unpack_from(packed)
         begin = _LENGTH.size + length
@@ -60,8 +65,9 @@ def unpack(packed: bytes, subject: Subject) -> Trace:
         duration_ns = head["duration_ns"]
         if type(duration_ns) is not int:
             raise ValueError(f"it lasts {duration_ns!r:.40} ns")
+        failure = NotRead
         return subject.from_channels(channels, duration_ns)
     except MemoryError:  # a limit
         raise
     except Exception as error:  # whatever it is that one of the readers raises
-        raise ValueError(f"no trace of {subject.name}: {type(error).__name__}: {error}") from error
+        raise failure(f"no trace of {subject.name}: {type(error).__name__}: {error}") from error

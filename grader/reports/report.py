@@ -261,9 +261,10 @@ class Report:
         recording = self.recordings.get(run)
         if recording is None:
             return False
-        tracks = load_subject(recording.scene).view(recording.trace).tracks
-        ways = [way for track in tracks for way in (track.x, track.y, track.theta)]
-        return bool(tracks) and all((way == way[:1]).all() for way in ways)
+        view = load_subject(recording.scene).view(recording.trace)
+        ways = [way for track in view.tracks for way in (track.x, track.y, track.theta)]
+        ways = ways or [curve.values for curve in view.curves]
+        return bool(ways) and all((way == way[:1]).all() for way in ways)
 
     @cached_property
     def recordings(self) -> dict[int, Recording]:

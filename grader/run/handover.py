@@ -15,8 +15,8 @@ from struct import Struct
 from typing import Self
 
 from grader import strict_json
-from grader.errors import GraderFailure
-from grader.message import Message
+from grader.errors import GraderFailure, SceneFailure
+from grader.message import Message, msg
 from grader.recording import transfer
 from grader.recording.recording import PublishedTopic
 from grader.recording.subject import Start, Trace
@@ -91,7 +91,8 @@ def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
     """Read the file from an open descriptor, in the grader's process.
 
     Raises:
-        GraderFailure: it is not what `leave` writes.
+        GraderFailure: it is not what `leave` writes; a `SceneFailure` where the scene cannot read
+            what it has written.
     """
     try:
         data = read_bounded(file, RECORDING_BYTES)
@@ -103,9 +104,9 @@ def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
         trace = transfer.unpack(data[end:], scene)
         return trace, tuple(PublishedTopic(topic, kind) for topic, kind in topics.items())
     except Exception as error:
-        raise GraderFailure(
-            "the simulator left no recording: {why}", why=str(error)[:200]
-        ) from error
+        failure = SceneFailure if isinstance(error, transfer.NotRead) else GraderFailure
+        why = msg("the simulator left no recording: {why}", why=str(error)[:200])
+        raise failure(why) from error
 
 
 def read_bounded(file: int, most_bytes: int) -> bytes:

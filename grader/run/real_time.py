@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from grader import linux
-from grader.errors import GraderFailure, NotNow
+from grader.errors import GraderFailure, NotNow, SceneFailure
 from grader.message import Message
 from grader.recording.recording import Recording
 from grader.run import handover, run_context
@@ -57,6 +57,7 @@ def run(
 
     Raises:
         GraderFailure: the simulator could not be started.
+        SceneFailure: the scene raised an exception.
         SimulatorLost: it died beside the submission.
     """
     started = time.monotonic()
@@ -85,7 +86,7 @@ def run(
                     account.request_dump(student.pid)
                 account.close()  # later entries are only about the end that we ask for
             trace, topics = handover.fetch(context.recording, scene)
-        except NotNow:  # it was never started
+        except (NotNow, SceneFailure):  # it was never started, or is not to blame
             raise
         except GraderFailure as failure:
             raise SimulatorLost(failure, ending("killed", None)) from failure

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Protocol
 
-from grader.errors import GraderFailure
+from grader.errors import GraderFailure, SceneFailure
 from grader.message import Message, msg
 from grader.recording.recording import Clock
 from grader.run.environment import simulator_environment
@@ -82,12 +82,15 @@ class Simulator:
         try:
             send_message(self._socket, what)
         except OSError:
+            for _ in range(9):  # it may have said why
+                self.next(0.2)
             raise self.failure(msg("stopped listening")) from None
 
     def next(self, patience_s: float) -> SimulatorMessage | None:
         """The next message, or None if there is none yet.
 
         Raises:
+            SceneFailure: it says so.
             GraderFailure: it has died.
         """
         if b"\n" not in self._text:
@@ -105,6 +108,8 @@ class Simulator:
             return None
         line, _, self._text = self._text.partition(b"\n")
         message: SimulatorMessage = json.loads(line)
+        if message["say"] == "failed":
+            raise SceneFailure(Message.parse(message["reason"]))
         return message
 
     def failure(self, what: Message) -> GraderFailure:

@@ -14,7 +14,7 @@ from dataclasses import asdict, replace
 from functools import partial
 
 from grader import linux
-from grader.errors import GraderFailure
+from grader.errors import GraderFailure, SceneFailure
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Outcome, Recording
 from grader.run import fork_servers, handover, real_time, run_context
@@ -67,7 +67,7 @@ def run(
 
     Raises:
         GraderFailure: the simulator could not be started or died; a `SimulatorLost` where the
-            submission had sent it something.
+            submission had sent it something; a `SceneFailure` where the scene is to blame.
     """
     why = _not_in_virtual_time(submission)
     if not why:
@@ -143,6 +143,8 @@ def _try(
                 return None, reason.map_texts(submission.with_original_paths)
             marks.update(message["marks"])
             trace, topics = handover.fetch(context.recording, scene)
+        except SceneFailure:
+            raise
         except GraderFailure as failure:
             if simulator is None or not simulator.is_driven or student.was_lost:
                 raise

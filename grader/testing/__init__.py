@@ -1,4 +1,4 @@
-"""For authors of exercises: recordings without a robot, and a check of a whole exercise."""
+"""For authors: recordings without a robot, and checks of exercises, scenes and reports."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from grader.scenes.turtlesim import driving
 from grader.scenes.turtlesim.driving import Controller, pen, twist
 from grader.testing.checking import check_exercise
 from grader.testing.examination import Examination
+from grader.testing.extensions import check_report, check_scene
 from turtlesim_py.world.turtle import TICK_S
 
-__all__ = ["Controller", "Examination", "check_exercise", "drive", "pen", "twist"]
+__all__ = ["Controller", "Examination", "check_exercise", "check_report", "check_scene"]
+__all__ += ["drive", "pen", "twist"]
 
 
 def drive(

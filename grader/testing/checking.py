@@ -22,6 +22,7 @@ from grader.recording.subject import Start, Trace
 from grader.run.opening import open_submission
 from grader.scratch import make_folder
 from grader.testing.examination import Examination, Fault, Problem, Trial
+from grader.testing.extensions import changed_in_a_bag
 from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
 
 #: Called after each run with the number of finished runs, that of all, and the solution's name.
@@ -61,6 +62,7 @@ def check_exercise(
         recordings = recorded[solution.name]
         verdicts, wrong = examine(asked, recordings)
         trial = Trial(solution, tuple(verdicts), _remarks(recordings))
+        wrong += dict.fromkeys(filter(None, (_changed(asked, each) for each in recordings)))
         wrong += [*_unexpected(trial), *_wrong_first_line(trial, recordings)]
         if solution is solutions[0]:
             wrong += _twice(asked, trial, recordings, recorded[AGAIN])
@@ -68,7 +70,8 @@ def check_exercise(
         for fault in wrong:
             faults.setdefault(fault, []).append(solution.name)
     for what, recordings in odd_recordings(asked).items():
-        for fault in examine(asked, recordings)[1]:
+        changed = filter(None, (_changed(asked, each) for each in recordings))
+        for fault in dict.fromkeys([*examine(asked, recordings)[1], *changed]):
             faults.setdefault(fault, []).append(what)
     problems = [Problem(fault, tuple(on)) for fault, on in faults.items()]
     examination = Examination(asked.name, tuple(asked.points), tuple(trials), ())
@@ -120,6 +123,12 @@ def _run(
             pool.shutdown(cancel_futures=True)
             raise
         return {name: task.result() for task, name in tasks.items()}
+
+
+def _changed(exercise: Exercise, recording: Recording) -> Fault | None:
+    """Return what `grader check` would refuse, the fault of the scene."""
+    why = changed_in_a_bag(recording.trace, exercise.subject)
+    return Fault("", why) if why else None
 
 
 def _unexpected(trial: Trial) -> Iterator[Fault]:

@@ -11,6 +11,7 @@ from grader.errors import (
     GraderFailure,
     NotNow,
     NotOffered,
+    SceneFailure,
     SubmissionError,
     Whose,
 )
@@ -37,10 +38,11 @@ def test_only_our_own_failure_and_that_of_a_check_exit_with_3():
         GraderFailure,
         NotNow,
         NotOffered,
+        SceneFailure,
         CheckFailed,
     }
     ours = {kind for kind in kinds() if kind.whose == "grader"}
-    assert ours == {GraderError, GraderFailure, NotNow, NotOffered}
+    assert ours == {GraderError, GraderFailure, NotNow, NotOffered, SceneFailure}
 
 
 @pytest.mark.parametrize(

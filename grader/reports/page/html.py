@@ -96,11 +96,16 @@ class RunView(Drawing):
         return "\n".join(self.output.splitlines()[-_PAPER_LINES:])[-_PAPER_LIMIT:]
 
     @property
-    def can_be_seen(self) -> bool:
+    def has_plane(self) -> bool:
         """Whether the plane has anything to show."""
+        return bool(self.picture or self.pins or (self.animation and self.animation.tracks))
+
+    @property
+    def can_be_seen(self) -> bool:
+        """Whether there is a plane, or curves whose time can be chosen below it."""
         if self.still and not self.plots:
             return bool(self.animation and self.animation.tracks)
-        return bool(self.picture or self.animation or self.pins)
+        return self.has_plane or bool(self.plots and self.plots.curves and not self.still)
 
 
 def render(report: Report) -> str:

@@ -22,10 +22,12 @@ from typing import Any
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 
+from grader.errors import SceneFailure
 from grader.message import Message, msg
 from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.simulator.process import FeedWriter, protect_process, send_message
+from grader.run.simulator.scene_at_work import expect_reason, scene_at_work
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason
 from turtlesim_py.ros import program
@@ -76,9 +78,10 @@ class GradedSimulator:
         self._scene = load_scene(plan.scene)
         self._feed = FeedWriter.of(shown, STEP_NS)
         hooks = Hooks(send_news=None if self._feed is None else self._feed.write)
-        self._simulation = self._scene.simulate(
-            plan.limits, plan.start, hooks, plan.interfaces, plan.setting
-        )
+        with scene_at_work(plan.scene):
+            self._simulation = self._scene.simulate(
+                plan.limits, plan.start, hooks, plan.interfaces, plan.setting
+            )
         self._topics = PublishedTopics(self._simulation.node)
         self._limits = plan.limits
         self._flags: list[Message] = []
@@ -98,7 +101,9 @@ class GradedSimulator:
             self._receive()
             if not self._running and self._may_start():
                 self._start()
-            reason = self._simulation.tick()
+            with scene_at_work(self._scene.name):
+                reason = self._simulation.tick()
+            expect_reason(self._scene.name, reason)
             if self._running:
                 self._report_progress()
                 reason = reason or self._overtime()
@@ -108,7 +113,8 @@ class GradedSimulator:
         if self._feed is not None:
             self._feed.close()
         self._topics.update()
-        handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
+        with scene_at_work(self._scene.name):
+            handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
         flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
         self._send("done", reason=reason, flags=flags)
 
@@ -170,7 +176,11 @@ def main(argv: list[str]) -> int:
     link = socket.socket(fileno=int(argv[0]))
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     plan, first_node_s = Plan.from_json(argv[2]), float(argv[3])
-    GradedSimulator(link, Path(argv[1]), plan, first_node_s, argv[4]).run()
+    try:
+        GradedSimulator(link, Path(argv[1]), plan, first_node_s, argv[4]).run()
+    except SceneFailure as failure:
+        link.setblocking(True)
+        send_message(link, "failed", reason=failure.message.serialise())
     rclpy.shutdown()
     return 0
 

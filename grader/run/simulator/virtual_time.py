@@ -26,6 +26,7 @@ from typing import Any
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 
+from grader.errors import SceneFailure
 from grader.message import msg
 from grader.run import handover
 from grader.run.handover import Plan
@@ -37,6 +38,7 @@ from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import Foresight
 from grader.run.simulator.link import Refused, StudentLink
 from grader.run.simulator.process import FeedWriter, protect_process, send_message
+from grader.run.simulator.scene_at_work import expect_reason, scene_at_work
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason
 
@@ -79,9 +81,10 @@ class Lockstep:
         self._feed = FeedWriter.of(shown, TICK_NS)
         send = None if self._feed is None else self._feed.write
         hooks = Hooks(has_unread=self._registry.has_unread, send_news=send)
-        self._simulation = self._scene.simulate(
-            plan.limits, plan.start, hooks, plan.interfaces, plan.setting
-        )
+        with scene_at_work(plan.scene):
+            self._simulation = self._scene.simulate(
+                plan.limits, plan.start, hooks, plan.interfaces, plan.setting
+            )
         self._simulation.record()
         self._foresight = Foresight(self._simulation, self._registry)
         self._tick = self._vain = 0
@@ -139,7 +142,9 @@ class Lockstep:
 
     def save(self, file: Path) -> None:
         """Write the recording where the grader finds it."""
-        handover.leave(file, self._scene, self._simulation.trace(), self._registry.published)
+        with scene_at_work(self._scene.name):
+            trace = self._simulation.trace()
+            handover.leave(file, self._scene, trace, self._registry.published)
 
     def _next_request(self) -> Advance | None:
         """Return the next `Advance`, after handling the packets before it."""
@@ -163,7 +168,8 @@ class Lockstep:
         """Make the forecast ticks that the student's side has used."""
         while self._tick < min(reached, self._foresight.end) and not self._reason:
             self._count_tick()
-            self._reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
+            reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
+            self._reason = expect_reason(self._scene.name, reason)
         self._clocks.set_now(self.now_ns)
         self._foresight.forget()
 
@@ -177,7 +183,9 @@ class Lockstep:
     def _make_tick(self) -> None:
         self._count_tick()
         self._clocks.set_now(self.now_ns)
-        self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
+        with scene_at_work(self._scene.name):
+            reason = self._simulation.tick(EPOCH_NS + self.now_ns)
+        self._reason = expect_reason(self._scene.name, reason)
 
     def _count_tick(self) -> None:
         if self._feed is not None:
@@ -220,13 +228,15 @@ def main(argv: list[str]) -> int:
         cores.pin(core, os.getpid(), student)
 
     plan = Plan.from_json(argv[2])
-    lockstep = Lockstep(link, plan, share_core, lambda: send_message(control, "met"), argv[8])
-    gc.freeze()
-    gc.set_threshold(GARBAGE)
     try:
+        lockstep = Lockstep(link, plan, share_core, lambda: send_message(control, "met"), argv[8])
+        gc.freeze()
+        gc.set_threshold(GARBAGE)
         ending = lockstep.run()
         lockstep.save(Path(argv[1]))
         send_message(control, "done", **ending)
     except Refused as refusal:
         send_message(control, "refused", reason=refusal.why.serialise())
+    except SceneFailure as failure:
+        send_message(control, "failed", reason=failure.message.serialise())
     return 0

@@ -83,8 +83,8 @@
         cursor.hidden = atEnd;
         cursor.style.left = `${100 * time / this.end}%`;
       }
-      this.veil.setAttribute("visibility", atEnd ? "hidden" : "visible");
-      this.layer.setAttribute("visibility", atEnd ? "hidden" : "visible");
+      this.veil?.setAttribute("visibility", atEnd ? "hidden" : "visible");
+      this.layer?.setAttribute("visibility", atEnd ? "hidden" : "visible");
       const sample = sampleAt(this.animation, time);
       this.turtles.forEach((turtle, k) => this.place(turtle, this.animation.tracks[k], sample, atEnd));
       if (!atEnd) this.draw(sample);

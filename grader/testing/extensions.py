@@ -1,0 +1,87 @@
+"""Check a scene or a report format of one's own, found by its entry point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from grader.errors import UsageError
+from grader.exercise.verdict import Verdict
+from grader.message import NOTHING, Message, msg, plain_text
+from grader.recording import transfer
+from grader.recording.subject import Subject, Trace, load_subject
+from grader.reports import ErrorReport, Report, load
+from grader.reports.beside import Beside
+from grader.result.error import ErrorResult
+from grader.result.result import Result, RunSummary
+
+
+def check_scene(name: str, setting: str = "") -> list[Message]:
+    """Return what is wrong with an installed scene, without a run: its traces must survive a bag.
+
+    Args:
+        setting: as an exercise would set the scene up.
+
+    Raises:
+        KeyError, UsageError: it cannot be loaded, or has another name than its entry point.
+    """
+    scene = load_subject(name)
+    lacking = [each for each in ("thing", "the_thing") if not hasattr(scene, each)]
+    traces = {"untouched": scene.untouched(None), **scene.odd_traces(setting, None)}
+    wrong = {what: changed_in_a_bag(trace, scene) for what, trace in traces.items()}
+    return [
+        *(msg("{scene} has no {member}", scene=name, member=each) for each in lacking),
+        *(msg("{what}: {problem}", what=what, problem=why) for what, why in wrong.items() if why),
+    ]
+
+
+def changed_in_a_bag(trace: Trace, subject: Subject) -> Message:
+    """Say what is wrong with a trace that was written as messages and read; NOTHING: is equal."""
+    types = {message.msgtype for message in subject.to_messages(trace)}
+    if undefined := sorted(types - set(subject.message_definitions())):
+        return msg("message_definitions() lacks {types}", types=", ".join(undefined))
+    try:
+        again = transfer.unpack(transfer.pack(trace, subject), subject)
+    except ValueError as error:
+        return msg("from_channels() cannot read to_messages(): {error}", error=str(error))
+    if (again.ticks, again.sha256()) == (trace.ticks, trace.sha256()):
+        return NOTHING
+    return msg("from_channels() of to_messages() has another sha256(), or other ticks")
+
+
+def check_report(name: str) -> list[Message]:
+    """Return what is wrong with an installed report format: it writes, twice the same.
+
+    Raises:
+        KeyError, UsageError: it cannot be loaded.
+    """
+    form = load(name)
+    problems = []
+    for what, report in _reports():
+        render = form.render if isinstance(report, Report) else form.render_error
+        try:
+            first, second = render(report), render(report)  # type: ignore[arg-type]
+        except UsageError:  # it says that it cannot show this
+            continue
+        except Exception as error:  # whatever another package does
+            problems.append(msg("{what}: raises {error}", what=what, error=repr(error)))
+            continue
+        if not str(first or "").strip():
+            problems.append(msg("{what}: writes nothing", what=what))
+        elif first != second:
+            problems.append(msg("{what}: writes something else the second time", what=what))
+    return problems
+
+
+def _reports() -> Iterator[tuple[Message, Report | ErrorReport]]:
+    title, seen, nowhere = plain_text("It moves"), plain_text("It was seen."), Path("/nowhere")
+    for what, status, score, run in (
+        (msg("a finished result"), "passed", 10.0, RunSummary("virtual", "finished")),
+        (msg("a failed result"), "failed", 2.5, RunSummary("virtual", "crashed", 1)),
+    ):
+        help = NOTHING if status == "passed" else seen
+        verdict = Verdict("moves", title, status, score, 10.0, seen, help)  # type: ignore[arg-type]
+        result = Result("square", "node.py", score, 10.0, (verdict,), run)
+        yield what, Report(result, Beside(result, nowhere))
+    error = ErrorResult("grader", seen, 10.0)
+    yield msg("an aborted grading"), ErrorReport(error, nowhere, ("moves",))

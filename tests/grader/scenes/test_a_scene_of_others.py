@@ -1,0 +1,178 @@
+"""A mistake in a scene of somebody else's is that scene's, never the submission's."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.docs.test_examples import BLINKING, environment_with, run_examples
+
+#: The scene of the page, and its mistakes: an entry point each.
+MISTAKES = '''
+import os
+
+from grader.message import msg
+from lamp import Lamp, LampSimulation
+
+
+
+def scene(name, **members):
+    """Make a lamp whose simulation has other members."""
+    simulation = type("Other", (LampSimulation,), members)
+    simulate = lambda self, limits, *_: simulation(limits)
+    return type("Other", (Lamp,), {"name": name, "simulate": simulate})()
+
+
+def fails(self, *_):
+    raise ZeroDivisionError("no lamp has this")
+
+
+def dies(self, *_):
+    os._exit(7)
+
+
+def refuses(self, limits, *_):
+    raise ZeroDivisionError("no lamp has this")
+
+
+def tick(self, now_ns=None):
+    LampSimulation.tick(self, now_ns)
+    return self.returned
+
+
+ticks = scene("ticks", tick=fails)
+takes_no_time = scene("takes_no_time", tick=lambda self: "")
+traces = scene("traces", trace=fails)
+nothing = scene("nothing", tick=tick, returned=None)
+a_word = scene("a_word", tick=tick, returned="enough")
+ends_its_process = scene("ends_its_process", trace=dies)
+makes = type("Makes", (Lamp,), {"name": "makes", "simulate": refuses})()
+reads = type("Reads", (Lamp,), {"name": "reads", "from_channels": refuses})()
+misnamed = scene("lamp")
+'''
+RAISED = "ZeroDivisionError: no lamp has this"
+SENTENCES = {
+    "ticks": f"the scene ticks raised {RAISED} (mistakes.py, line ",
+    "takes_no_time": "the scene takes_no_time raised TypeError: ",
+    "traces": f"the scene traces raised {RAISED} (mistakes.py, line ",
+    "makes": f"the scene makes raised {RAISED} (mistakes.py, line ",
+    "reads": f"the simulator left no recording: no trace of reads: {RAISED}",
+    "nothing": "the scene nothing returned None, expected one of '', 'rest', ",
+    "a_word": "the scene a_word returned 'enough', expected one of '', 'rest', ",
+}
+NAMES = (*SENTENCES, "ends_its_process", "misnamed")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give a folder with a node, the lamp of the page and, for each mistake, an exercise in it."""
+    folder: Path = tmp_path_factory.mktemp("scenes")
+    run_examples("write-a-scene.md", folder)
+    lamp = folder / "lamp"
+    (lamp / "mistakes.py").write_text(MISTAKES)
+    project = (
+        (lamp / "pyproject.toml").read_text().replace('"lamp"]', '"lamp", "mistakes", "bright"]')
+    )
+    points = "".join(f'{name} = "mistakes:{name}"\n' for name in NAMES)
+    (lamp / "pyproject.toml").write_text(
+        project.replace(
+            'lamp = "lamp:SCENE"\n', f'lamp = "lamp:SCENE"\n{points}bright = "bright:SCENE"\n'
+        )
+    )
+    blink = (lamp / "blink" / "exercise.yaml").read_text()
+    for name in (*NAMES, "bright"):
+        exercise = folder / name
+        exercise.mkdir()
+        (exercise / "exercise.yaml").write_text(blink.replace("scene: lamp", f"scene: {name}"))
+        (exercise / "checks.py").write_bytes((lamp / "blink" / "checks.py").read_bytes())
+    (folder / "node.py").write_text(BLINKING)
+    environment_with(lamp, folder / "venv")
+    return folder
+
+
+def run(folder: Path, name: str, *more: str) -> tuple[int, str]:
+    """Grade the node; return the exit code and what stands on stderr."""
+    out = f"out_{Path(name).name}"
+    words = ["-m", "grader", "run", "node.py", "--exercise", name, "--out", out, *more]
+    python = str(folder / "venv" / "bin" / "python")
+    done = subprocess.run(
+        [python, *words], cwd=folder, check=False, stderr=subprocess.PIPE, text=True
+    )
+    return done.returncode, done.stderr
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", SENTENCES)
+def test_a_mistake_of_a_scene_is_told_as_that_scene_s(folder: Path, name: str) -> None:
+    code, told = run(folder, name)
+    assert code == 3, told
+    assert "The grader failed; this is not the submission's fault: " in told
+    assert SENTENCES[name] in told
+    assert not (folder / f"out_{name}" / "result.json").exists()
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", ["ticks", "nothing"])
+def test_a_mistake_of_a_scene_is_told_in_real_time_too(folder: Path, name: str) -> None:
+    code, told = run(folder, name, "--time", "real")
+    assert code == 3, told
+    assert SENTENCES[name] in told
+
+
+@pytest.mark.timeout(300)
+def test_a_simulator_that_ends_without_a_word_may_have_been_ended(folder: Path) -> None:
+    code, _ = run(folder, "ends_its_process")
+    result = json.loads((folder / "out_ends_its_process" / "result.json").read_text())
+    assert (code, result["score"], result["run"]["outcome"]) == (0, 0, "killed")
+
+
+@pytest.mark.timeout(300)
+def test_a_scene_has_the_name_of_its_entry_point(folder: Path) -> None:
+    code, told = run(folder, "misnamed")
+    assert code == 2, told
+    assert "'misnamed' is of mistakes:misnamed of lamp, whose name is 'lamp'" in told
+
+
+@pytest.mark.timeout(300)
+def test_a_scene_has_what_the_page_says_besides(folder: Path) -> None:
+    exercise = folder / "bright" / "exercise.yaml"
+    varied = "varied_runs: {count: 1, seed: 1, nearest_m: 1, farthest_m: 2}\n"
+    exercise.write_text(exercise.read_text() + varied)
+    code, told = run(folder, "bright")
+    out = folder / "out_bright"
+    result = json.loads((out / "result.json").read_text())
+    assert (code, result["score"], result["run"]["outcome"]) == (0, 7.5, "finished"), told
+    assert 1 <= result["varied_runs"][0]["start"]["x"] <= 2
+    assert (out / "canvas.png").exists()
+    python = str(folder / "venv" / "bin" / "python")
+    asks = "from grader.testing import check_scene as c; print(c('bright'), c('lamp'))"
+    done = subprocess.run([python, "-c", asks], capture_output=True, text=True, check=True)
+    assert done.stdout == "[] []\n"
+    (out / "result.json").unlink()
+    words = ["-m", "grader", "check", "out_bright", "--exercise", "bright"]
+    done = subprocess.run([python, *words], cwd=folder, capture_output=True, text=True, check=True)
+    assert "No result is written: no result.json of this recording lies beside it." in done.stderr
+    assert not (out / "result.json").exists()
+
+
+@pytest.mark.timeout(300)
+def test_a_page_shows_no_picture_and_no_path_where_a_scene_has_none(folder: Path) -> None:
+    code, _ = run(folder, "lamp/blink")
+    page = (folder / "out_blink" / "report.html").read_text()
+    assert code == 0
+    assert 'class="window' not in page
+    assert "Show the whole path" not in page
+    assert "Where the lamp went" not in page
+
+
+@pytest.mark.timeout(300)
+def test_a_sheet_leaves_out_what_a_scene_does_not_say(folder: Path) -> None:
+    python = str(folder / "venv" / "bin" / "python")
+    words = ["-m", "grader", "new", "begin", "--exercise", "lamp/blink"]
+    subprocess.run([python, *words], cwd=folder, check=True)
+    (sheet,) = [p for p in (folder / "begin").rglob("*.md") if "blink" in p.read_text()]
+    assert "How to try it" not in sheet.read_text()
+    assert "rested" not in sheet.read_text()
