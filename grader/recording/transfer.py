@@ -19,7 +19,7 @@ _COLUMNS = np.dtype([("time_ns", "<i8"), ("topic", "<i8"), ("size", "<i8")])
 
 
 class NotRead(ValueError):
-    """A subject's own `from_channels` cannot read what lies in the messages."""
+    """A subject's own `from_channels` cannot read what `to_messages` has written, or not all."""
 
 
 def pack(trace: Trace, subject: Subject) -> bytes:
@@ -30,9 +30,10 @@ def pack(trace: Trace, subject: Subject) -> bytes:
     columns = np.array(
         [(m.time_ns, numbers[m.topic, m.msgtype], len(m.data)) for m in messages], _COLUMNS
     )
-    head = json.dumps(
-        {"duration_ns": trace.duration_ns, "topics": [*numbers], "messages": len(messages)}
-    )
+    if (np.diff(columns["time_ns"]) < 0).any():
+        raise ValueError(f"to_messages() of {subject.name} is not in the order of times")
+    facts = {"duration_ns": trace.duration_ns, "sha256": trace.sha256()}
+    head = json.dumps({**facts, "topics": [*numbers], "messages": len(messages)})
     data = b"".join(message.data for message in messages)
     return _LENGTH.pack(len(head)) + head.encode("ascii") + columns.tobytes() + data
 
@@ -66,7 +67,10 @@ def unpack(packed: bytes, subject: Subject) -> Trace:
         if type(duration_ns) is not int:
             raise ValueError(f"it lasts {duration_ns!r:.40} ns")
         failure = NotRead
-        return subject.from_channels(channels, duration_ns)
+        trace = subject.from_channels(channels, duration_ns)
+        if trace.sha256() != head["sha256"]:
+            raise ValueError("from_channels() gives back another sha256() than to_messages() got")
+        return trace
     except MemoryError:  # a limit
         raise
     except Exception as error:  # whatever it is that one of the readers raises

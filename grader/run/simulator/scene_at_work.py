@@ -27,7 +27,7 @@ def scene_at_work(scene: str) -> Iterator[None]:
     """
     try:
         yield
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
         is_of_rclpy = type(error).__module__.startswith("rclpy._")
         is_stand_in = STAND_IN in Path(place.filename).parents

@@ -51,6 +51,16 @@ a_word = scene("a_word", tick=tick, returned="enough")
 ends_its_process = scene("ends_its_process", trace=dies)
 makes = type("Makes", (Lamp,), {"name": "makes", "simulate": refuses})()
 reads = type("Reads", (Lamp,), {"name": "reads", "from_channels": refuses})()
+def leaves(self, *_):
+    raise SystemExit(0)
+
+
+def forgets(self, channels, duration_ns):
+    return Lamp.from_channels(self, [], duration_ns)
+
+
+exits = scene("exits", tick=leaves)
+loses = type("Loses", (Lamp,), {"name": "loses", "from_channels": forgets})()
 misnamed = scene("lamp")
 '''
 RAISED = "ZeroDivisionError: no lamp has this"
@@ -60,6 +70,8 @@ SENTENCES = {
     "traces": f"the scene traces raised {RAISED} (mistakes.py, line ",
     "makes": f"the scene makes raised {RAISED} (mistakes.py, line ",
     "reads": f"the simulator left no recording: no trace of reads: {RAISED}",
+    "exits": "the scene exits raised SystemExit: 0 (mistakes.py, line ",
+    "loses": "no trace of loses: ValueError: from_channels() gives back another sha256()",
     "nothing": "the scene nothing returned None, expected one of '', 'rest', ",
     "a_word": "the scene a_word returned 'enough', expected one of '', 'rest', ",
 }
