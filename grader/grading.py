@@ -139,24 +139,32 @@ def run_all(
     *,
     seed: int | None = None,
     progress: Progress | None = None,
+    hides_seed: bool = False,
 ) -> Recordings:
     """Run a submission from its usual start and, where the exercise asks for it, from elsewhere.
 
     Args:
         seed: chooses where the varied runs start; None for the exercise's seed.
+        hides_seed: whether the recordings leave it out.
         progress: called with the simulated seconds of the nominal run.
 
     Raises:
         SubmissionError: there is no ROS in which it could run.
         GraderFailure: a run could not be made, twice.
     """
-    plans, origin = plan(submission, exercise, seed), provenance(submission, exercise, seed)
+    plans = plan(submission, exercise, seed, hides_seed)
+    origin = provenance(submission, exercise, seed, hides_seed)
     with start(submission, plans, run, progress, origin) as runs:
         return gather(runs)
 
 
-def plan(submission: Submission, exercise: Exercise, seed: int | None = None) -> list[Plan]:
+def plan(
+    submission: Submission, exercise: Exercise, seed: int | None = None, hides_seed: bool = False
+) -> list[Plan]:
     """Plan the nominal run of a submission and, where the exercise asks for it, varied ones.
+
+    Args:
+        hides_seed: whether the recordings leave out the seed, which is a secret.
 
     Raises:
         SubmissionError: there is no ROS in which it could run.
@@ -173,7 +181,7 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
     nominal = Plan(
         exercise.limits,
         scene=exercise.scene,
-        seed=used if starts else None,
+        seed=used if starts and not hides_seed else None,
         interfaces=interfaces,
         setting=exercise.setting,
         looks_at_package=exercise.looks_at_package and submission.package is not None,
@@ -187,8 +195,10 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
     return [replace(nominal, flags=(*submission.remarks, *missing)), *varied]
 
 
-def provenance(submission: Submission, exercise: Exercise, seed: int | None = None) -> Provenance:
-    """Return what is known of runs before they begin, for the record of their origin."""
+def provenance(
+    submission: Submission, exercise: Exercise, seed: int | None = None, hides_seed: bool = False
+) -> Provenance:
+    """Return what is known of runs before they begin, for their record; see `plan`."""
     used = exercise.varied.seed if seed is None else seed
     copy = submission.copy
     return Provenance(
@@ -201,7 +211,7 @@ def provenance(submission: Submission, exercise: Exercise, seed: int | None = No
         submission_sha256="" if copy is None else content.of_folder(copy.folder),
         exercise=exercise.name,
         exercise_sha256=exercise.sha256,
-        seed=used if exercise.varied.count else None,
+        seed=used if exercise.varied.count and not hides_seed else None,
         conditions=exercise.conditions,
     )
 

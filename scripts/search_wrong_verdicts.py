@@ -1,12 +1,14 @@
 """Search for controllers of the challenge that are judged wrongly.
 
     python scripts/search_wrong_verdicts.py [--count 200] [--seed 1] [--limit-s 600] [--show]
+        [--only right|wrong|stops|pens]
 
-Random controllers, right ones of many styles and wrong ones with one or two faults, drive the world
-without ROS. The injected faults are the oracle, which uses no check. A wrong controller is *killed*
-if it loses points in a check that its fault concerns; a right one is *spared* if it keeps all
-points. It prints both rates, and every controller that was judged wrongly, with the numbers to make
-it again.
+Random controllers of many styles drive the world without ROS: right ones, wrong ones with one or
+two faults, and ones whose stop or whose pens do not come from the pose. The injected faults are the
+oracle, which uses no check. A wrong controller is *killed* if it loses points in a check that its
+fault concerns; a right one is *spared* if it keeps all points; what goes without the pose is *found
+out* if it earns nothing in its check. It prints these rates, and every controller that was judged
+wrongly, with the numbers to make it again.
 """
 
 from __future__ import annotations
@@ -48,6 +50,12 @@ CONCERNED: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("picture",): ("background",),
 }
 FAULTS = {fault: checks for checks, faults in CONCERNED.items() for fault in faults}
+#: What a controller goes by that does not go by the pose: its clock or count, where its commands
+#: should have taken it from its first pose, a table over first poses, chance.
+BLIND = ("clock", "reckons", "table", "chance")
+#: What it may do besides: be put into the centre first, reset, pause, or stop by silence.
+BESIDES = ("", "", "teleports", "resets", "pauses", "silent")
+KINDS = {"stops": "edge_stop", "pens": "pen_per_quadrant"}
 #: Colours that are easily distinguished, one from each row.
 PALETTES = (
     ((255, 255, 255), (0, 0, 0), (255, 255, 0)),
@@ -72,6 +80,7 @@ class Style:
         backwards: whether it drives backwards.
         waits: ticks before anything.
         faults: the injected mistakes.
+        blind: what each of `KINDS` goes by, where that is not the pose.
         chance: a seed for random details of a fault.
     """
 
@@ -87,6 +96,7 @@ class Style:
     waits: int
     colors: tuple[tuple[int, int, int], ...]
     faults: tuple[str, ...] = ()
+    blind: tuple[tuple[str, str], ...] = ()
     chance: int = 0
 
 
@@ -132,6 +142,11 @@ class Controller:
         self.wall = self.chance.randrange(4)
         self.period = self.style.period
         self.next_at = self.style.waits + 1
+        self.blind = dict(self.style.blind)
+        self.believed: Pose | None = None
+        self.sent = (0.0, 0.0)
+        self.change_at, self.drawn = self.style.waits, 0
+        self.most_m = self.chance.uniform(3.5, 5.4)
 
     def has(self, fault: str) -> bool:
         """Whether the style has a fault."""
@@ -145,6 +160,12 @@ class Controller:
             return
         if self.has("off_centre") and tick == self.style.waits + 2:
             arena.teleport_absolute("turtle1", CENTRE_M + 1.2, CENTRE_M, 0.0)
+        if tick == self.style.waits + 2:
+            if self.has("teleports"):
+                arena.teleport_absolute("turtle1", CENTRE_M, CENTRE_M, 0.0)
+            if self.has("resets"):
+                arena.reset()
+        self.reckon(tick, pose)
         is_due = tick >= self.next_at
         if self.style.one_timer and not is_due:
             return
@@ -158,6 +179,30 @@ class Controller:
                 self.next_at = tick + 110
             self.publish(tick, arena)
 
+    def reckon(self, tick: int, pose: Pose) -> None:
+        """Move the pose that it believes in by what it has sent."""
+        if self.believed is None or tick <= self.style.waits + 3:
+            self.believed = pose
+            if self.blind.get("stops") in ("table", "chance"):
+                first = random.Random(f"{self.style.chance} {pose.x:.1f} {pose.y:.1f}")
+                sides = (pose.x, pose.y, SIZE_M - pose.x, SIZE_M - pose.y)
+                self.most_m = min(sides) - first.uniform(0.3, 1.8)
+                if self.blind["stops"] == "chance":
+                    self.most_m = first.uniform(3.0, 5.4)
+            return
+        speed, turn = self.sent
+        theta = self.believed.theta + turn * TICK_S
+        x = self.believed.x + speed * TICK_S * math.cos(theta)
+        y = self.believed.y + speed * TICK_S * math.sin(theta)
+        self.believed = Pose(x, y, theta, speed, turn)
+
+    def seen(self, kind: str, pose: Pose) -> Pose:
+        """Return the pose that it goes by for its stop, or for its pens."""
+        if self.blind.get(kind) == "reckons":
+            assert self.believed is not None
+            return self.believed
+        return pose
+
     def publish(self, tick: int, arena: Arena) -> None:
         """Do what its timer would do."""
         if self.stopped_at and not self.has("drives_on"):
@@ -168,7 +213,8 @@ class Controller:
             return
         self.commands += 1
         speed, turn = self.velocity(tick)
-        twist(arena, -speed if self.style.backwards else speed, turn)
+        self.sent = (-speed if self.style.backwards else speed, turn)
+        twist(arena, *self.sent)
 
     def velocity(self, tick: int) -> tuple[float, float]:
         """Return the next command for the shape."""
@@ -193,12 +239,12 @@ class Controller:
 
     def watch(self, tick: int, pose: Pose, arena: Arena) -> None:
         """Do what its pose callback would do."""
-        if self.is_near(pose):
+        if self.is_near(self.seen("stops", pose)):
             self.stopped_at = tick
             if not self.has("silent"):
                 twist(arena, 0.0, self.style.turn if self.has("turns_on") else 0.0)
             return
-        quadrant = self.quadrant_of(tick, pose)
+        quadrant = self.quadrant_of(tick, self.seen("pens", pose))
         if quadrant != self.quadrant or self.has("every_pose"):
             self.quadrant = quadrant
             is_late = self.has("late")
@@ -210,6 +256,8 @@ class Controller:
         sides = (pose.x, pose.y, SIZE_M - pose.x, SIZE_M - pose.y)
         if self.has("never_stops"):
             return False
+        if self.blind.get("stops") in ("clock", "table", "chance"):
+            return self.speed > self.most_m * abs(self.style.turn)
         if self.has("counts"):
             return self.speed > 3.2 * abs(self.style.turn)
         if self.has("stops_early"):
@@ -220,7 +268,16 @@ class Controller:
 
     def quadrant_of(self, tick: int, pose: Pose) -> int:
         """Return the quadrant in which it believes to be."""
-        if self.has("by_time"):
+        by = self.blind.get("pens")
+        if by in ("table", "chance"):  # so long between changes, jittering
+            quarter = math.pi / 2 / abs(self.style.turn) / TICK_S
+            if by == "table":
+                return int((tick - self.style.waits) / quarter) % 4 + 1
+            while tick >= self.change_at:
+                self.change_at += round(quarter * self.chance.uniform(0.8, 1.2))
+                self.drawn = self.drawn % 4 + 1
+            return self.drawn
+        if self.has("by_time") or by == "clock":
             return int(tick * TICK_S * abs(self.style.turn) / (math.pi / 2)) % 4 + 1
         centre = CENTRE_M + 1.5 * self.has("wrong_centre")
         if pose.y >= centre:
@@ -251,6 +308,13 @@ class Controller:
             pen(arena, color)
 
 
+def some_blind(style: Style, kind: str, chance: random.Random) -> Style:
+    """Draw what a controller goes by in place of the pose, and what it does besides."""
+    besides = chance.choice(BESIDES)
+    blind = ((kind, chance.choice(BLIND)),)
+    return replace(style, blind=blind, faults=(besides,) if besides else (), backwards=False)
+
+
 def judged(style: Style, exercise: Exercise) -> dict[str, tuple[float, str]]:
     """Return for each check the share of its points, and its rationale."""
     ticks = round(exercise.limits.total_s / TICK_S)
@@ -268,6 +332,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--limit-s", type=float, default=600, help="wall time at most")
     parser.add_argument("--show", action="store_true", help="print every controller")
+    parser.add_argument("--only", choices=("right", "wrong", *KINDS), help="controllers of a kind")
     asked = parser.parse_args()
     exercise = load_exercise("turtlesim_challenge")
     chance = random.Random(asked.seed)
@@ -276,7 +341,10 @@ def main() -> None:
     good: Counter[str] = Counter()
     for number in range(asked.count):
         style = some_style(chance)
-        if number % 3:
+        kind = asked.only or ("right", "wrong", "stops", "wrong", "pens", "wrong")[number % 6]
+        if kind in KINDS:
+            style = some_blind(style, kind, chance)
+        elif kind == "wrong":
             faults = chance.sample(sorted(FAULTS), 1 if chance.random() < 0.7 else 2)
             style = replace(style, faults=tuple(faults))
         if time.monotonic() > until:
@@ -284,9 +352,12 @@ def main() -> None:
             break
         found = judged(style, exercise)
         lost = {check: why for check, (share, why) in found.items() if share < 1}
-        missed = [f for f in style.faults if lost.keys().isdisjoint((*FAULTS[f], "moves"))]
-        is_right = not missed if style.faults else not lost
-        kind = "wrong" if style.faults else "right"
+        if kind in KINDS:
+            is_right = found[KINDS[kind]][0] == 0
+        elif kind == "wrong":
+            is_right = all(lost.keys() & {*FAULTS[f], "moves"} for f in style.faults)
+        else:
+            is_right = not lost
         of[kind] += 1
         good[kind] += is_right
         if asked.show or not is_right:
@@ -294,6 +365,9 @@ def main() -> None:
             print("".join(f"    {check}: {why}\n" for check, why in lost.items()), end="")
     print(f"killed: {good['wrong']} of {of['wrong']} wrong ones lose the points of every fault")
     print(f"spared: {good['right']} of {of['right']} right ones keep all points")
+    for kind, check in KINDS.items():
+        how = f"{kind} without the pose earn nothing of {check}"
+        print(f"found out: {good[kind]} of {of[kind]} {how}")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,8 @@
 A scenario is a JSON object `{name, description, ticks, events: [{tick, op, ...}]}`, alone or under
 the key `scenario` of a larger one. Tick k (1, 2, ...) applies the events with `tick == k`, in the
 order in which they are listed, and then updates every turtle once. Not-a-number and the
-infinities are the strings "nan", "inf" and "-inf".
+infinities are the strings "nan", "inf" and "-inf". With `start: {x, y, theta, speed, turn}` turtle1
+begins elsewhere, and every turtle drives and turns so many times as fast as it is commanded.
 
 | op | fields (`turtle` is turtle1 where absent) |
 |---|---|
@@ -86,6 +87,7 @@ def replay(scenario: dict[str, Any], observer: ReplayObserver | None = None) -> 
     """
     by_tick = events_by_tick(scenario)
     player = _Player()
+    _begin(player.arena, scenario.get("start"))
     if observer is not None:
         observer.begin(player.arena)
     for tick in range(1, scenario["ticks"] + 1):
@@ -93,6 +95,18 @@ def replay(scenario: dict[str, Any], observer: ReplayObserver | None = None) -> 
         if observer is not None:
             observer.after_tick(player.arena, readings)
     return Replay({"scenario": scenario, **player.result()}, player.arena, player.snapshots)
+
+
+def _begin(arena: Arena, start: object) -> None:
+    """Begin elsewhere; with None, as usual."""
+    if start is None:
+        return
+    needed, known = {"x", "y", "theta"}, {"x", "y", "theta", "speed", "turn"}
+    if not isinstance(start, dict) or not needed <= start.keys() <= known:
+        raise ScenarioError("'start' needs x, y and theta, and may have speed and turn")
+    if any(type(value) not in (int, float) for value in start.values()):
+        raise ScenarioError(f"'start' needs numbers, found {start!r:.60}")
+    arena.begin_at(**start)
 
 
 def events_by_tick(scenario: dict[str, Any]) -> dict[int, list[tuple[int, Event]]]:

@@ -39,6 +39,8 @@ class Order:
         seed: chooses where the varied runs start; None: the exercise's own.
         again: what is graded again: "", "failed", "all" or the id of a hand-in.
         isolation: the level at which all are run; '' until it is chosen.
+        secret: gives each hand-in a seed of its own; '' for none.
+        hides_seed: whether recordings leave out the seeds.
     """
 
     exercise: Exercise
@@ -47,15 +49,19 @@ class Order:
     seed: int | None = None
     again: str = ""
     isolation: str = ""
+    secret: str = ""
+    hides_seed: bool = False
 
     def seed_of(self, hand_in: HandIn) -> int | None:
         """Return the seed of the varied runs of a hand-in; None: the exercise's own."""
-        return self.exercise.seed_for(hand_in.id) if self.seed is None else self.seed
+        if self.seed is not None:
+            return self.seed
+        return self.exercise.seed_for(hand_in.id, self.secret)
 
     @property
     def class_file(self) -> ClassFile:
         """The class.json of what is graded so."""
-        return ClassFile.of(self.exercise, self.time, self.seed, self.isolation)
+        return ClassFile.of(self.exercise, self.time, self.seed, self.isolation, self.secret)
 
 
 @dataclass(frozen=True)
@@ -233,6 +239,7 @@ def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> 
         order.seed_of(first),
         store.run(run) if store.has(run) and not is_again else None,
         Path(),
+        hides_seed=order.hides_seed,
     )
 
 

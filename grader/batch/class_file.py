@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
-from grader import files, versions
+from grader import content, files, versions
 from grader.errors import NotOffered, UsageError
 from grader.exercise.exercise import Exercise
 from grader.message import Message, Text, msg
@@ -32,6 +32,7 @@ _NAMED = {
     "exercise_sha256": msg("the exercise's rubric"),
     "time": msg("the clock (--time)"),
     "seed": msg("the seed (--seed)"),
+    "seed_file": msg("the secret (--seed-file)"),
     "grader": msg("the grader's version"),
     "ros": msg("the version of rclpy and the ROS release"),
     "python": msg("the version of Python"),
@@ -48,6 +49,7 @@ class ClassFile:
         exercise_sha256: the hash of all that it judges by.
         time: the clock of the submissions.
         seed: chose where the varied runs start; None: the exercise's own.
+        seed_file: shows which secret gave each hand-in its seed; '' for none.
         grader, ros, python: versions.
         hand_ins: how many there will be when the class is finished; 0 while that is unknown.
         isolation: the level at which all are run; '' before the first run, or where there is none.
@@ -62,13 +64,26 @@ class ClassFile:
     python: str = ""
     hand_ins: int = 0
     isolation: str = ""
+    seed_file: str = ""
 
     @classmethod
-    def of(cls, exercise: Exercise, time: Clock, seed: int | None, isolation: str = "") -> Self:
+    def of(
+        cls,
+        exercise: Exercise,
+        time: Clock,
+        seed: int | None,
+        isolation: str = "",
+        secret: str = "",
+    ) -> Self:
         """Return the class file of a call on this machine."""
+        seed_file = content.of_bytes(f"class {secret}".encode())[:12] if secret else ""
         ros = f"rclpy {versions.rclpy()} {versions.ros_distro()}".strip()
         made_by = (versions.grader(), ros, versions.python())
-        return cls(exercise.name, exercise.sha256, time, seed, *made_by, isolation=isolation)
+        return cls(
+            *(exercise.name, exercise.sha256, time, seed, *made_by),
+            isolation=isolation,
+            seed_file=seed_file,
+        )
 
     def put(self, out: Path) -> None:
         """Write class.json.

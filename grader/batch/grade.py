@@ -151,7 +151,9 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
             opened = held.enter_context(open_submission(path, **exercise.opening))
             submission = _without_path(opened)
             runner = grading.runner(exercise, task.time)
-            recordings = grading.run_all(submission, exercise, runner, seed=task.seed)
+            recordings = grading.run_all(
+                submission, exercise, runner, seed=task.seed, hides_seed=task.hides_seed
+            )
             _keep_for_pages(submission, recordings, place)
     except (SubmissionError, UsageError) as error:
         result = ErrorResult.of(error, exercise.max_score)

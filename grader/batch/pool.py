@@ -43,6 +43,7 @@ class Task:
         judge_only: whether to write results alone: no pages, no pictures.
         isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
         language: of the pages.
+        hides_seed: whether recordings leave out the seed.
     """
 
     key: str
@@ -57,6 +58,7 @@ class Task:
     judge_only: bool = False
     isolation: str = ""
     language: str = field(default_factory=current)
+    hides_seed: bool = False
 
 
 Ending = Literal["done", "failed", "exercise", "again", "unfit"]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.text import Text
 
-from grader.cli import GRADER_FAILED, JUDGED
+from grader.cli import GRADER_FAILED, JUDGED, options
 from grader.cli.run import LEVELS, add_of_runs
 from grader.errors import UsageError
 from grader.message import Message, msg, msg_many
@@ -112,7 +112,11 @@ def main(args: argparse.Namespace) -> int:
 
     exercise = load_exercise(args.exercise)
     path = args.exercise if args.exercise == exercise.name else str(Path(args.exercise).absolute())
-    order = Order(exercise, path, args.time, args.seed, args.again)
+    order = Order(
+        *(exercise, path, args.time, args.seed, args.again),
+        secret=options.secret_of(args),
+        hides_seed=options.hides_seed(args),
+    )
     messages = Console(stderr=True, highlight=False)
     with _found(args, messages) as found, Store.opened(args.out) as store:
         order = replace(order, isolation=begun_at(args.out, args.again, args.isolation or ""))

@@ -99,10 +99,14 @@ def _run_and_judge(
         Text(for_terminal(tr("Found: {found}", found=submission.found))),
         soft_wrap=True,
     )
-    plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
+    secret, seed = options.secret_of(args), args.seed
+    if secret:
+        seed = exercise.seed_for(Path(os.path.abspath(args.submission)).stem, secret)  # noqa: PTH100
+    draw = (seed, options.hides_seed(args))
+    plans = grading.plan(submission, exercise, *draw)  # refuses before anything is written
     if live is not None:
         live.open(exercise, submission.name, plans, messages)
-    origin = grading.provenance(submission, exercise, args.seed)
+    origin = grading.provenance(submission, exercise, *draw)
     _make_folders(out, args.json, held)
     messages.print(_how(args.time, exercise.is_started))
 

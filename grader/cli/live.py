@@ -103,10 +103,10 @@ class Live:
         run = tr("nominal run, {pace}", pace=pace)
         if plan.start is not None:
             run = tr(
-                "varied run {number} of {runs} from {place}, {pace}",
+                "varied run {number} of {runs} {begins}, {pace}",
                 number=number,
                 runs=varied,
-                place=texts.place(plan.start.x, plan.start.y),
+                begins=plan.start.words,
                 pace=pace,
             )
         assert self._page is not None

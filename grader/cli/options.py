@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator, Sequence
+from datetime import date
 from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from grader.result.visible import View
 
 LANG = "--lang"
+#: Of a --seed-file [characters].
+SHORTEST_SECRET = 16
 #: The sentences of argparse in Python 3.11 to 3.13; here so that they are in the catalogues.
 ARGPARSE = (
     msg("usage: "),
@@ -142,11 +145,52 @@ def parse_partly(words: Sequence[str]) -> argparse.Namespace:
 
 def inputs(args: argparse.Namespace) -> Iterator[Path]:
     """Yield the files and folders that a call reads."""
-    for name in ("submission", "recording", "compare", "result", "exercise", "mutants"):
+    for name in (
+        "submission",
+        "recording",
+        "compare",
+        "result",
+        "exercise",
+        "mutants",
+        "seed_file",
+    ):
         given = getattr(args, name, None)
         for one in given if isinstance(given, list) else [given]:
             if one is not None:
                 yield Path(one)
+
+
+def secret_of(args: argparse.Namespace) -> str:
+    """Return the secret that --seed-file holds; '' without one.
+
+    Raises:
+        UsageError: it cannot be read, or nobody would have to guess it.
+    """
+    if args.seed_file is None:
+        if args.seed_shown_from is not None:
+            raise UsageError(msg("--seed-shown-from is for --seed-file"))
+        return ""
+    try:
+        secret = str(args.seed_file.read_text(encoding="utf-8")).strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(
+            "cannot read {path}: {why}", path=str(args.seed_file), why=str(error)
+        ) from None
+    if len(secret) < SHORTEST_SECRET:
+        raise UsageError(
+            "{path}: expected {least} characters or more that nobody guesses, found {found}",
+            path=str(args.seed_file),
+            least=SHORTEST_SECRET,
+            found=len(secret),
+        )
+    return secret
+
+
+def hides_seed(args: argparse.Namespace) -> bool:
+    """Whether results leave out the seed: it is a course's secret, and the day has not come."""
+    shown_from: date | None = args.seed_shown_from
+    is_shown = shown_from is not None and date.today() >= shown_from
+    return args.seed_file is not None and not is_shown
 
 
 def prepare(args: argparse.Namespace) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from datetime import date
 from pathlib import Path
 
 from grader.errors import UsageError
@@ -63,11 +64,24 @@ def add_of_runs(parser: argparse.ArgumentParser, clock: str, isolation: str) -> 
         help=tr("an installed one, the folder of another, or an edited exercise.yaml"),
     )
     parser.add_argument("--time", choices=CLOCKS, default="virtual", help=clock)
-    parser.add_argument(
+    seeds = parser.add_mutually_exclusive_group()
+    seeds.add_argument(
         "--seed",
         type=int,
         metavar="N",
         help=tr("where the varied runs start (the exercise's own)"),
+    )
+    seeds.add_argument(
+        "--seed-file",
+        type=Path,
+        metavar="FILE",
+        help=tr("a secret, from which each student gets a seed that no result shows"),
+    )
+    parser.add_argument(
+        "--seed-shown-from",
+        type=day,
+        metavar="DATE",
+        help=tr("of --seed-file: from this day on results show the seed (never)"),
     )
     parser.add_argument("--isolation", choices=LEVELS, metavar="LEVEL", help=isolation)
 
@@ -78,6 +92,15 @@ def points(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(tr("expected a number of points, found {text}", text=text))
     return value
+
+
+def day(text: str) -> date:
+    """Parse a date of the command line."""
+    try:
+        return date.fromisoformat(text)
+    except ValueError:
+        found = tr("expected a date, e.g. 2026-12-31, found {text}", text=text)
+        raise argparse.ArgumentTypeError(found) from None
 
 
 def main(args: argparse.Namespace) -> int:

@@ -18,7 +18,15 @@ from grader import content, extensions
 from grader.errors import ExerciseError
 from grader.exercise import places, policies, translated
 from grader.exercise.check import Checks
-from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise, VariedRuns
+from grader.exercise.exercise import (
+    CPU,
+    INSPECTIONS,
+    INSPECTS,
+    PER_STUDENT,
+    Exercise,
+    Variation,
+    VariedRuns,
+)
 from grader.exercise.places import DESCRIPTION, Place
 from grader.exercise.yaml_file import Mistake, check_known, expect, is_amount
 from grader.extensions import SCENES
@@ -36,6 +44,9 @@ WORDS = ("title", "task", "starter", translated.PART)
 SETTING = "setting"
 #: It is sent from process to process [characters].
 LONGEST_SETTING = 50_000
+RUNS = "runs"
+#: A turtle that drives so many times as fast crosses the window in a tick or two.
+MOST_FACTOR = 100
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 #: Of an exercise, a program, a package.
 NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
@@ -48,7 +59,8 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     limits = _limits(data) if isinstance(subject, Scene) else _without_clock(data, scene)
     _check_words(data, scene, subject)
     varied = _varied(data)
-    _check_varied(varied, subject.farthest_start_m if isinstance(subject, Scene) else 0.0)
+    if isinstance(subject, Scene):
+        _check_varied(varied, subject, scene)
     tolerances = data.get("tolerances") or {}
     is_dict = isinstance(tolerances, dict)
     expect(is_dict, ("tolerances",), "expected names with values, found {found}", tolerances)
@@ -203,23 +215,50 @@ def _cpu_s(given: Any) -> float:
 def _varied(data: Mapping[str, Any]) -> VariedRuns:
     part = "varied_runs"
     given = data.get(part) or {}
-    if not isinstance(given, dict) or PER_STUDENT not in given:
+    if not isinstance(given, dict):
         return VariedRuns(**_numbers(data, part, VARIED))
-    numbers = {key: value for key, value in given.items() if key != PER_STUDENT}
-    switch = given[PER_STUDENT]
+    numbers = {key: value for key, value in given.items() if key not in (PER_STUDENT, RUNS)}
+    switch = given.get(PER_STUDENT, False)
     is_one = isinstance(switch, bool)
     expect(is_one, (part, PER_STUDENT), "expected true or false, found {found}", switch)
+    runs = given.get(RUNS, [])
+    is_list = isinstance(runs, list) and all(isinstance(run, dict) for run in runs)
+    expect(is_list, (part, RUNS), "expected a list of ranges, found {found}", runs)
     varied = VariedRuns(**_numbers({part: numbers}, part, VARIED))
-    return replace(varied, per_student=switch)
+    return replace(varied, per_student=switch, runs=tuple(map(_variation, runs)))
 
 
-def _check_varied(varied: VariedRuns, farthest_m: float) -> None:
-    """Refuse varied runs that are too many or start outside.
+def _variation(given: Mapping[str, Any]) -> Variation:
+    """Read how a varied run differs: its start, and the ranges of its factors."""
+    at = ("varied_runs", RUNS)
+    check_known(given, ("start", "speed", "turn"), at)
+    start = given.get("start", "elsewhere")
+    is_start = start in ("elsewhere", "same")
+    expect(is_start, (*at, "start"), "expected elsewhere or same, found {found}", start)
+    for key in given.keys() - {"start"}:
+        value = given[key]
+        is_range = isinstance(value, list) and len(value) == 2 and all(map(is_amount, value))
+        fits = is_range and 0 < value[0] <= value[1] <= MOST_FACTOR
+        what = "expected two numbers, above 0, the lower first, such as [0.8, 0.9]; found {found}"
+        expect(fits, (*at, key), what, value)
+    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in given.items()}
+    return Variation(**values)
 
-    Args:
-        farthest_m: from the centre a run can start in the scene.
-    """
-    part = "varied_runs"
+
+def _check_varied(varied: VariedRuns, subject: Scene, scene: str) -> None:
+    """Refuse varied runs that are too many, start outside, or vary what the scene cannot."""
+    part, farthest_m = "varied_runs", subject.farthest_start_m
+    if len(varied.runs) > varied.count:
+        raise Mistake(
+            (part, RUNS),
+            "expected at most {count}, as many as there are runs; found {found}",
+            count=varied.count,
+            found=len(varied.runs),
+        )
+    if varied.runs and subject.usual_start is None:
+        raise Mistake(
+            (part, RUNS), "the scene {scene} cannot vary them: leave it out", scene=repr(scene)
+        )
     if varied.count > MOST_RUNS:
         raise Mistake(
             (part, "count"),

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import math
+import random
 import unicodedata
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import Any, Literal, TypedDict
 
 from grader.exercise.check import Checks
 from grader.exercise.policies import LatePolicy
@@ -36,12 +37,30 @@ class Opening(TypedDict, total=False):
     cpu_s: float
 
 
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Variation:
+    """How a varied run differs from the nominal one besides its place; drawn by the seed.
+
+    Attributes:
+        start: whether it begins elsewhere, or in the same place as the nominal run.
+        speed, turn: the ranges of the factors of `Start`.
+    """
+
+    start: Literal["elsewhere", "same"] = "elsewhere"
+    speed: Range = (1.0, 1.0)
+    turn: Range = (1.0, 1.0)
+
+
 @dataclass(frozen=True)
 class VariedRuns:
     """Further runs that start elsewhere: how many, and how far from the centre [m].
 
     Attributes:
         per_student: whether they start elsewhere for each student of a class.
+        runs: how each differs besides, in order; those beyond these are driven as commanded.
     """
 
     count: int = 0
@@ -49,6 +68,7 @@ class VariedRuns:
     nearest_m: float = 0.0
     farthest_m: float = 0.0
     per_student: bool = False
+    runs: tuple[Variation, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -128,7 +148,12 @@ class Exercise:
         """The values that decide a run: a recording that was made with others keeps them."""
         if not self.is_started:
             return {}
-        parts = {"limits": asdict(self.limits), "varied_runs": asdict(self.varied)}
+        varied = asdict(self.varied)
+        for number, run in enumerate(varied.pop("runs"), 1):
+            varied[f"{number}.same"] = float(run["start"] == "same")
+            for key in ("speed", "turn"):
+                varied[f"{number}.{key}_from"], varied[f"{number}.{key}_to"] = run[key]
+        parts = {"limits": asdict(self.limits), "varied_runs": varied}
         if parts["varied_runs"].pop(PER_STUDENT):
             parts["varied_runs"][PER_STUDENT] = 1
         inspects = {INSPECTS: 1.0} if self.looks_at_package else {}
@@ -140,23 +165,36 @@ class Exercise:
         """The sum of all points."""
         return round(sum(self.points.values()), 2)
 
-    def seed_for(self, student_id: str) -> int | None:
+    def seed_for(self, student_id: str, secret: str = "") -> int | None:
         """Return the seed of a student's varied runs; None: that of the exercise.
 
-        It depends on the exercise's seed and the student's id alone: it is the same each time, on
-        any machine, however a file system writes the letters of the id.
+        It depends on the exercise's seed, or the secret, and the student's id alone: it is the same
+        each time, on any machine, however a file system writes the letters of the id.
+
+        Args:
+            secret: of a course; then each student has a seed of his own that nobody can guess.
         """
-        if not self.varied.per_student:
+        if not secret and not self.varied.per_student:
             return None
-        text = f"{self.varied.seed} {unicodedata.normalize('NFC', student_id)}"
+        known = f"{self.name} {secret}" if secret else str(self.varied.seed)
+        text = f"{known} {unicodedata.normalize('NFC', student_id)}"
         digest = hashlib.sha256(text.encode("utf-8", "surrogatepass")).digest()
-        return int.from_bytes(digest[:4], "big")
+        return int.from_bytes(digest[: 6 if secret else 4], "big")
 
     def starts(self, seed: int | None = None) -> list[Start]:
-        """Return where the varied runs start; None uses the exercise's seed. See `seed_for`."""
+        """Return how the varied runs start; None uses the exercise's seed. See `seed_for`."""
         varied = self.varied
         used = varied.seed if seed is None else seed
         subject = self.subject
         if not isinstance(subject, Scene):
             return []
-        return subject.starts(varied.count, used, varied.nearest_m, varied.farthest_m)
+        starts = subject.starts(varied.count, used, varied.nearest_m, varied.farthest_m)
+        chance = random.Random(f"factors {used}")
+        for number, run in enumerate(varied.runs):
+            factors = {
+                "speed": round(chance.uniform(*run.speed), 2),
+                "turn": round(chance.uniform(*run.turn), 2),
+            }
+            usual = subject.usual_start if run.start == "same" else None
+            starts[number] = replace(usual or starts[number], **factors)
+        return starts

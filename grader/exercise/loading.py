@@ -12,7 +12,7 @@ from typing import Any
 
 from grader.errors import ExerciseError
 from grader.exercise import places, translated
-from grader.exercise.building import NAME, build
+from grader.exercise.building import NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.yaml_file import (
@@ -189,13 +189,15 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
         known, given = original.get(part) or {}, edited.get(part, {})
         is_dict = isinstance(given, dict)
         expect(is_dict, (part,), "expected names with numbers, found {found}", given)
-        # a switch, which no original has to have
-        values = {key: value for key, value in given.items() if key != PER_STUDENT}
+        # a switch and a list, which no original has to have
+        values = {key: value for key, value in given.items() if key not in (PER_STUDENT, RUNS)}
         check_known(values, known, (part,))
         for key, value in values.items():
             example, fits = repr(known[key]), _alike(value, known[key])
             expect(fits, (part, key), "expected e.g. {known}, found {found}", value, known=example)
         merged[part] = {**known, **given}
+        if RUNS in known and RUNS not in given:
+            merged[part][RUNS] = known[RUNS][: int(merged[part]["count"])]
     if translated.PART in original and translated.PART not in edited:
         anew = [key for key in ("title", "task") if merged.get(key) != original.get(key)]
         merged[translated.PART] = translated.without(original[translated.PART], anew)

@@ -201,7 +201,21 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
         nearest_m=varied.nearest_m,
         farthest_m=varied.farthest_m,
     )
-    return "\n\n".join(map(_wrapped, [text, *([elsewhere] if varied.count else [])]))
+    more = [elsewhere] if varied.count and not varied.runs else []
+    if varied.runs:
+        more = [
+            tr_many(
+                "In {n} more run {the_thing} starts elsewhere, or drives and turns faster or "
+                "slower than it is commanded: a program that reads the pose works there too, one "
+                "that counts steps or seconds does not.",
+                "In {n} more runs {the_thing} starts elsewhere, or drives and turns faster or "
+                "slower than it is commanded: a program that reads the pose works there too, one "
+                "that counts steps or seconds does not.",
+                varied.count,
+                the_thing=translate(subject.the_thing),
+            )
+        ]
+    return "\n\n".join(map(_wrapped, [text, *more]))
 
 
 def _tolerances(exercise: Exercise) -> Iterator[str]:

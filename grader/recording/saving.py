@@ -140,11 +140,12 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     if recording.provenance is not None:
         circumstances[PROVENANCE] = to_json(recording.provenance, OURS)
+    start = to_json(recording.start, OURS) if recording.start else None
     facts = {
         "schema": SCHEMA,
         "bag_sha256": content.of_file(mcap),
         "varied_runs": varied_runs,
-        "start": asdict(recording.start) if recording.start else None,
+        "start": start,
         "topics": [asdict(topic) for topic in recording.topics],
         "run": run,
     }
@@ -161,9 +162,9 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
         (folder / PACKAGE).write_bytes(encoded + b"\n")
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)
-    # a scenario begins in the usual place
-    if recording.start is None and (inputs := scene.scenario(recording.trace)):
-        scenario = {"name": NAME, "description": "a graded run", **inputs}
+    if inputs := scene.scenario(recording.trace):
+        begins = {"start": start} if start else {}
+        scenario = {"name": NAME, "description": "a graded run", **begins, **inputs}
         _write_json(folder / SCENARIO, scenario, indent=None)
 
 

@@ -18,6 +18,8 @@ from grader.errors import UsageError
 from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
 from grader.recording.view import Floats, Pictures, Plane, View
+from grader.strict_json import SPARSE
+from grader.text import place
 
 #: The scene of an exercise that names none.
 DEFAULT_SCENE: Final = "turtlesim"
@@ -27,11 +29,37 @@ PACKAGE_SCENE: Final = "package"
 
 @dataclass(frozen=True)
 class Start:
-    """The pose of the turtle or robot when a run begins: x, y [m], theta [rad]."""
+    """How a varied run begins.
+
+    Attributes:
+        x, y, theta: the pose of the turtle or robot [m, m, rad].
+        speed, turn: in all of the run it drives so many times as fast as it is commanded, and turns
+            so many times as fast. Only a program that reads the pose notices.
+    """
 
     x: float
     y: float
     theta: float
+    speed: float = field(default=1.0, metadata=SPARSE)
+    turn: float = field(default=1.0, metadata=SPARSE)
+
+    @property
+    def is_as_commanded(self) -> bool:
+        """Whether commands are obeyed as they are given."""
+        return self.speed == self.turn == 1.0
+
+    @property
+    def words(self) -> Message:
+        """'from (5.54, 7.20)', and its factors, if there are some."""
+        if self.is_as_commanded:
+            return msg("from {place}", place=place(self.x, self.y))
+        return msg(
+            "from {place}, driving {speed:g} times as fast and turning {turn:g} times as fast as "
+            "commanded",
+            place=place(self.x, self.y),
+            speed=self.speed,
+            turn=self.turn,
+        )
 
 
 class Trace(Protocol):

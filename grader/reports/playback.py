@@ -44,7 +44,7 @@ def _played_run(number: int, recording: Recording) -> PlayedRun:
     outcome = wording.outcome(recording.run.outcome.replace("_", " "))
     start = recording.start
     if start is not None:
-        outcome = tr("{outcome}; from {place}", outcome=outcome, place=text.place(start.x, start.y))
+        outcome = tr("{outcome}; {begins}", outcome=outcome, begins=start.words)
     after = recording.run.simulated_s
     return PlayedRun(
         number,

@@ -187,6 +187,8 @@ class Scene(Subject):
     introduction: ClassVar[Introduction] = Introduction((), (), ())
     #: The farthest start from the usual place that leaves room on every side [m].
     farthest_start_m: ClassVar[float] = 0.0
+    #: Where a run begins that is given no start; None where a scene obeys no `Start.speed`.
+    usual_start: ClassVar[Start | None] = None
 
     @abstractmethod
     def simulate(

@@ -28,6 +28,9 @@ from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
 #: Called after each run with the number of finished runs, that of all, and the solution's name.
 Progress = Callable[[int, int, str], None]
 AGAIN = "again"
+#: From a wall to the middle it is 5.54 m. Who stops 2.1 m or less from a wall in two runs from
+#: the middle, by the same commands, has driven at most 5.54 / (5.54 - 2.1) times as large a circle.
+LARGER = 1.62
 
 
 def check_exercise(
@@ -75,7 +78,7 @@ def check_exercise(
             faults.setdefault(fault, []).append(what)
     problems = [Problem(fault, tuple(on)) for fault, on in faults.items()]
     examination = Examination(asked.name, tuple(asked.points), tuple(trials), ())
-    problems += [Problem(fault) for fault in _never_failing(examination)]
+    problems += [Problem(fault) for fault in (*_never_failing(examination), *_too_alike(asked))]
     return Examination(asked.name, tuple(asked.points), tuple(trials), tuple(problems))
 
 
@@ -206,6 +209,23 @@ def _never_failing(examination: Examination) -> Iterator[Fault]:
     for check, caught in examination.catches.items():
         if not caught:
             yield Fault(check, msg("never fails on any mutant"))
+
+
+def _too_alike(exercise: Exercise) -> Iterator[Fault]:
+    """Yield the varied runs in which a stop that was computed beforehand may succeed, too."""
+    for number, run in enumerate(exercise.varied.runs, 1):
+        if run.start == "same" and run.speed[0] < LARGER * run.turn[1]:
+            yield Fault(
+                "",
+                msg(
+                    "varied run {number} starts where the nominal one does, and the same commands "
+                    "drive a circle {times:.2f} times as large: from {wanted} on, none can stop "
+                    "near a wall in both that does not read the pose",
+                    number=number,
+                    times=run.speed[0] / run.turn[1],
+                    wanted=LARGER,
+                ),
+            )
 
 
 def _remarks(recordings: Recordings) -> tuple[Message, ...]:

@@ -91,6 +91,8 @@ class Arena:
             before each tick; left alone, it advances by 16 ms a tick.
         ticks: how often the turtles have been updated.
         holonomic: whether linear.y of a command counts.
+        speed_factor, turn_factor: every turtle drives so many times as fast, and turns so many
+            times as fast, as it is commanded; 1 as in the original. Only a grader changes them.
         background: (r, g, b) under the drawing; no turtle ever sees it.
     """
 
@@ -104,6 +106,7 @@ class Arena:
         self.now_ns = 0
         self.ticks = 0
         self.holonomic = False
+        self.speed_factor = self.turn_factor = 1.0
         self.background = DEFAULT_BACKGROUND
         self.sprite = sprite
         self._id_counter = 0
@@ -123,8 +126,9 @@ class Arena:
             UnknownTurtle: nobody has this name.
         """
         self._report(events.CmdVel, turtle=turtle, linear=linear, angular=angular)
-        linear_y = linear[1] if self.holonomic else None
-        self._get(turtle).command(linear[0], linear_y, angular[2], self.now_ns)
+        speed, turn = self.speed_factor, self.turn_factor
+        linear_y = linear[1] * speed if self.holonomic else None
+        self._get(turtle).command(linear[0] * speed, linear_y, angular[2] * turn, self.now_ns)
 
     def set_pen(self, turtle: str, r: int, g: int, b: int, width: int, off: int) -> None:
         """Change a turtle's pen: colour and width [px], each 0-255; `off` other than 0 lifts it."""
@@ -204,6 +208,17 @@ class Arena:
             colors = list(self.background)
             colors[channel] = int(value)
             self.background = (colors[0], colors[1], colors[2])
+
+    def begin_at(
+        self, x: float, y: float, theta: float, speed: float = 1.0, turn: float = 1.0
+    ) -> None:
+        """Put turtle1 at (x, y) [m] with heading theta [rad], without a stroke, before a run.
+
+        Args:
+            speed, turn: see `speed_factor` and `turn_factor`.
+        """
+        self.turtles["turtle1"].place(x, y, theta)
+        self.speed_factor, self.turn_factor = speed, turn
 
     # Time and views ---------------------------------------------------------------------------
 

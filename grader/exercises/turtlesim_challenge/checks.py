@@ -174,10 +174,9 @@ def edge_stop(recordings: Recordings, tolerances: Tolerances) -> Finding:
     one, because a command says so: linear.x 0, and in the end angular.z 0 as well. Who turns on
     the spot first and stands then has stopped. Half of the points if it rests only because no more
     commands come (the simulator stops a turtle a second after its last command), or turns on the
-    spot to the end. The worst run counts. A run that starts elsewhere counts as none where turtle1
-    was nearer to the wall by more than {passed_by_m} m before and drove on: such a stop does not
-    come from the pose, nor does one that comes at the same moment in all of three or more runs.
-    Where the time was up while the spiral still grew, the other runs decide.
+    spot to the end. The worst run counts: in the varied runs the turtle drives faster or slower
+    than it is commanded, so that only a stop by the pose succeeds in all. Where the time was up
+    while the spiral still grew, the other runs decide.
     """
     return error_first(recordings, judge_edge(recordings, tolerances))
 
@@ -194,8 +193,10 @@ def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
     The points are the part of the entries that are right, times the number of different colours
     out of four: 15 right entries of 31, and 3 colours, are 15/31 x 3/4 x 20 = 7.26 of 20 points.
-    In a run that starts elsewhere the quadrants that were entered count instead of four; the worst
-    run counts.
+    In a varied run the quadrants that were entered count instead of four; the worst run counts.
+    Where fewer than {chance_share%} of the entries are right, or the colours of a varied run come
+    where the turtle would be if it obeyed each command exactly, they do not come from the pose: no
+    points.
     """
     return error_first(recordings, judge_pens(recordings, tolerances))
 
@@ -218,6 +219,7 @@ def no_redundant_calls(recordings: Recordings, tolerances: Tolerances) -> Findin
 
     In the run from the centre set_pen is called no more often than quadrants are entered, and
     {spare_calls} times more. Calls that switch the pen off are worth nothing. All or nothing, but
-    for a path with fewer than {turns} turns, as for the rate.
+    for a path with fewer than {turns} turns, as for the rate; and for fewer calls than entries:
+    then the points are the part of the entries that have one.
     """
     return error_first(recordings, judge_calls(Path(recordings.nominal), tolerances))

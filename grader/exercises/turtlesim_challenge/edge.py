@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.path import Path
@@ -12,15 +10,14 @@ from grader.exercises.turtlesim_challenge.stops import (
     Stop,
     has_stop_command_at,
     judge_stop,
-    passed_by_m,
 )
 from grader.message import Message, chained, joined, msg, msg_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.turtle import TICK_S
 
+SOON_S = 5.0
 #: Stop commands this near to one moment, wherever the run started, come from counting [ticks].
-SAME_MOMENT_TICKS = 32
-
+SAME_MOMENT_TICKS = 2
 
 _BY_THE_POSE = msg(
     "The stop must depend on the pose, not on the time or on how often something was done."
@@ -34,26 +31,13 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
         return first.finding
     stops = [first]
     for number, recording in enumerate(recordings.varied, start=1):
-        stops.append(_judge_varied(Path(recording, number), tolerances))
+        stops.append(judge_stop(Path(recording, number), tolerances))
     if first.kind == "wall":
         return _one_wall_only(stops) or first.finding
     telling = [stop for stop in stops if stop.kind != "late"]
     if not telling:
         return first.finding
     worst = min(telling, key=lambda stop: stop.finding.share)
-    if worst.finding.share >= 1 and _all_at_one_moment(stops):
-        return Finding(
-            0,
-            msg(
-                "It stopped by a command, {gap_m:.2f} m from the wall, but at the same moment, "
-                "after {time_s:.2f} s, from wherever it started: that it was near a wall each "
-                "time is chance.",
-                gap_m=first.gap_m,
-                time_s=first.path.stop_tick * TICK_S,
-            ),
-            _BY_THE_POSE,
-            first.finding.evidence,
-        )
     if worst.finding.share >= 1:
         return Finding(1, _all_right(stops), evidence=telling[0].finding.evidence)
     if worst is first or (first.kind == "halfway" and worst.finding.share > 0):
@@ -61,39 +45,13 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
     return _not_elsewhere(stops, worst)
 
 
-def _all_at_one_moment(stops: list[Stop]) -> bool:
-    """Whether several runs from elsewhere lasted as long as the first, to the tick."""
-    first, *others = [stop.path.stop_tick for stop in stops]
-    return len(others) > 1 and all(abs(tick - first) <= 1 for tick in others)
-
-
-def _judge_varied(path: Path, tolerances: Tolerances) -> Stop:
-    stop = judge_stop(path, tolerances)
-    if stop.kind != "stopped":
-        return stop
-    passed_by = passed_by_m(stop)
-    if passed_by <= tolerances["passed_by_m"]:
-        return stop
-    seen = msg(
-        "the turtle stopped {gap_m:.2f} m from the {wall} wall, but had been nearer to that "
-        "wall by {passed_by_m:.2f} m before, and had driven on.",
-        gap_m=stop.gap_m,
-        wall=WALL_NAMES[stop.wall],
-        passed_by_m=passed_by,
-    )
-    finding = Finding(0, seen, evidence=stop.finding.evidence)
-    return replace(stop, kind="far", finding=finding)
-
-
 def _all_right(stops: list[Stop]) -> Message:
     late = [number for number, stop in enumerate(stops) if stop.kind == "late"]
     ended = next(stop for stop in stops if stop.kind != "late")
     if not late and len(stops) > 1:
         return msg_many(
-            "It stopped by a command, {gap_m:.2f} m from the wall, and in the run that starts "
-            "elsewhere too.",
-            "It stopped by a command, {gap_m:.2f} m from the wall, and in the {n} runs that start "
-            "elsewhere too.",
+            "It stopped by a command, {gap_m:.2f} m from the wall, and in the varied run too.",
+            "It stopped by a command, {gap_m:.2f} m from the wall, and in the {n} varied runs too.",
             len(stops) - 1,
             gap_m=ended.gap_m,
         )
@@ -114,20 +72,20 @@ def _which_run(number: int) -> Message:
 def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
     """Judge a turtle that stops when it starts from the centre, and not elsewhere."""
     here = stops[0]
-    if worst.kind == "void":
-        return _not_where_it_was_put(here, worst)
-    lasts_long = here.path.stop_tick > 10 * SAME_MOMENT_TICKS  # else all moments are the same
+    lasts_long = here.path.stop_tick * TICK_S > SOON_S  # else all moments are the same
     if (
         here.kind == "stopped"
         and lasts_long
-        and has_stop_command_at(worst.path, here.path.stop_tick, SAME_MOMENT_TICKS)
+        and all(
+            has_stop_command_at(stop.path, here.path.stop_tick, SAME_MOMENT_TICKS)
+            for stop in stops[1:]
+        )
     ):
         text = msg(
-            "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but when it "
-            "started elsewhere (run {run}) it was told to stop at the same moment, at "
-            "{time_s:.1f} s, wherever it was: {seen}",
+            "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but {run} it "
+            "was told to stop at the same moment, at {time_s:.1f} s, wherever it was: {seen}",
             gap_m=here.gap_m,
-            run=worst.path.number,
+            run=in_run(worst.path),
             time_s=here.path.stop_tick * TICK_S,
             seen=worst.finding.rationale,
         )
@@ -140,41 +98,29 @@ def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
         seen = msg("it stood {gap_m:.2f} m from the nearest wall.", gap_m=worst.gap_m)
     return Finding(
         worst.finding.share,
-        _but_elsewhere(here, worst.path.number, seen),
+        _but_elsewhere(here, worst.path, seen),
         _BY_THE_POSE if worst.kind == "far" else worst.finding.help,
         worst.finding.evidence,
     )
 
 
-def _not_where_it_was_put(here: Stop, worst: Stop) -> Finding:
-    """Judge a run from elsewhere in which the node moved the turtle before it drove."""
-    seen = started_elsewhere(worst.path.number, worst.finding.rationale)
-    lead = [here.seen] if here.kind == "halfway" else []
-    if here.kind == "stopped":
-        lead = [
-            msg(
-                "From the centre it stopped by a command, {gap_m:.2f} m from the wall.",
-                gap_m=here.gap_m,
-            )
-        ]
-    return replace(worst.finding, rationale=joined([*lead, seen], " "))
+def in_run(path: Path) -> Message:
+    """Name a varied run, with what differs in it: 'in run 1 (from (4.32, 5.61))'."""
+    start = path.recording.start
+    what = start.words if start is not None else msg("from the centre")
+    return msg("in run {run} ({what})", run=path.number, what=what)
 
 
-def started_elsewhere(run: int, seen: Message) -> Message:
-    """Say what was found in a run that starts elsewhere."""
-    return msg("The turtle started elsewhere (run {run}). {seen}", run=run, seen=seen)
-
-
-def _but_elsewhere(here: Stop, run: int, seen: Message) -> Message:
+def _but_elsewhere(here: Stop, path: Path, seen: Message) -> Message:
     if here.kind == "stopped":
         return msg(
-            "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but not when "
-            "it started elsewhere (run {run}): {seen}",
+            "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but not {run}: "
+            "{seen}",
             gap_m=here.gap_m,
-            run=run,
+            run=in_run(path),
             seen=seen,
         )
-    text = msg("When it started elsewhere (run {run}): {seen}", run=run, seen=seen)
+    text = msg("{run!u}: {seen}", run=in_run(path), seen=seen)
     return joined([here.seen, text], " ") if here.kind == "halfway" else text
 
 

@@ -71,9 +71,6 @@ class Path(DrivenPath):
     Attributes:
         trace: all that was recorded.
         relocations: the calls that ended stretches, in order.
-        moved_away: of a run that starts elsewhere, the call because of which its stretch does not
-            begin where it was put; None: it does. A node that moves the turtle back to the centre
-            does not show what such a run is for.
         lost_tick: from here on the position is not a number, and the path ends; None: never.
     """
 
@@ -84,13 +81,6 @@ class Path(DrivenPath):
         self.lost_tick = None if whole.lost is None else int(whole.ticks[whole.lost])
         driven = whole.until_lost().longest_stretch(event.tick for event in self.relocations)
         super().__init__(recording, driven.way, number)
-        self.moved_away = self._moved_away()
-
-    def _moved_away(self) -> Event | None:
-        if self.recording.start is None or not len(self):
-            return None
-        before = [event for event in self.relocations if event.tick <= self.ticks[0]]
-        return before[-1] if before else None
 
     @property
     def free(self) -> slice:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import colours, mistakes, pens
-from grader.exercises.turtlesim_challenge.edge import started_elsewhere
+from grader.exercises.turtlesim_challenge.edge import in_run
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path, Visit
-from grader.exercises.turtlesim_challenge.stops import judge_start
 from grader.message import Message, joined, msg, msg_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.events import SetPen
@@ -33,31 +30,46 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
     nominal = pens.coloring(path, tolerances, QUADRANTS)
     paths = [path, *(Path(run, number) for number, run in enumerate(recordings.varied, start=1))]
     colorings = [nominal, *(_elsewhere(path, tolerances, nominal) for path in paths[1:])]
-    away = first_moved_away(recordings)
-    if away is not None and nominal.share > 0:
-        return away
     conclusive = [n for n, coloring in enumerate(colorings) if coloring.is_conclusive or n == 0]
     worst = min(conclusive, key=lambda n: colorings[n].share)
     share = colorings[worst].share
     if share >= 1:
         entered = len(path.entries(tolerances["band_m"]))
         return Finding(1, _all_right(len(nominal.judged), entered, len(recordings.varied)))
+    blind = next(
+        (
+            n
+            for n in range(1, len(paths))
+            if pens.go_by_commands(paths[n], colorings[n], tolerances)
+        ),
+        0,
+    )
+    if blind and nominal.right > SHOWS_IT_TOO:
+        text = msg(
+            "{run!u} the colours change where the turtle would be if it obeyed your commands "
+            "exactly, not where it is: they do not come from the pose.",
+            run=in_run(paths[blind]),
+        )
+        evidence = _evidence(paths[blind], colorings[blind], tolerances)
+        return Finding(0, text, _READ_THE_POSE, evidence)
     # What the run from the centre shows as well is reported for that one.
     shown = 0 if nominal.share <= SHOWS_IT_TOO else worst
     found, path = colorings[shown], paths[shown]
     sentences, help_ = _explain(path, found, tolerances)
     if shown:
-        sentences[0] = msg(
-            "When the turtle started elsewhere (run {run}): {seen}", run=worst, seen=sentences[0]
-        )
-    sentences += _points(colorings[worst], worst)
+        sentences[0] = msg("{run!u}: {seen}", run=in_run(path), seen=sentences[0])
+    if blind or (not share and colorings[worst].right):
+        share = 0
+        sentences.append(msg("Chance alone would do as well: no points."))
+    else:
+        sentences += _points(colorings[worst], worst)
     return Finding(share, joined(sentences, " "), help_, _evidence(path, found, tolerances))
 
 
 def _all_right(right: int, entered: int, varied: int) -> Message:
     elsewhere = msg_many(
-        ", and in the run that starts elsewhere too",
-        ", and in the {n} runs that start elsewhere too",
+        ", and in the varied run too",
+        ", and in the {n} varied runs too",
         varied,
     )
     return msg(
@@ -79,15 +91,6 @@ def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pe
         return by_itself
     as_before = pens.coloring(path, tolerances, known=nominal.by_quadrant)
     return max(by_itself, as_before, key=lambda coloring: coloring.share)
-
-
-def first_moved_away(recordings: Recordings) -> Finding | None:
-    """Return the first run that starts elsewhere in which the node moved the turtle away."""
-    for number, recording in enumerate(recordings.varied, start=1):
-        void = judge_start(Path(recording, number))
-        if void is not None:
-            return replace(void, rationale=started_elsewhere(number, void.rationale))
-    return None
 
 
 def _explain(
@@ -123,6 +126,10 @@ def _explain(
     return sentences, help_
 
 
+_READ_THE_POSE = msg(
+    "Find the quarter anew from pose.x and pose.y in each pose callback, and call set_pen when it "
+    "has changed."
+)
 _LOOK_THERE = msg(
     "Look at the first moment that is named: in which quadrant is the turtle, and which colour "
     "does your node ask for?"

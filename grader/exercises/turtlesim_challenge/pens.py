@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -15,6 +15,7 @@ from grader.exercises.turtlesim_challenge.colours import Color, alike, groups
 from grader.exercises.turtlesim_challenge.path import QUADRANTS, Path, Visit
 from grader.message import msg
 from grader.recording.recording import Recording
+from grader.scenes.turtlesim.driving import as_commanded
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.events import CmdVel, Kill, Reset, SetPen
@@ -38,6 +39,7 @@ class Coloring:
         colors: the pen's colour in each tick, None where it is up.
         waits: entry -> how many ticks the colour may take.
         wanted: how many quadrants with colours of their own make all of the points.
+        least: fewer right entries than this part are chance.
     """
 
     judged: list[Visit]
@@ -47,6 +49,7 @@ class Coloring:
     colors: list[Color | None]
     waits: dict[Visit, int]
     wanted: int
+    least: float
 
     @property
     def is_conclusive(self) -> bool:
@@ -55,11 +58,15 @@ class Coloring:
 
     @property
     def share(self) -> float:
-        """The part of the entries that are right, times the part of the colours."""
-        if not self.is_conclusive:
+        """The part of the entries that are right, times the part of the colours; 0 by chance."""
+        if not self.is_conclusive or self.right < self.least:
             return 0.0
-        right = 1 - len(self.bad) / len(self.judged)
-        return right * self.different / max(self.wanted, len(self.by_quadrant))
+        return self.right * self.different / max(self.wanted, len(self.by_quadrant))
+
+    @property
+    def right(self) -> float:
+        """The part of the entries that are right."""
+        return 1 - len(self.bad) / len(self.judged) if self.judged else 0.0
 
     @property
     def different(self) -> int:
@@ -111,7 +118,17 @@ def coloring(
         or not alike(colors[e.settled(waits[e])], by_quadrant[e.quadrant], near)
         or not _draws(colors[e.settled(waits[e]) : e.last_tick + 1])
     ]
-    return Coloring(judged, bad, by_quadrant, groups(by_quadrant, near), colors, waits, wanted)
+    alike_ones, least = groups(by_quadrant, near), tolerances["chance_share"]
+    return Coloring(judged, bad, by_quadrant, alike_ones, colors, waits, wanted, least)
+
+
+def go_by_commands(path: Path, found: Coloring, tolerances: Tolerances) -> bool:
+    """Whether the colours fit as well where exactly obeyed commands would have taken the turtle."""
+    start = path.recording.start
+    if start is None or start.is_as_commanded or not 0 < found.right < 1:
+        return False
+    believed = replace(path.recording, trace=as_commanded(path.trace, start))
+    return coloring(Path(believed), tolerances).right >= found.right
 
 
 def demanded(tolerances: Tolerances) -> dict[int, Color]:

@@ -127,6 +127,9 @@ def judge_calls(path: Path, tolerances: Tolerances) -> Finding:
             calls=msg_many("{n} call", "{n} calls", len(calls)),
             entries=msg_many("{n} entry", "{n} entries", counts[0]),
         )
+        if len(calls) + tolerances["spare_calls"] < min(counts):
+            help_ = msg("Call it at each entry into another quadrant, not only at the first.")
+            return Finding(len(calls) / min(counts), text, help_)
         return by_what_is_shown(path, tolerances, text)
     useless = [b for a, b in pairwise(calls) if replace(a, tick=b.tick) == b]
     first = (useless or calls[needed:])[0]

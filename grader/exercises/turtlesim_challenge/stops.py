@@ -43,7 +43,7 @@ WALL_NAMES = {
 
 #: How a run ended. `late`: the time was up while a spiral still grew, and had not
 #: touched a wall; `far`: a stop by a command where no wall is near.
-Kind = Literal["stopped", "halfway", "wall", "late", "far", "other", "void"]
+Kind = Literal["stopped", "halfway", "wall", "late", "far", "other"]
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,6 @@ class Stop:
 
 def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
     """Judge whether a run ended at rest near an edge, by a command, without touching a wall."""
-    void = judge_start(path)
-    if void is not None:
-        return Stop("void", void, path)
     if path.wall is not None:
         wall = nearest_wall(path, path.wall)
         return Stop("wall", _touched(path, wall, tolerances), path, wall)
@@ -96,37 +93,9 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
     return Stop(kind, finding, path, nearest_wall(path, path.last), seen)
 
 
-def judge_start(path: Path) -> Finding | None:
-    """Say why a run that starts elsewhere does not count; None: it counts."""
-    call = path.moved_away
-    if call is None:
-        return None
-    return Finding(
-        0,
-        msg(
-            "This run does not count: at {time_s:.2f} s your node moved the turtle away from "
-            "its start, by {call}.",
-            time_s=call.tick * TICK_S,
-            call=call.op,
-        ),
-        msg(
-            "Start wherever the turtle is, and read that from the pose; don't call reset, kill, "
-            "spawn or a teleport."
-        ),
-        (path.at(call.tick, msg("put here by {call}", call=call.op)),),
-    )
-
-
 def nearest_wall(path: Path, row: int) -> str:
     """Return the wall that the turtle is nearest to."""
     return WALLS[int(np.argmin(path.to_walls[row]))]
-
-
-def passed_by_m(stop: Stop) -> float:
-    """Return by how much it had been nearer to its wall before, and drove away again [m]."""
-    row = stop.path.last
-    to_wall = stop.path.to_walls[: row + 1, WALLS.index(stop.wall)]
-    return float(to_wall[row] - to_wall.min())
 
 
 def has_stop_command_at(path: Path, tick: int, within_ticks: int) -> bool:

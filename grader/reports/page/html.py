@@ -274,9 +274,9 @@ def _title(report: Report, number: int) -> str:
     if start is None:
         return wording.run_name(number)
     return tr(
-        "Varied run {number}: from {place}, heading {heading:.0f}°",
+        "Varied run {number}: {begins}; heading {heading:.0f}°",
         number=number,
-        place=text.place(start.x, start.y),
+        begins=start.words,
         heading=math.degrees(start.theta),
     )
 

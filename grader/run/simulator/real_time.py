@@ -115,7 +115,7 @@ class GradedSimulator:
         self._topics.update()
         with scene_at_work(self._scene.name):
             handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
-        flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
+            flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
         self._send("done", reason=reason, flags=flags)
 
     def _start(self) -> None:

@@ -8,12 +8,14 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Final
 
 from grader.recording.subject import Start, Trace
 from grader.scenes.scene import Reason
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, Log, TurtleTrace
+from turtlesim_py.scenario import apply
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.events import Event, LogLine, Notice, from_json, to_json
@@ -53,10 +55,25 @@ def drive(
     return recorder.trace(), "rest" if still >= REST_TICKS else "time_limit"
 
 
+def as_commanded(trace: TurtleTrace, start: Start | None) -> TurtleTrace:
+    """Return where the same inputs would have taken the turtle if it obeyed them as they are."""
+    inputs: dict[int, list[Event]] = defaultdict(list)
+    for event in trace.events:
+        inputs[event.tick].append(event)
+
+    def repeat(tick: int, _: Pose | None, arena: Arena) -> None:
+        for event in inputs[tick]:
+            with suppress(ValueError):  # refused then, too
+                apply(arena, event)
+
+    plain = None if start is None else replace(start, speed=1.0, turn=1.0)
+    return drive(repeat, trace.ticks, plain)[0]
+
+
 def place(arena: Arena, start: Start | None) -> None:
-    """Put turtle1 at the start of a run, without a stroke; None leaves it in the centre."""
+    """Prepare an arena for a run, without a stroke; None leaves turtle1 in the centre."""
     if start is not None:
-        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
+        arena.begin_at(start.x, start.y, start.theta, start.speed, start.turn)
 
 
 def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:

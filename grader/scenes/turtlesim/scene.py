@@ -51,6 +51,7 @@ class Turtlesim(Scene):
     the_thing = msg("the turtle")
     #: from the centre to half a metre before a wall; rounded, for authors of exercises
     farthest_start_m = round(SIZE_M / 2 - 0.5, 2)
+    usual_start = Start(SIZE_M / 2, SIZE_M / 2, 0.0)
 
     def wrong_setting(self, setting: str) -> Message:
         """Return why a setting is no scenario; NOTHING where it is one."""

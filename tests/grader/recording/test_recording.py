@@ -138,10 +138,11 @@ def test_inputs_that_came_after_the_last_tick_do_not_spoil_the_scenario(recorded
     replay(read(tmp_path / "scenario.json"))
 
 
-def test_a_run_that_started_elsewhere_has_no_scenario(recorded, tmp_path):
-    saving.save_all(Recordings(recorded), tmp_path)
-    saving.save_all(Recordings(replace(recorded, start=Start(1.0, 2.0, 3.0))), tmp_path)
-    assert not (tmp_path / "scenario.json").exists()
+def test_the_scenario_of_a_run_begins_where_the_run_did(recorded, tmp_path):
+    saving.save_all(Recordings(replace(recorded, start=Start(1.0, 2.0, 3.0, 1.5))), tmp_path)
+    scenario = read(tmp_path / "scenario.json")
+    assert scenario["start"] == {"x": 1.0, "y": 2.0, "theta": 3.0, "speed": 1.5}
+    assert replay(scenario).arena.speed_factor == 1.5
 
 
 def test_varied_runs_come_back_in_their_order(tmp_path):

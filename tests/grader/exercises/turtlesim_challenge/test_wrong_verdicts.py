@@ -259,7 +259,7 @@ class WatchesLeftAndBottomOnly(Spiral):
     ],
 )
 def test_who_watches_one_wall_only_is_told_which_one_is_not_watched(controller):
-    found = verdicts(controller)["edge_stop"]
+    found = verdicts(controller, ticks=LIMIT)["edge_stop"]
     assert found.score == 0
     assert "It stopped at the" in str(found.rationale)
     assert str(found.help).endswith(
@@ -268,7 +268,7 @@ def test_who_watches_one_wall_only_is_told_which_one_is_not_watched(controller):
 
 
 def test_who_forgets_the_upper_bounds_is_found_from_starts_on_the_other_side():
-    found = verdicts(WatchesLeftAndBottomOnly, seed=1946)["edge_stop"]
+    found = verdicts(WatchesLeftAndBottomOnly, seed=1946, ticks=LIMIT)["edge_stop"]
     assert found.score == 0
     assert "It stopped at the" in str(found.rationale)
 
@@ -295,7 +295,7 @@ def test_a_stop_by_the_commands_is_none_by_the_pose(controller):
 def test_a_stop_by_the_commands_that_is_near_a_wall_by_chance_is_none_either():
     found = verdicts(CountsToASmallerCircle, seed=1946)["edge_stop"]
     assert found.score == 0
-    assert "near a wall each time is chance" in str(found.rationale)
+    assert "at the same moment" in str(found.rationale)
 
 
 class Slow(Spiral):
@@ -548,11 +548,11 @@ def test_wrong_colours_are_told_by_their_cause_first(controller, told, help_):
     found = verdicts(controller)["pen_per_quadrant"]
     assert str(found.rationale).startswith(told)
     assert help_ in str(found.help)
-    assert str(found.rationale).endswith("(colours).")  # how the points come about is told last
+    assert str(found.rationale).endswith(("(colours).", "no points."))  # how they come about
 
 
 def test_the_colour_of_the_quadrant_before_is_told_as_that():
-    found = verdicts(ColourOfTheQuadrantBefore, seed=2022)["pen_per_quadrant"]
+    found = verdicts(ColourOfTheQuadrantBefore, seed=1)["pen_per_quadrant"]
     assert "the quadrant that the turtle came from" in str(found.rationale)
     assert "for which does it ask the colour" in str(found.help)
 
@@ -573,7 +573,8 @@ def test_colours_by_the_commands_are_right_in_the_run_from_the_centre_only():
     found = verdicts(ColoursByTheCommands)["pen_per_quadrant"]
     assert nominal.score > 15
     assert found.score < 10
-    assert str(found.rationale).startswith("When the turtle started elsewhere")
+    assert str(found.rationale).startswith("In run 1 (from (3.90, 5.63), driving 0.7")
+    assert "they do not come from the pose" in str(found.rationale)
 
 
 class AlmostRed(Spiral):
