@@ -88,26 +88,35 @@ def recorded(
     return reading.load(once.folder(run, "run", name, plan, patience, time, number))
 
 
-def recordings(name: str | Path, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Recordings:
-    """All runs of a submission that an exercise asks for, in virtual time; see `recorded`."""
+def recordings(
+    name: str | Path, exercise: Exercise = CHALLENGE, *, number: int = 1, seed: int | None = None
+) -> Recordings:
+    """All runs of a submission that an exercise asks for, in virtual time; see `recorded`.
+
+    Args:
+        seed: chooses where the varied runs start; None for the exercise's seed.
+    """
 
     def run(folder: Path) -> None:
         with open_submission(path_of(name), **exercise.opening) as submission:
-            plans = grading.plan(submission, exercise)
-            origin = grading.provenance(submission, exercise)
+            plans = grading.plan(submission, exercise, seed)
+            origin = grading.provenance(submission, exercise, seed)
             run = grading.runner(exercise, "virtual")
             # one at a time: another worker has the other core
             with grading.start(submission, plans, run, None, origin, at_once=1) as runs:
                 saving.save_all(grading.gather(runs), folder)
 
     key = (name, exercise.name, exercise.sha256, sorted(exercise.conditions.items()), number)
-    return _loaded(once.folder(run, "runs", *key))
+    drawn = () if seed is None else (seed,)
+    return _loaded(once.folder(run, "runs", *key, *drawn))
 
 
 _loaded = lru_cache(KEPT)(reading.load_all)
 
 
-def graded(name: str | Path, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Result:
+def graded(
+    name: str | Path, exercise: Exercise = CHALLENGE, *, number: int = 1, seed: int | None = None
+) -> Result:
     """What a submission gets for these runs."""
-    found = recordings(name, exercise, number=number)
+    found = recordings(name, exercise, number=number, seed=seed)
     return grader.judge(found, exercise, submission=path_of(name).name)

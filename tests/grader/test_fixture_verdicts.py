@@ -23,6 +23,19 @@ RIGHT = others_are_more(
     ),
     *("reference", "quick_spiral"),
 )
+#: Controllers as first-year students write them, each in another style; they are mutated, too, by
+#: scripts/search_wrong_verdicts.py --only mistakes.
+OF_STUDENTS = others_are_more(
+    "four gradings each, which differ in nothing but the style of the source",
+    [
+        f"right/{path.stem}"
+        for path in sorted((runs.SUBMISSIONS / "right").iterdir())
+        if path.suffix == ".py" or (path / "setup.py").is_file()
+    ],
+    *("right/closures", "right/with_launch_file"),
+)
+#: Where the varied runs start, and how fast the turtle is there; None: as the exercise says.
+SEEDS = (None, 1, 2, 77)
 #: Mutants whose runs show what is wrong, whatever was asked for.
 SHOWS_BY_ITSELF = {
     "wrong_topic": "publishes_to_nobody",
@@ -60,6 +73,14 @@ def graded(name, number=1):
 def test_a_right_solution_gets_every_point(name):
     verdicts, *_ = graded(name)
     assert [(v.check, v.rationale) for v in verdicts if v.status != "passed"] == []
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("name", OF_STUDENTS)
+def test_a_right_solution_of_a_student_gets_every_point_wherever_it_starts(name, seed):
+    result = runs.graded(name, seed=seed)
+    assert [(v.check, v.rationale) for v in result.verdicts if v.status != "passed"] == []
+    assert result.score == 100
 
 
 @pytest.mark.applies(len(installed()) == 2, reason="beside a sourced ROS there is one package")
