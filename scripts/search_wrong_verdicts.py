@@ -1,7 +1,7 @@
 """Search for controllers of the challenge that are judged wrongly.
 
     python scripts/search_wrong_verdicts.py [--count 200] [--seed 1] [--limit-s 600] [--show]
-        [--only right|wrong|stops|pens]
+        [--only right|wrong|stops|pens|mistakes]
 
 Random controllers of many styles drive the world without ROS: right ones, wrong ones with one or
 two faults, and ones whose stop or whose pens do not come from the pose. The injected faults are the
@@ -9,6 +9,10 @@ oracle, which uses no check. A wrong controller is *killed* if it loses points i
 fault concerns; a right one is *spared* if it keeps all points; what goes without the pose is *found
 out* if it earns nothing in its check. It prints these rates, and every controller that was judged
 wrongly, with the numbers to make it again.
+
+With `--only mistakes` it is the first line of the report that is judged: it makes one beginner's
+mistake each in the controllers of tests/submissions/right, grades them for real, and prints how
+often that line has the place and the words of the mistake, and every one where it has not.
 """
 
 from __future__ import annotations
@@ -16,21 +20,31 @@ from __future__ import annotations
 import argparse
 import math
 import random
+import shutil
 import sys
+import tempfile
+import threading
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from pathlib import Path
+from pathlib import Path, PurePath
+from typing import Literal
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from grader.diagnosis.diagnosis import CHECK, Diagnosis  # noqa: E402
+from grader.errors import GraderError  # noqa: E402
 from grader.exercise.check import judge  # noqa: E402
 from grader.exercise.exercise import Exercise  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
+from grader.grading import grade  # noqa: E402
 from grader.recording.recording import Recordings  # noqa: E402
 from grader.testing import drive, pen, twist  # noqa: E402
+from scripts import beginners_mistakes  # noqa: E402
+from scripts.beginners_mistakes import Mutant, Operator  # noqa: E402
 from turtlesim_py.world.arena import Arena  # noqa: E402
 from turtlesim_py.world.turtle import SIZE_M, TICK_S, Pose  # noqa: E402
 
@@ -63,6 +77,11 @@ PALETTES = (
     ((0, 255, 0), (0, 128, 0), (0, 200, 100)),
     ((0, 0, 255), (0, 0, 128), (128, 0, 255)),
 )
+#: The controllers that the mistakes are made in, and how long a grading may take [s].
+RIGHT = ROOT / "tests" / "submissions" / "right"
+BOUND_S = 60.0
+#: By what the words of a first line go.
+Words = Literal["own", "another's", "unnamed"]
 
 
 @dataclass(frozen=True)
@@ -325,6 +344,185 @@ def judged(style: Style, exercise: Exercise) -> dict[str, tuple[float, str]]:
     return {v.check: (v.score / v.max_score, str(v.rationale)) for v in verdicts}
 
 
+# The first line -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A mistake in a controller.
+
+    Attributes:
+        submission: the file or package of the controller without it.
+        file: the one with the mistake.
+    """
+
+    operator: Operator
+    submission: Path
+    file: Path
+    mutant: Mutant
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the report says of a mistake.
+
+    Attributes:
+        seconds: that its grading took.
+        trouble: why there is no result; '' where there is one.
+        loses: whether it loses points, or does not run to its end.
+    """
+
+    drawn: Drawn
+    seconds: float
+    trouble: str = ""
+    loses: bool = True
+    found: Diagnosis | None = None
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the place is a line that has to be changed."""
+        place = self.found.place if self.found else None
+        return place is not None and self._is_in_file and place.line in self.drawn.mutant.lines
+
+    @property
+    def is_near(self) -> bool:
+        """Whether it is such a line, or in the function where something is missing."""
+        place, around = self.found.place if self.found else None, self.drawn.mutant.function
+        if place is None or around is None or not self._is_in_file:
+            return self.is_exact
+        return self.is_exact or around[0] <= place.line <= around[1]
+
+    @property
+    def _is_in_file(self) -> bool:
+        place = self.found.place if self.found else None
+        return place is not None and PurePath(place.file).name == self.drawn.file.name
+
+    @property
+    def words(self) -> Words:
+        """Whose words those of the first line are."""
+        if self.drawn.operator.named_by(self._text):
+            return "own"
+        is_named = self.found is not None and self.found.key != CHECK
+        return "another's" if is_named and self.others else "unnamed"
+
+    @property
+    def others(self) -> list[str]:
+        """The operators whose words the cause has; a help is more general."""
+        of = beginners_mistakes.OPERATORS
+        cause = str(self.found.cause) if self.found else ""
+        return [each.name for each in of if each.named_by(cause)]
+
+    @property
+    def _text(self) -> str:
+        return f"{self.found.cause!s} {self.found.help!s}" if self.found else ""
+
+    def __str__(self) -> str:
+        lines = ", ".join(map(str, self.drawn.mutant.lines))
+        around = self.drawn.mutant.function
+        inside = f" (in {around[0]} to {around[1]})" if around else ""
+        text = f"{self.drawn.file.name}, line {lines}{inside}; {self.seconds:.0f} s\n"
+        text += "".join(
+            f"        | {row.strip()}\n"
+            for number, row in enumerate(self.drawn.mutant.source.split("\n"), 1)
+            if number in self.drawn.mutant.lines
+        )
+        if self.found is None:
+            return f"{text}        {self.trouble or 'no first line'}"
+        place = self.found.place
+        where = f"{place.file}, line {place.line}" if place else "no place"
+        judged = "exact" if self.is_exact else "its function" if self.is_near else "elsewhere"
+        words = self.words
+        whose = f"{words}: {', '.join(self.others)}" if words == "another's" else words
+        said = f"{self.found.key}: {self.found.cause!s} | {self.found.help!s}"
+        return f"{text}        place {judged} ({where}); words {whose}\n        {said}"
+
+
+def some_mistakes(count: int, chance: random.Random) -> Iterator[Drawn]:
+    """Draw mistakes in controllers, of each class about as many."""
+    controllers = []
+    for path in sorted(RIGHT.iterdir()):
+        files = [path] if path.suffix == ".py" else sorted((path / path.name).glob("[a-z]*.py"))
+        controllers += [(path, file) for file in files]
+    drawn, operators = 0, list(beginners_mistakes.OPERATORS)
+    while drawn < count:
+        chance.shuffle(operators)
+        for operator in operators[: count - drawn]:
+            own = random.Random(f"{chance.random()}")  # the same, whatever is drawn for others
+            for path, file in own.sample(controllers, len(controllers)):
+                mutant = operator.mutant(file.read_text(encoding="utf-8"), own)
+                if mutant is not None:
+                    yield Drawn(operator, path, file, mutant)
+                    break
+            drawn += 1
+
+
+def answered(drawn: Drawn, exercise: Exercise) -> Answer:
+    """Grade a controller with a mistake, but no longer than `BOUND_S`."""
+    answers: list[Answer] = []
+    began = time.monotonic()
+
+    def run() -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Path(folder) / drawn.submission.name
+            if drawn.submission.is_dir():
+                shutil.copytree(drawn.submission, copy)
+            file = copy / drawn.file.relative_to(drawn.submission)
+            file.write_text(drawn.mutant.source, encoding="utf-8")
+            try:
+                result = grade(copy, exercise)
+            except GraderError as error:
+                answers.append(Answer(drawn, time.monotonic() - began, f"not graded: {error}"))
+                return
+        is_over = all(
+            each.outcome in ("finished", "exited") for each in (result.run, *result.varied_runs)
+        )
+        loses = result.score < result.max_score or not is_over
+        seconds = time.monotonic() - began
+        answers.append(Answer(drawn, seconds, loses=loses, found=result.diagnosis))
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    thread.join(BOUND_S)
+    late = Answer(drawn, time.monotonic() - began, f"not graded within {BOUND_S:.0f} s")
+    return answers[0] if answers else late
+
+
+def search_mistakes(count: int, seed: int, until: float, show: bool) -> None:
+    """Print how often the first line has the place and the words of a mistake, and where not."""
+    exercise = load_exercise("turtlesim_challenge")
+    drawn = list(some_mistakes(count, random.Random(seed)))
+
+    def answer(each: Drawn) -> Answer | None:
+        return answered(each, exercise) if time.monotonic() < until else None
+
+    with ThreadPoolExecutor(2) as pool:
+        answers = [each for each in pool.map(answer, drawn) if each is not None]
+    if len(answers) < count:
+        print(f"The time is up after {len(answers)} mistakes.")
+    lost = [each for each in answers if each.loses]
+    failed = [each for each in lost if not each.is_near or each.words != "own"]
+    by_operator = Counter(each.drawn.operator.name for each in failed)
+    for name, times in sorted(by_operator.items(), key=lambda found: (-found[1], found[0])):
+        of = sum(each.drawn.operator.name == name for each in lost)
+        print(f"\n{name}: {times} of {of} fail")
+        print("\n".join(f"    {each}" for each in failed if each.drawn.operator.name == name))
+    if show:
+        print("\nas they should be, or without a loss:")
+        rest = [each for each in answers if each not in failed]
+        print("\n".join(f"    {each.drawn.operator.name}: {each}" for each in rest))
+    print(f"\nmistakes: {len(answers)} graded, {len(lost)} lose points or do not run to the end")
+    many = max(len(lost), 1)
+    for what, good in (
+        ("the place is the exact line", sum(each.is_exact for each in lost)),
+        ("... or its function, where something is missing", sum(each.is_near for each in lost)),
+        ("the words are the mistake's own", sum(each.words == "own" for each in lost)),
+        ("the words are another mistake's", sum(each.words == "another's" for each in lost)),
+        ("it is not named", sum(each.words == "unnamed" for each in lost)),
+        ("place and words are right", len(lost) - len(failed)),
+    ):
+        print(f"{what}: {good} of {len(lost)} ({100 * good / many:.0f} %)")
+
+
 def main() -> None:
     """Search, and print the wrong verdicts and both rates."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -332,8 +530,13 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--limit-s", type=float, default=600, help="wall time at most")
     parser.add_argument("--show", action="store_true", help="print every controller")
-    parser.add_argument("--only", choices=("right", "wrong", *KINDS), help="controllers of a kind")
+    kinds = ("right", "wrong", *KINDS, "mistakes")
+    parser.add_argument("--only", choices=kinds, help="controllers of a kind")
     asked = parser.parse_args()
+    if asked.only == "mistakes":
+        until = time.monotonic() + asked.limit_s
+        search_mistakes(asked.count, asked.seed, until, asked.show)
+        return
     exercise = load_exercise("turtlesim_challenge")
     chance = random.Random(asked.seed)
     until = time.monotonic() + asked.limit_s
