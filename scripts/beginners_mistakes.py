@@ -14,7 +14,7 @@ import re
 import tokenize
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 #: Statements with more lines are no single place.
@@ -76,7 +76,7 @@ class Operator:
 
     def mutant(self, source: str, chance: random.Random) -> Mutant | None:
         """Make the mistake in one of its places; None where there is none."""
-        program = Program(source)
+        program = _program(source)
         changes = list(self.places(program))
         if not changes:
             return None
@@ -164,6 +164,9 @@ class Program:
         return Edit(at, at, "" if f"{line}\n" in self.text else f"{line}\n", blamed=False)
 
 
+_program = lru_cache(32)(Program)  # each for many operators
+
+
 def last_name(node: ast.expr) -> str:
     """'drive' of self.drive."""
     match node:
@@ -237,10 +240,12 @@ def _parses(text: str) -> bool:
 
 def _statements(text: str, lines: set[int]) -> set[int]:
     """Add the other lines of the same short statements, or of their heads."""
-    if not _parses(text):
+    try:
+        tree = ast.parse(text)
+    except SyntaxError:
         return lines
     found = set(lines)
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(tree):
         if not isinstance(node, ast.stmt):
             continue
         if isinstance(getattr(node, "value", None), ast.Dict | ast.List):
