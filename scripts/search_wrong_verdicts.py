@@ -79,7 +79,7 @@ PALETTES = (
 )
 #: The controllers that the mistakes are made in, and how long a grading may take [s].
 RIGHT = ROOT / "tests" / "submissions" / "right"
-BOUND_S = 60.0
+BOUND_S = 90.0
 #: By what the words of a first line go.
 Words = Literal["own", "another's", "unnamed"]
 
@@ -499,7 +499,8 @@ def search_mistakes(count: int, seed: int, until: float, show: bool) -> None:
         answers = [each for each in pool.map(answer, drawn) if each is not None]
     if len(answers) < count:
         print(f"The time is up after {len(answers)} mistakes.")
-    lost = [each for each in answers if each.loses]
+    without = [each for each in answers if each.trouble]
+    lost = [each for each in answers if each.loses and not each.trouble]
     failed = [each for each in lost if not each.is_near or each.words != "own"]
     by_operator = Counter(each.drawn.operator.name for each in failed)
     for name, times in sorted(by_operator.items(), key=lambda found: (-found[1], found[0])):
@@ -510,7 +511,11 @@ def search_mistakes(count: int, seed: int, until: float, show: bool) -> None:
         print("\nas they should be, or without a loss:")
         rest = [each for each in answers if each not in failed]
         print("\n".join(f"    {each.drawn.operator.name}: {each}" for each in rest))
-    print(f"\nmistakes: {len(answers)} graded, {len(lost)} lose points or do not run to the end")
+    if without:
+        print("\nnot graded, and not counted:")
+        print("\n".join(f"    {each.drawn.operator.name}: {each}" for each in without))
+    graded = len(answers) - len(without)
+    print(f"\nmistakes: {graded} graded, {len(lost)} lose points or do not run to the end")
     many = max(len(lost), 1)
     for what, good in (
         ("the place is the exact line", sum(each.is_exact for each in lost)),
