@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from difflib import SequenceMatcher
 
-from grader.diagnosis import standstill
+from grader.diagnosis import lint_findings, standstill
 from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
@@ -131,6 +132,20 @@ def misses_what_it_hears(case: Case) -> Diagnosis | None:
     return hears_nobody(case) or standstill.is_deaf(case)
 
 
+def is_of_another_type(case: Case) -> Diagnosis | None:
+    """The program crashed by what it sent: its publisher or client was made for another type."""
+    raised = case.raised
+    if raised is None or raised.type != "TypeError" or case.run.outcome != "crashed":
+        return None
+    if raised.place is None or not re.search(r"\.(?:publish|call|call_async)\(", raised.place.text):
+        return None
+    names = {each.name for each in case.scene_has}
+    for found in (publishes_to_nobody(case), calls_nobody(case)):
+        if found is not None and any(e.place == found.place and e.name in names for e in case.ends):
+            return replace(found, time_s=raised.time_s)
+    return None
+
+
 def calls_nobody(case: Case) -> Diagnosis | None:
     """The program calls a service or an action under a name or with a type that nobody offers."""
 
@@ -172,6 +187,11 @@ def _first(
             continue
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
+        if end.name == near.name:
+            found = lint_findings.imported_at(case, end.type, near.type)
+            end = replace(end, place=found or end.place)
+        else:
+            end = replace(end, place=lint_findings.named_at(case, end.name, end.place))
         return Diagnosis(key, describe(end, near), _fix(end, near), place=end.place)
     return None
 

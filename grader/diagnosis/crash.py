@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from contextlib import suppress
 from signal import Signals
 
@@ -21,6 +22,24 @@ _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
 _PLACE = re.compile(r" \([^()]*, line \d+\)$")
 #: So much of an exception's text is in the cause, which is to be one short sentence [characters].
 _LONGEST_ERROR = 120
+#: What the error or its line shows -> what to do.
+_NOT_PYTHON = (
+    (
+        re.compile(r"invalid character '[\u2018-\u201f\u00ab\u00bb]"),
+        msg("These quotes are typographic, as a word processor writes them: type \" or ' instead."),
+    ),
+    (re.compile(r"\n.*\belse if\b"), msg("Python's word is elif: write elif CONDITION:")),
+    (re.compile(r"\n.*(?:&&|\|\|)"), msg("In Python && is `and`, || is `or`, and ! is `not`.")),
+    (re.compile(r"Maybe you meant '=='"), msg("Compare by ==; a single = assigns a value.")),
+    (
+        re.compile(r"expected ':'"),
+        msg("A line that begins a block ends with a colon: write it at the end of that line."),
+    ),
+    (
+        re.compile(r"'[(\[{]' was never closed"),
+        msg("A bracket is not closed: count those of that line, and add the one that is missing."),
+    ),
+)
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 #: For people who do not know the kernel's words.
 _SIGNALS = {
@@ -64,6 +83,11 @@ def unreadable(case: Case) -> Diagnosis | None:
             "Look at that line and the one above it: a bracket, quote or colon that"
             " is missing is noticed only where something else begins."
         )
+        code = raised.place.text if raised.place is not None else ""
+        for pattern, advice in _NOT_PYTHON:
+            if pattern.search(f"{text}\n{code}"):
+                help_ = advice
+                break
         if raised.type != "SyntaxError":
             help_ = msg(
                 "Look at the spaces at the beginning of that line and the one above it: lines "
@@ -91,6 +115,9 @@ def wrong_value(case: Case) -> Diagnosis | None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     what, help_ = _wanted(found["field"], excerpt(found["what"]), place)
+    place = lint_findings.given_at(case, found["field"], _fitting(found["what"])) or place
+    if place is not None and re.search(r"\b(?:np|numpy)\.", place.text):
+        help_ = msg("A number of numpy is none of Python: write float(...) or int(...) around it.")
     cause = msg(
         "The field {field} of a message must be {what}; something else was given{at}{where}.",
         field=excerpt(found["field"]),
@@ -99,6 +126,16 @@ def wrong_value(case: Case) -> Diagnosis | None:
         where=line(place),
     )
     return Diagnosis("wrong_value", cause, help_, time_s=when, place=place)
+
+
+def _fitting(what: str) -> Callable[[str], bool]:
+    """Return whether a number, as it is written, may be what a field must be."""
+    if limits := _RANGE.search(what):
+        low, high = float(limits[1]), float(limits[2])
+        return lambda text: low <= lint_findings.number(text) <= high
+    if "'float'" in what:
+        return lambda text: "." in text or "e" in text
+    return lambda text: "." not in text
 
 
 def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, Message]:
@@ -223,10 +260,13 @@ def thread_crashed(case: Case) -> Diagnosis | None:
 def misses_message(case: Case) -> bool:
     """Whether the program crashed because it had no value yet, as one that a message brings."""
     raised = case.raised
-    return raised is not None and (
-        "NoneType" in raised.text
-        or (raised.type == "AttributeError" and "has no attribute" in raised.text)
-    )
+    if raised is None:
+        return False
+    if "NoneType" in raised.text:
+        return True
+    # what is misspelt in __init__ needs no message
+    in_init = raised.place is not None and raised.place.function.endswith("__init__")
+    return raised.type == "AttributeError" and "has no attribute" in raised.text and not in_init
 
 
 def _error(raised: Raised, hint: known_exceptions.Hint) -> Message:

@@ -18,6 +18,7 @@ from grader.diagnosis.case import Case, excerpt, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.verdict import Verdict
 from grader.message import msg
+from grader.recording.observations import LintKind
 from grader.recording.recording import Recordings
 from grader.text import in_one_line
 
@@ -27,8 +28,10 @@ RULES: Final[tuple[Rule, ...]] = (
     crash.unreadable,
     imports.not_importable,
     crash.wrong_value,
+    lint_findings.ends_before_spin,
     connections.misses_what_it_hears,
     crash.ended_itself,
+    connections.is_of_another_type,
     crash.crashed,
     standstill.sends_too_much,
     crash.killed,
@@ -44,6 +47,7 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.stuck_in_call,
     standstill.endless_loop,
     lint_findings.called_at_once,
+    lint_findings.spins_in_init,
     standstill.stays_in_init,
     standstill.spins_in_loop,
     standstill.never_spins,
@@ -55,8 +59,10 @@ DISTURBING: Final[tuple[Rule, ...]] = (
     unnoticed.hides_errors,
     unnoticed.never_awaits,
     unnoticed.makes_timers,
+    unnoticed.hurries,
     standstill.publishes_without_waiting,
     standstill.slow_callback,
+    lint_findings.awaits,
     standstill.hears_once,
 )
 
@@ -77,9 +83,21 @@ def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagno
         for number, case in enumerate(cases):
             found = _ask(rules, case)
             if found is not None:
-                return _in_run(found, number)
+                return _in_run(_at_its_line(found, case), number)
     found = costliest(verdicts)
     return found if found is None else _with_source(found, cases[found.run])
+
+
+def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
+    """Give a diagnosis the line to change, where the source shows another than the run."""
+    lines: dict[str, tuple[LintKind, ...]] = {
+        "never_spins": ("no_spin",),
+        "ends_early": ("spins_once",),
+        "does_nothing": ("uncalled",),
+    }
+    if found.key not in lines or (found.place is not None and "while" in found.place.text):
+        return found
+    return replace(found, place=lint_findings.first_of(case, *lines[found.key]) or found.place)
 
 
 def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
@@ -155,4 +173,4 @@ def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
         at = min((found.start() for found in spoken if found), default=len(text))
         if at < first and end.used_at is not None:
             first, place = at, end.used_at
-    return replace(found, place=place)
+    return replace(found, place=lint_findings.set_at(case, text) or place)

@@ -7,7 +7,7 @@ import sys
 
 from grader.diagnosis.case import Case, excerpt, line
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.message import msg
+from grader.message import Message, msg
 from grader.recording.observations import Raised
 
 #: Python's suffix to some errors, which helps nobody.
@@ -15,6 +15,21 @@ _PATH = re.compile(r" \((/[^()]*|unknown location)\)$")
 #: Errors where a module was found in place of a package.
 _NO_PACKAGE = re.compile(r"No module named '(\w{1,60})\.[\w.]{1,100}'; '\1' is not a package")
 _INTERFACES = re.compile(r"No module named '\w{1,60}_(?:interfaces|msgs|srvs)'")
+_ROS_1 = re.compile(r"'(?:rospy|roslib|rosmsg|tf)'")
+_NO_MODULE = re.compile(r"No module named '([\w.]{1,60})'")
+_OTHER_MODULE = re.compile(r"cannot import name '(\w{1,60})' from '([\w.]{1,60})'")
+_PACKAGES = ("turtlesim", "turtlesim_msgs", "geometry_msgs", "std_msgs", "std_srvs", "rclpy")
+#: Where beginners look for them in vain.
+_WHERE = {
+    **dict.fromkeys(("Twist", "Vector3", "Point", "Quaternion"), "geometry_msgs.msg"),
+    **dict.fromkeys(("String", "Int32", "Float32", "Float64", "Bool", "Header"), "std_msgs.msg"),
+    **dict.fromkeys(("Pose", "Color"), "turtlesim.msg"),
+    **dict.fromkeys(("SetPen", "Spawn", "Kill", "TeleportAbsolute"), "turtlesim.srv"),
+    **dict.fromkeys(("TeleportRelative",), "turtlesim.srv"),
+    **dict.fromkeys(("Empty", "Trigger", "SetBool"), "std_srvs.srv"),
+    "Node": "rclpy.node",
+    "MultiThreadedExecutor": "rclpy.executors",
+}
 _FROM = re.compile(
     r"cannot import name '\w{1,60}' from (?:partially initialized module )?'(\w{1,60})'"
 )
@@ -40,13 +55,39 @@ def not_importable(case: Case) -> Diagnosis | None:
         "documentation. A module of your own has to be in what you hand in, "
         "beside the file or in its package."
     )
-    if _INTERFACES.match(text):
+    if (advice := _better(text)) is not None:
+        help_ = advice
+    elif _INTERFACES.match(text):
         help_ = msg(
             "Compare the name. If it is right, this package is not installed where "
             "your node was graded: take std_msgs, std_srvs or geometry_msgs "
             "instead, or ask whoever runs the grader to install it."
         )
     return Diagnosis("not_importable", cause, help_, place=raised.place)
+
+
+def _better(text: str) -> Message | None:
+    """Return what to import instead, or that the module is not installed."""
+    if _ROS_1.search(text):
+        return msg(
+            "That is of ROS 1. In ROS 2 it is rclpy: import rclpy, from rclpy.node import Node, "
+            "and node.create_publisher(Twist, '/topic', 10)."
+        )
+    if found := _OTHER_MODULE.search(text):
+        name = found[1]
+        if found[2].rpartition(".")[0] in _PACKAGES and name in _WHERE:
+            return msg(
+                "{name} is in another module: from {module} import {name}.",
+                name=name,
+                module=_WHERE[name],
+            )
+    if (found := _NO_MODULE.fullmatch(text)) and found[1].partition(".")[0] not in _PACKAGES:
+        return msg(
+            "{name} is not installed where your node is graded: leave it out. A module of your "
+            "own has to be in what you hand in. Compare the name.",
+            name=excerpt(found[1]),
+        )
+    return None
 
 
 def _hides_package(raised: Raised) -> Diagnosis | None:

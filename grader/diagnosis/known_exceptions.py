@@ -28,6 +28,8 @@ _GIVEN = re.compile(
     r"(?:(\w{1,60})\.)?(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w"
 )
 _MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
+_TAKES_CALLBACK = re.compile(r"create_(?:timer|subscription|service)\(|add_done_callback\(")
+_NO_FILE = re.compile(r"\[Errno \d+\] [^:]{1,60}: '([^'\n]{1,300})")
 _SUBSCRIPTED = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
 _CREATES = re.compile(r"\b(create_(?:publisher|subscription|client|service))\(")
 _IN_ORDER = {
@@ -80,6 +82,54 @@ def explain(raised: Raised | Caught) -> Hint:
     name, text = raised.type.rpartition(".")[2], raised.text[:_LONGEST]
     hints = (hint for rule in _RULES if (hint := rule(name, text, raised.place)))
     return next(hints, Hint(_MEANING.get(name, NOTHING)))
+
+
+def _not_here(name: str, text: str, place: SourceLine | None) -> Hint | None:
+    """The program wants a keyboard, or a file of somebody's own computer."""
+    if name == "EOFError" and "input(" in (place.text if place else ""):
+        return Hint(
+            msg("Leave out input(): where your node is graded nobody types anything."),
+            msg("input() waits for a keyboard, and there is none"),
+        )
+    found = _NO_FILE.search(text)
+    if name in ("FileNotFoundError", "NotADirectoryError", "PermissionError") and found:
+        return Hint(
+            msg(
+                "That path is of your own computer: hand in the file beside your program, and open "
+                "it by Path(__file__).parent / 'NAME'; or write its content into the program."
+            ),
+            msg("there is no file {file} where your node is graded", file=excerpt(found[1])),
+        )
+    return None
+
+
+def _no_argument(_: str, text: str, place: SourceLine | None) -> Hint | None:
+    """publish() or call_async() without anything, or a callback called where it is passed."""
+    found, line = _MISSING.search(text), place.text if place is not None else ""
+    if found is None:
+        return None
+    if found[1] in ("publish", "call_async", "call"):
+        what = "msg" if found[1] == "publish" else "request"
+        return Hint(
+            msg("Give it one: {call}({what}).", call=found[1], what=what),
+            msg("{call}() is called without a message", call=found[1])
+            if what == "msg"
+            else msg("{call}() is called without a request", call=found[1]),
+        )
+    if _TAKES_CALLBACK.search(line) and f"{found[1]}(" in line:
+        return Hint(
+            _NOT_CALLED,
+            msg("{name}() is called at once, where it is to be passed", name=excerpt(found[1])),
+        )
+    if found[1].startswith("create_") and "qos_profile" in text:
+        return Hint(
+            msg(
+                "Compare the order: {in_order}.",
+                in_order=_IN_ORDER.get(found[1], _IN_ORDER["create_publisher"]),
+            ),
+            msg("the last argument is missing, the QoS: write , 10"),
+        )
+    return None
 
 
 def _without_init(name: str, text: str, _: SourceLine | None) -> Hint | None:
@@ -301,6 +351,8 @@ def _none_or_unknown(_: str, text: str, place: SourceLine | None) -> Hint | None
 
 _RULES: tuple[Callable[[str, str, SourceLine | None], Hint | None], ...] = (
     *(
+        _not_here,
+        _no_argument,
         _without_init,
         _read_only_name,
         _class_for_instance,

@@ -5,6 +5,7 @@ A lint finding by itself is not reported: it may be meant. `LintFinding` describ
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -12,15 +13,19 @@ from dataclasses import replace
 from grader.diagnosis.case import Case, excerpt, function, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import Hint
-from grader.diagnosis.standstill import never_spins
+from grader.diagnosis.standstill import hears_once, never_spins
 from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.message import Message, as_message, msg
 from grader.recording.observations import LintFinding, LintKind, Raised, SourceLine
+from grader.submission.lint import misspelt
 
 #: So much of an exception's text is searched [characters].
 _LONGEST = 1000
 _GIVEN = re.compile(r"(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w")
 _VARIABLE = re.compile(r"variable '(\w{1,60})'")
+_NO_ATTRIBUTE = re.compile(r"has no attribute '(\w{1,60})'")
+_MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
+_OF_NODE = re.compile(r"'_(?:Node__\w{1,40}|default_callback_group|logger|clock|parameters)'")
 _OF_A_SERVICE = re.compile(r"(\w{1,60})(?:\.__init__)?\(\) (?:got an unexpected k|takes no arg)")
 _NO_INSTANCE = "Service classes can not be instantiated"
 
@@ -140,9 +145,242 @@ def _service_for_request(case: Case, raised: Raised) -> Hint | None:
     )
 
 
+def _misspelt(case: Case, raised: Raised) -> Hint | None:
+    """An attribute that is set under another name, or nowhere."""
+    found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
+    if found is None or raised.place is None or f"self.{found[1]}" not in raised.place.text:
+        return None
+    name = excerpt(found[1])
+    for finding in _of_kind(case, "local"):
+        if finding.name == found[1] and finding.near == f"self.{found[1]}":
+            return Hint(
+                msg("Write self.{name} = ... there.", name=name),
+                msg("`{name}` is a variable of that function; self.{name} is never set", name=name),
+                finding.place,
+            )
+    for finding in _of_kind(case, "never_read"):
+        if misspelt(finding.name, found[1]):
+            return Hint(
+                msg("Write self.{name} there, or the other name here.", name=name),
+                msg(
+                    "self.{name} has no value: what is set is self.{other}, which is never read; "
+                    "compare the names",
+                    name=name,
+                    other=excerpt(finding.name),
+                ),
+                finding.place,
+            )
+    for finding in _of_kind(case, "never_set"):
+        if finding.name == found[1] and "__init__" in finding.place.text:
+            return Hint(
+                msg("Write self.{name} = ... in __init__, or compare the name.", name=name),
+                msg("self.{name} has no value when that line runs: nothing sets it", name=name),
+                finding.place,
+            )
+    return None
+
+
+def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
+    """A callback whose own line has to change."""
+    text = raised.text[:_LONGEST]
+    if "callback should be" in text:
+        for finding in _of_kind(case, "no_message", "without_self"):
+            if raised.place is None or finding.name in raised.place.text:
+                name = excerpt(finding.name)
+                return Hint(
+                    msg(
+                        "A method takes self before all else, and a callback of a subscription the "
+                        "message: def {name}(self, pose).",
+                        name=name,
+                    ),
+                    msg("{name}(), the callback of a subscription, takes no message", name=name),
+                    finding.place,
+                )
+    missing = _MISSING.search(text)
+    for finding in _of_kind(case, "message_for_timer") if missing else ():
+        if missing is not None and missing[1] == finding.name:
+            name = excerpt(finding.name)
+            return Hint(
+                msg("Write def {name}(self): a timer is given nothing but self.", name=name),
+                msg("{name}(), the callback of a timer, takes too much", name=name),
+                finding.place,
+            )
+    return None
+
+
+def _class_kept(case: Case, raised: Raised) -> Hint | None:
+    if "'property' object" in raised.text or "'getset_descriptor' object" in raised.text:
+        for finding in _of_kind(case, "class_kept"):
+            name = excerpt(finding.name)
+            return Hint(
+                msg("The parentheses are missing: write {name}() there.", name=name),
+                msg("{name} without parentheses is the class, not a message", name=name),
+                finding.place,
+            )
+    return None
+
+
+def _without_init(case: Case, raised: Raised) -> Hint | None:
+    is_it = raised.type.endswith("NotInitializedException") or "rclpy.init()" in raised.text
+    for finding in _of_kind(case, "no_init") if is_it else ():
+        return Hint(
+            msg("Call rclpy.init() at the start of main(), before the node is made."),
+            msg("rclpy.init() has not been called"),
+            finding.place,
+        )
+    return None
+
+
+def _without_super(case: Case, raised: Raised) -> Hint | None:
+    is_it = raised.type == "AttributeError" and "_Node__" in raised.text
+    is_it = is_it or re.search(
+        r"'_(?:default_callback_group|logger|clock|parameters)'", raised.text
+    )
+    for finding in _of_kind(case, "no_super") if is_it else ():
+        return Hint(
+            msg("super().__init__('name_of_the_node') must come first in __init__."),
+            msg("the Node is not made yet when that line uses it"),
+            finding.place,
+        )
+    return None
+
+
+def _calls_itself(case: Case, raised: Raised) -> Hint | None:
+    for finding in _of_kind(case, "calls_itself") if raised.type == "RecursionError" else ():
+        name = excerpt(finding.name)
+        return Hint(
+            msg("Leave that call out: ROS calls {name}() again and again by itself.", name=name),
+            msg("{name}() calls itself without end", name=name),
+            finding.place,
+        )
+    return None
+
+
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
     *(_not_global, _without_self, _hidden_method, _class_given, _service_for_request),
+    *(_misspelt, _wrong_callback, _class_kept, _without_init, _calls_itself, _without_super),
 )
+
+
+def ends_before_spin(case: Case) -> Diagnosis | None:
+    """ROS or the node is ended before anything spins."""
+    if any(end.used for end in case.observed.ends if end.kind == "publisher"):
+        return None
+    for finding in _of_kind(case, "ends_before_spin"):
+        name = excerpt(finding.name)
+        if name == "destroy_node":
+            what = msg("Your node is destroyed before it spins{where}", where=line(finding.place))
+        else:
+            what = msg("ROS is shut down before anything spins{where}", where=line(finding.place))
+        return Diagnosis(
+            "ends_before_spin",
+            msg("{what}: no timer and no callback is ever called.", what=what),
+            msg("Move {name}() behind rclpy.spin(node), to the end of main().", name=name),
+            place=finding.place,
+        )
+    return None
+
+
+def spins_in_init(case: Case) -> Diagnosis | None:
+    """A spin in an `__init__`, which never gets to what comes after it."""
+    if any(end.used for end in case.observed.ends if end.kind == "publisher"):
+        return None
+    for finding in _of_kind(case, "spins_in_init"):
+        return Diagnosis(
+            "stays_in_init",
+            msg(
+                "Your program never leaves __init__(){where}: spin() returns only when the program "
+                "ends, and what comes after is never reached.",
+                where=line(finding.place),
+            ),
+            msg("Take it out there; main() makes the node and then calls rclpy.spin(node)."),
+            place=finding.place,
+        )
+    return None
+
+
+def awaits(case: Case) -> Diagnosis | None:
+    """A callback awaits an answer, and no further message is handled."""
+    found = hears_once(case)
+    for finding in _of_kind(case, "awaits") if found is not None else ():
+        return Diagnosis(
+            "awaits",
+            msg(
+                "{name}() waits by `await` for an answer{where}, and until then none of the other "
+                "callbacks of its group is called: the answer never comes.",
+                name=excerpt(finding.name),
+                where=line(finding.place),
+            ),
+            msg(
+                "Leave out await and async: call_async(request) sends the request, and you go on "
+                "without waiting for the answer."
+            ),
+            place=finding.place,
+        )
+    return None
+
+
+def first_of(case: Case, *kinds: LintKind) -> SourceLine | None:
+    """Return the place of the first finding of these kinds."""
+    return next((finding.place for finding in _of_kind(case, *kinds)), None)
+
+
+def named_at(case: Case, name: str, place: SourceLine | None) -> SourceLine | None:
+    """Return the line of a name, where that is a constant apart from its use."""
+    if place is None or name.lstrip("/") in place.text:
+        return place
+    for finding in _of_kind(case, "constant"):
+        if finding.name.lstrip("/") == name.lstrip("/"):
+            return finding.place
+    return place
+
+
+def number(text: str) -> float:
+    """Parse a number of a source; not a number where it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def imported_at(case: Case, end_type: str, wanted: str) -> SourceLine | None:
+    """Return the import of a class that has the right name and is another package's."""
+    package, _, name = end_type.split("/")
+    for finding in _of_kind(case, "imports"):
+        if finding.name == name == wanted.rpartition("/")[2] and finding.near.startswith(package):
+            return finding.place
+    return None
+
+
+def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> SourceLine | None:
+    """Return the line that gives a field of a message a number that does not fit."""
+    wrong = (each for each in _of_kind(case, "argument") if not fits(each.near))
+    names = (field, f"linear.{field}", f"angular.{field}", "colour")
+    return next((each.place for each in wrong if each.name in names), None)
+
+
+def set_at(case: Case, text: str) -> SourceLine | None:
+    """Return where the field of a message is set that a finding names first."""
+    if value := re.search(r"\b(linear\.x|angular\.z) is (-?[\d.]+)", text):
+        for finding in _of_kind(case, "argument"):
+            if finding.name == value[1] and number(finding.near) == number(value[2].rstrip(".")):
+                return finding.place
+    if "limits does your node compare" in text or "look at its conditions" in text:
+        middles = [*_of_kind(case, "at_middle")]
+        off = [each for each in middles if not 5.4 < number(each.near) < 5.65]
+        zero = [each for each in _of_kind(case, "at_wall") if number(each.near) == 0]
+        for finding in (*off, *zero, *middles):
+            return finding.place
+    if "wall watched" in text or "zeros to stop" in text or "be true first" in text:
+        for finding in _of_kind(case, "at_wall"):
+            return finding.place
+    found = [
+        (at, finding.place)
+        for finding in _of_kind(case, "sets")
+        if (at := text.find(finding.name)) >= 0
+        and ("." in finding.name or f"`{finding.name}`" in text)
+    ]
+    return min(found, key=lambda each: each[0])[1] if found else None
 
 
 def called_at_once(case: Case) -> Diagnosis | None:
@@ -171,6 +409,19 @@ def called_at_once(case: Case) -> Diagnosis | None:
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the lint finding that may be its cause."""
+    if (without := _lacks(case)) is not None:
+        return replace(without, run=found.run)
+    for finding in _of_kind(case, "compared", "always", "adds_nothing"):
+        if finding.kind == "always" and "drive" not in str(found.help):
+            continue
+        code, where = excerpt(finding.name), line(finding.place)
+        text = msg("`{code}`{where} is always true.", code=code, where=where)
+        if finding.kind == "compared":
+            text = msg("`{code}` compares, and sets nothing{where}.", code=code, where=where)
+        if finding.kind == "adds_nothing":
+            text = msg("`{code}`{where} lets nothing grow.", code=code, where=where)
+        help_ = msg("Write = for ==.") if finding.kind == "compared" else found.help
+        return replace(found, cause=sentences(text, found.cause), help=help_, place=finding.place)
     for finding in _of_kind(case, "uncalled", "unread", "local"):
         text, help_ = _cause_and_help(finding)
         cause = sentences(text, found.cause)
@@ -185,6 +436,38 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
         cause, help_ = sentences(found.cause, hides), sentences(found.help, NOT_CAUGHT)
         return replace(found, cause=cause, help=help_, place=finding.place)
     return found
+
+
+def _lacks(case: Case) -> Diagnosis | None:
+    """A function that looks like a callback, and that nothing passes on."""
+    ends = [end.kind for end in case.observed.ends]
+    for finding in _of_kind(case, "unused") if case.observed.is_known else ():
+        name, where = excerpt(finding.name), line(finding.place)
+        if finding.near == "create_timer" and not case.observed.timers:
+            return Diagnosis(
+                "lacks_timer",
+                msg(
+                    "There is no timer{where}: nothing ever calls {name}().", where=where, name=name
+                ),
+                msg("Write self.create_timer(0.1, self.{name}) there, in __init__.", name=name),
+                place=finding.place,
+            )
+        if finding.near == "create_subscription" and "subscription" not in ends:
+            return Diagnosis(
+                "lacks_subscription",
+                msg(
+                    "There is no subscription{where}: nothing ever calls {name}().",
+                    where=where,
+                    name=name,
+                ),
+                msg(
+                    "Write self.create_subscription(Pose, '/turtle1/pose', self.{name}, 10) there, "
+                    "in __init__.",
+                    name=name,
+                ),
+                place=finding.place,
+            )
+    return None
 
 
 def _cause_and_help(finding: LintFinding) -> tuple[Message, Message]:

@@ -29,6 +29,8 @@ _NEVER_AWAITED = re.compile(
 )
 #: A timer that a program drives by comes sooner than that [s].
 _LONG_PERIOD_S = 5.0
+#: The simulator moves the turtle once in 16 ms; a node that drives by the clock needs no more.
+_SHORT_PERIOD_S = 0.005
 #: A program that makes timers on purpose makes fewer a second.
 _MOST_TIMERS_PER_S = 30.0
 NOT_CAUGHT = msg("Without the try/except Python would say so itself.")
@@ -112,6 +114,20 @@ def waits_for_timer(case: Case) -> Diagnosis | None:
     )
     help_ = msg("create_timer() takes seconds, not milliseconds: 0.1 is ten times a second.")
     return Diagnosis("waits_for_timer", cause, help_, place=timer.place)
+
+
+def hurries(case: Case) -> Diagnosis | None:
+    """The program has a timer that comes in every tick of the simulator, or more often."""
+    for timer in case.observed.timers:
+        if timer.period_s < _SHORT_PERIOD_S:
+            cause = msg(
+                "Your timer{where} has a period of {period_s:g} s: it comes as often as it can.",
+                where=line(timer.place),
+                period_s=timer.period_s,
+            )
+            help_ = msg("create_timer() takes seconds: 0.1 is ten times a second.")
+            return Diagnosis("hurries", cause, help_, place=timer.place)
+    return None
 
 
 def makes_timers(case: Case) -> Diagnosis | None:

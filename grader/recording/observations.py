@@ -50,6 +50,29 @@ LintKind = Literal[
     "unsent",
     "beside",
     "swallows",
+    "no_message",
+    "message_for_timer",
+    "awaits",
+    "ends_before_spin",
+    "spins_once",
+    "spins_in_init",
+    "class_kept",
+    "calls_itself",
+    "no_init",
+    "no_spin",
+    "unused",
+    "never_set",
+    "never_read",
+    "constant",
+    "sets",
+    "compared",
+    "always",
+    "adds_nothing",
+    "no_super",
+    "at_middle",
+    "at_wall",
+    "argument",
+    "imports",
 ]
 
 
@@ -186,7 +209,21 @@ class LintFinding:
             be passed to NEAR is called at once; `class` - the class NAME is passed to NEAR, not an
             instance of it; `unsent` - a request of NAME is made, and nothing ever calls a service;
             `beside` - the module NAME that is not found lies beside, and its name is NEAR;
-            `swallows` - an `except` in the callback NAME catches every error, and shows none.
+            `swallows` - an `except` in the callback NAME catches every error, and shows none;
+            `no_message` - the callback NAME of a subscription takes none; `message_for_timer` -
+            that of a timer takes one; `awaits` - the callback NAME waits for an answer;
+            `ends_before_spin` - NAME (shutdown) stands before a spin; `spins_once` - a spin_once in
+            no loop;
+            `spins_in_init` - a spin in an __init__; `class_kept` - the class NAME is assigned where
+            a message is meant; `calls_itself` - the function NAME does; `no_init`, `no_spin` - a
+            node is made, and nothing calls rclpy.init or spins; `unused` - nothing uses the
+            function NAME, which may be meant for NEAR (create_timer); `never_set` - self.NAME is
+            read and never set, at the __init__; `never_read` - self.NAME is set and never read;
+            `constant` - the text NAME is assigned to something; `sets` - the field NAME of a
+            message is set; `compared` - the comparison NAME is a statement; `always` - a condition
+            is True; `adds_nothing` - NAME adds 0; `no_super` - the __init__ of the node NAME calls
+            no other; `at_middle`, `at_wall` - NAME (x, y) is compared with NEAR; `argument` - the
+            field NAME gets the number NEAR from this line; `imports` - NAME comes from NEAR.
     """
 
     kind: LintKind

@@ -14,13 +14,13 @@ from difflib import SequenceMatcher
 from pathlib import Path
 
 from grader.recording.observations import LintFinding, LintKind, SourceLine
-from grader.submission import scopes
+from grader.submission import ros_mistakes, scopes
 from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
 from grader.submission.scopes import Function
 
 #: So many findings are kept, and so much of a name or a line [characters].
-MOST, LONGEST = 20, 300
+MOST, LONGEST = 80, 300
 #: Longer sources are not linted [characters].
 MOST_SOURCE = 200_000
 #: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
@@ -160,6 +160,7 @@ def find(
     found += [
         finding for file, tree in trees.items() for finding in _swallows(tree, callbacks, file)
     ]
+    found += [_finding(*each[:3], file, each[3]) for file, each in ros_mistakes.find(trees)]
     return list(dict.fromkeys(found))
 
 

@@ -1,0 +1,384 @@
+"""Finds in a source what beginners in ROS forget or put in the wrong place.
+
+Like all of `lint`: nothing found here is an error by itself. It gives the line to change where the
+run has shown that something is wrong.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from grader.recording.observations import LintKind
+from grader.submission.scopes import Function, unread
+
+#: Kind, name, near, line; see `LintFinding`.
+Found = tuple[LintKind, str, str, int]
+SPINS = ("spin", "spin_once", "spin_until_future_complete")
+#: Calls that take a callback -> its position, and that of a keyword of this name.
+CALLBACKS = {
+    "create_subscription": (2, "callback"),
+    "create_timer": (1, "callback"),
+    "add_done_callback": (0, "fn"),
+}
+#: Of a topic or a service.
+_NAME = re.compile(r"[\w/~]{2,80}")
+#: Fields of messages that beginners set wrongly.
+FIELDS = ("linear", "angular", "r", "g", "b", "width", "off")
+
+
+@dataclass
+class Source:
+    """One file, with what is asked of it again and again."""
+
+    tree: ast.Module
+    functions: dict[str, Function] = field(default_factory=dict)
+    parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for node in ast.walk(self.tree):
+            for child in ast.iter_child_nodes(node):
+                self.parents[child] = node
+            if isinstance(node, Function):
+                self.functions[node.name] = node
+
+    def calls(self, *names: str) -> Iterator[ast.Call]:
+        """Yield the calls of functions of these names, of whatever object."""
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Call) and last(node.func) in names:
+                yield node
+
+    def around(self, node: ast.AST, *kinds: type[ast.AST]) -> ast.AST | None:
+        """Return the nearest of these kinds that a node is in."""
+        found = self.parents.get(node)
+        while found is not None and not isinstance(found, kinds):
+            found = self.parents.get(found)
+        return found
+
+    def callbacks(self) -> Iterator[tuple[str, Function, ast.Call]]:
+        """Yield the functions that ROS is to call, and by which call it gets them."""
+        for name, (position, keyword) in CALLBACKS.items():
+            for call in self.calls(name):
+                given = call.args[position : position + 1]
+                given += [word.value for word in call.keywords if word.arg == keyword]
+                for each in given:
+                    if (function := self.functions.get(last(each))) is not None:
+                        yield name, function, call
+
+
+def last(called: ast.AST) -> str:
+    """'drive' of bot.drive; '' for what has no name."""
+    match called:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
+def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
+    """Yield findings in the files of a submission, each with its file; the surest first."""
+    sources = {file: Source(tree) for file, tree in trees.items()}
+    whole = [*sources.values()]
+    for rule in (_callbacks, _around_spin, _brackets, _recursion, _idle, _bare_nodes):
+        for file, source in sources.items():
+            yield from ((file, found) for found in rule(source))
+    for file, source in sources.items():
+        yield from ((file, found) for found in _forgotten(source, whole))
+        yield from ((file, found) for found in _attributes(source, whole))
+    for rule in (_places, _numbers, _imports, _constants, _fields):
+        for file, source in sources.items():
+            yield from ((file, found) for found in rule(source))
+
+
+def _callbacks(source: Source) -> Iterator[Found]:
+    """Callbacks that take the wrong arguments, or wait for an answer."""
+    for by, function, _ in source.callbacks():
+        arguments = [*function.args.posonlyargs, *function.args.args]
+        is_method = isinstance(source.parents.get(function), ast.ClassDef)
+        takes = len(arguments) - (is_method and bool(arguments) and arguments[0].arg == "self")
+        if by == "create_subscription" and takes == 0 and not function.args.vararg:
+            yield "no_message", function.name, "", function.lineno
+        if by == "create_timer" and takes > 0 and not function.args.defaults:
+            yield "message_for_timer", function.name, "", function.lineno
+        if isinstance(function, ast.AsyncFunctionDef):
+            awaits = [n for n in ast.walk(function) if isinstance(n, ast.Await)]
+            for node in awaits[:1]:
+                yield "awaits", function.name, "", _inner_await(source, node).lineno
+
+
+def _inner_await(source: Source, node: ast.Await) -> ast.Await:
+    """Return the await of an answer that an awaited function of one's own leads to."""
+    for _ in range(5):
+        called = node.value.func if isinstance(node.value, ast.Call) else node.value
+        function = source.functions.get(last(called))
+        if not isinstance(function, ast.AsyncFunctionDef):
+            break
+        inner = next((n for n in ast.walk(function) if isinstance(n, ast.Await)), None)
+        if inner is None:
+            break
+        node = inner
+    return node
+
+
+def _around_spin(source: Source) -> Iterator[Found]:
+    """What stands before a spin and ends it, and spins in the wrong place."""
+    for call in source.calls("shutdown", "try_shutdown", "destroy_node"):
+        statement = source.parents.get(call)
+        block = source.parents.get(statement) if statement is not None else None
+        body = getattr(block, "body", [])
+        if isinstance(statement, ast.Expr) and statement in body:
+            later = body[body.index(statement) + 1 :]
+            inside = (node for each in later for node in ast.walk(each))
+            if any(isinstance(n, ast.Call) and last(n.func) in SPINS for n in inside):
+                yield "ends_before_spin", last(call.func), "", call.lineno
+    for call in source.calls("spin_once"):
+        if source.around(call, ast.While, ast.For) is None:
+            yield "spins_once", "spin_once", "", call.lineno
+    for call in source.calls("spin"):
+        function = source.around(call, ast.FunctionDef, ast.AsyncFunctionDef)
+        if isinstance(function, Function) and function.name == "__init__":
+            yield "spins_in_init", "spin", "", call.lineno
+
+
+def _brackets(source: Source) -> Iterator[Found]:
+    """Message classes that are kept instead of a message, and `main` that is not called."""
+    imported = {
+        alias.asname or alias.name
+        for node in ast.walk(source.tree)
+        if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv"))
+        for alias in node.names
+    }
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Assign(value=ast.Name(id=name)) if name in imported:
+                yield "class_kept", name, "", node.lineno
+            case ast.Assign(value=ast.Attribute(value=ast.Name(id=name), attr="Request")) if (
+                name in imported
+            ):
+                yield "class_kept", f"{name}.Request", "", node.lineno
+
+
+def _recursion(source: Source) -> Iterator[Found]:
+    for name, function in source.functions.items():
+        for node in ast.walk(function):
+            if isinstance(node, ast.Call) and last(node.func) == name:
+                owner = node.func.value if isinstance(node.func, ast.Attribute) else None
+                if owner is None or (isinstance(owner, ast.Name) and owner.id == "self"):
+                    yield "calls_itself", name, "", node.lineno
+
+
+def _idle(source: Source) -> Iterator[Found]:
+    """Statements and conditions that have no effect."""
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Expr(value=ast.Compare() as test):
+                yield "compared", ast.unparse(test), "", node.lineno
+            case ast.If(test=ast.Constant(value=True)):
+                yield "always", "if True", "", node.lineno
+            case ast.AugAssign(op=ast.Add(), value=ast.Constant(value=int() | float() as value)):
+                if not value:
+                    yield "adds_nothing", ast.unparse(node), "", node.lineno
+
+
+def _bare_nodes(source: Source) -> Iterator[Found]:
+    """Classes of nodes whose `__init__` does not call that of Node."""
+    for of in ast.walk(source.tree):
+        if isinstance(of, ast.ClassDef) and any("Node" in last(base) for base in of.bases):
+            for each in of.body:
+                if isinstance(each, Function) and each.name == "__init__":
+                    calls = (n for n in ast.walk(each) if isinstance(n, ast.Call))
+                    if not any(last(call.func) == "__init__" for call in calls):
+                        yield "no_super", of.name, "", each.lineno
+
+
+def _number(node: ast.AST | None) -> float | None:
+    match node:
+        case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
+            return value
+        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):
+            return -value
+    return None
+
+
+def _places(source: Source) -> Iterator[Found]:
+    """Where a coordinate is compared with a wall, or with the middle of the window."""
+    kept = {}
+    for node in ast.walk(source.tree):
+        if isinstance(node, ast.Assign) and (value := _number(node.value)) is not None:
+            kept.update({last(target): value for target in node.targets})
+    for node in ast.walk(source.tree):
+        if not isinstance(node, ast.Compare):
+            continue
+        parts = [node.left, *node.comparators]
+        axes = [last(each) for each in parts if last(each) in ("x", "y")]
+        values = [v for p in parts if (v := _number(p) or kept.get(last(p))) is not None]
+        for value in values if axes else []:
+            kind: LintKind = "at_middle" if 4 < value < 7 else "at_wall"
+            yield kind, axes[0], str(value), node.lineno
+
+
+def _numbers(source: Source) -> Iterator[Found]:
+    """Literals that a message's field gets by way of an argument or a name."""
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Assign(targets=[ast.Attribute(attr=name, value=outer)], value=value):
+                part = last(outer)
+                known = name if name in FIELDS else f"{part}.{name}" if part in FIELDS else ""
+            case ast.keyword(arg=str() as name, value=value) if name in FIELDS:
+                known = name
+            case _:
+                continue
+        given = last(value)
+        if not known or not given:
+            continue
+        function = source.around(node, ast.FunctionDef, ast.AsyncFunctionDef)
+        names = [a.arg for a in function.args.args] if isinstance(function, Function) else []
+        names = names[1:] if names[:1] == ["self"] else names
+        if isinstance(function, Function) and given in names:
+            at = names.index(given)
+            for call in source.calls(function.name):
+                literal = next((w.value for w in call.keywords if w.arg == given), None)
+                literal = literal or (call.args[at] if at < len(call.args) else None)
+                if literal is not None and _number(literal) is not None:
+                    yield "argument", known, ast.unparse(literal), call.lineno
+        for each in ast.walk(source.tree):
+            match each:
+                case ast.Assign(targets=[target], value=literal) if last(target) == given:
+                    pass
+                case ast.AnnAssign(target=target, value=literal) if last(target) == given:
+                    pass
+                case _:
+                    continue
+            if literal is not None and _number(literal) is not None:
+                yield "argument", known, ast.unparse(literal), each.lineno
+    for node in ast.walk(source.tree):
+        if isinstance(node, ast.Tuple | ast.Call):
+            for each in getattr(node, "elts", None) or getattr(node, "args", []):
+                number = _number(each)
+                if number is not None and not 0 <= number <= 255:
+                    yield "argument", "colour", ast.unparse(each), each.lineno
+
+
+def _imports(source: Source) -> Iterator[Found]:
+    for node in ast.walk(source.tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv")):
+            for alias in node.names:
+                yield "imports", alias.name, node.module or "", node.lineno
+
+
+def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
+    """What a program of ROS needs, and nowhere has: init, spin, a timer, a subscription."""
+    makes = list(source.calls("create_node"))
+    nodes = {
+        node.name
+        for each in whole
+        for node in ast.walk(each.tree)
+        if isinstance(node, ast.ClassDef) and any("Node" in last(base) for base in node.bases)
+    }
+    makes += source.calls(*nodes)
+    if makes and not any(_has(each, "init") for each in whole):
+        yield "no_init", "", "", _start_of(source, makes[0])
+    if makes and not any(_has(each, *SPINS, "add_node") for each in whole):
+        yield "no_spin", "", "", _statement(source, makes[0])
+    used = {
+        last(node)
+        for each in whole
+        for node in ast.walk(each.tree)
+        if isinstance(node, ast.Attribute | ast.Name) and isinstance(node.ctx, ast.Load)
+    }
+    creates = [*source.calls("create_publisher", "create_client", "create_timer")]
+    creates += [*source.calls("create_subscription")]
+    for name, function in source.functions.items():
+        if name in used or name.startswith("__") or function.decorator_list or name == "main":
+            continue
+        takes = [arg.arg for arg in function.args.args if arg.arg != "self"]
+        for lacks in ("create_subscription",) if takes else ("create_timer",):
+            near = [c for c in creates if source.around(c, *_FUNCTIONS) is not function]
+            if near and len(takes) < 2:
+                line = max(call.end_lineno or call.lineno for call in near)
+                yield "unused", name, lacks, line
+
+
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Module)
+
+
+def _has(source: Source, *names: str) -> bool:
+    return any(True for _ in source.calls(*names))
+
+
+def _statement(source: Source, call: ast.Call) -> int:
+    statement = source.around(call, ast.stmt)
+    return (getattr(statement, "end_lineno", 0) or call.lineno) if statement else call.lineno
+
+
+def _start_of(source: Source, call: ast.Call) -> int:
+    function = source.around(call, ast.FunctionDef, ast.AsyncFunctionDef)
+    return function.lineno if isinstance(function, Function) else call.lineno
+
+
+def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
+    """Attributes of self that are read and never set, with the start of the class."""
+    classes = {n.name for each in whole for n in ast.walk(each.tree) if isinstance(n, ast.ClassDef)}
+    stored: set[str] = set()
+    read: set[str] = set()
+    for each in whole:
+        for node in ast.walk(each.tree):
+            if isinstance(node, ast.Attribute):
+                (read if isinstance(node.ctx, ast.Load) else stored).add(node.attr)
+    for of in ast.walk(source.tree):
+        if not isinstance(of, ast.ClassDef):
+            continue
+        methods = [n for n in of.body if isinstance(n, Function)]
+        inits = [n for n in methods if n.name == "__init__"]
+        own = {
+            n.attr
+            for n in ast.walk(of)
+            if isinstance(n, ast.Attribute)
+            and last(n.value) == "self"
+            and isinstance(n.ctx, ast.Store)
+        }
+        is_derived = any(last(base) in classes for base in of.bases)
+        known = {n.name for n in methods} | (stored if is_derived else own)
+        variables = {name: line for n in methods for name, line in unread(n).items()}
+        for node in ast.walk(of):
+            match node:
+                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
+                    call = source.parents[node]
+                    is_called = isinstance(call, ast.Call) and call.func is node
+                    if name not in known and name in variables:
+                        yield "local", name, f"self.{name}", variables[name]
+                    if name not in known and inits and not is_called:
+                        yield "never_set", name, "", inits[0].lineno
+                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
+                    if name not in read:
+                        yield "never_read", name, "", node.lineno
+
+
+def _constants(source: Source) -> Iterator[Found]:
+    """Names of topics and services that stand apart from where they are used."""
+    for node in ast.walk(source.tree):
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+            texts = (n for n in ast.walk(node.value) if isinstance(n, ast.Constant))
+            for each in texts:
+                if isinstance(each.value, str) and _NAME.fullmatch(each.value):
+                    yield "constant", each.value, "", each.lineno
+
+
+def _fields(source: Source) -> Iterator[Found]:
+    """Where fields of messages are set: the first place of each."""
+    seen: set[str] = set()
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Attribute(value=ast.Attribute(attr=part), attr=name, ctx=ast.Store()):
+                names = [f"{part}.{name}"] if part in FIELDS else []
+            case ast.Attribute(attr=name, ctx=ast.Store()):
+                names = [name] if name in FIELDS else []
+            case ast.keyword(arg=str() as name):
+                names = [name] if name in FIELDS else []
+            case _:
+                continue
+        for name in names:
+            if name not in seen:
+                seen.add(name)
+                yield "sets", name, "", node.lineno
