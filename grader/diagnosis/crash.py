@@ -248,13 +248,14 @@ def thread_crashed(case: Case) -> Diagnosis | None:
     raised = case.raised or thread_exception(case.tail)
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
-    hint = known_exceptions.explain(raised)
+    hint = lint_findings.explain(case, raised) or known_exceptions.explain(raised)
+    place = hint.place or raised.place
     cause = msg(
         "A thread of your program crashed{error}{where}.",
         error=_error(raised, hint),
-        where=line(raised.place),
+        where=line(place),
     )
-    return Diagnosis("crashed", cause, _help(raised, hint), place=raised.place)
+    return Diagnosis("crashed", cause, _help(raised, hint), place=place)
 
 
 def misses_message(case: Case) -> bool:

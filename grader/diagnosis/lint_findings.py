@@ -232,10 +232,7 @@ def _without_init(case: Case, raised: Raised) -> Hint | None:
 
 
 def _without_super(case: Case, raised: Raised) -> Hint | None:
-    is_it = raised.type == "AttributeError" and "_Node__" in raised.text
-    is_it = is_it or re.search(
-        r"'_(?:default_callback_group|logger|clock|parameters)'", raised.text
-    )
+    is_it = raised.type == "AttributeError" and bool(_OF_NODE.search(raised.text[:_LONGEST]))
     for finding in _of_kind(case, "no_super") if is_it else ():
         return Hint(
             msg("super().__init__('name_of_the_node') must come first in __init__."),
@@ -371,7 +368,7 @@ def set_at(case: Case, text: str) -> SourceLine | None:
         zero = [each for each in _of_kind(case, "at_wall") if number(each.near) == 0]
         for finding in (*off, *zero, *middles):
             return finding.place
-    if "wall watched" in text or "zeros to stop" in text or "be true first" in text:
+    if "wall watched" in text or "zeros to stop" in text or "condition ever true" in text:
         for finding in _of_kind(case, "at_wall"):
             return finding.place
     found = [
@@ -412,7 +409,7 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
     if (without := _lacks(case)) is not None:
         return replace(without, run=found.run)
     for finding in _of_kind(case, "compared", "always", "adds_nothing"):
-        if finding.kind == "always" and "drive" not in str(found.help):
+        if finding.kind == "always" and "driving" not in str(found.help):
             continue
         code, where = excerpt(finding.name), line(finding.place)
         text = msg("`{code}`{where} is always true.", code=code, where=where)

@@ -10,6 +10,7 @@ import ast
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 
 from grader.recording.observations import LintKind
 from grader.submission.scopes import Function, unread
@@ -332,11 +333,11 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
         methods = [n for n in of.body if isinstance(n, Function)]
         inits = [n for n in methods if n.name == "__init__"]
         own = {
-            n.attr
-            for n in ast.walk(of)
-            if isinstance(n, ast.Attribute)
-            and last(n.value) == "self"
-            and isinstance(n.ctx, ast.Store)
+            node.attr
+            for node in ast.walk(of)
+            if isinstance(node, ast.Attribute)
+            and isinstance(node.ctx, ast.Store)
+            and not isinstance(source.parents[node], ast.AugAssign)
         }
         is_derived = any(last(base) in classes for base in of.bases)
         known = {n.name for n in methods} | (stored if is_derived else own)
@@ -348,7 +349,8 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
                     is_called = isinstance(call, ast.Call) and call.func is node
                     if name not in known and name in variables:
                         yield "local", name, f"self.{name}", variables[name]
-                    if name not in known and inits and not is_called:
+                    is_meant = get_close_matches(name, own, cutoff=0.8)
+                    if name not in known and inits and not is_called and not is_meant:
                         yield "never_set", name, "", inits[0].lineno
                 case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
                     if name not in read:
