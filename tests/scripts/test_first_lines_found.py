@@ -1,0 +1,35 @@
+"""Beginners' mistakes in right controllers are named, at their line."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import EXAMPLES
+
+ROOT = Path(__file__).parents[2]
+#: In `make test-all`; fewer where it asks for fewer.
+MISTAKES = min(200, 8 * EXAMPLES)
+#: Of those that lose points: what is to be right of the place, its line, and of the words [%].
+LINE, WORDS = 60, 80
+
+
+@pytest.mark.more("a grading for each mistake")
+@pytest.mark.timeout(0)
+def test_the_first_line_names_the_mistake_and_its_line() -> None:
+    words = [ROOT / "scripts" / "search_wrong_verdicts.py", "--only", "mistakes", "--seed", "11"]
+    done = subprocess.run(
+        [sys.executable, *words, "--count", str(MISTAKES), "--limit-s", "3600"],
+        check=False,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    line = re.search(r"exact line: .* \((\d+) %\)", done.stdout)
+    own = re.search(r"mistake's own: .* \((\d+) %\)", done.stdout)
+    assert line is not None and own is not None, done.stdout
+    assert int(line[1]) >= LINE, done.stdout
+    assert int(own[1]) >= WORDS, done.stdout
