@@ -17,6 +17,10 @@ from grader.submission.scopes import Function, unread
 
 #: Kind, name, near, line; see `LintFinding`.
 Found = tuple[LintKind, str, str, int]
+#: Of larger sources, in the nodes of their syntax trees times their files, nothing is looked for.
+MOST_NODES = 60_000
+#: So many fields of messages are followed to their numbers, and so many names to what is meant.
+MOST_FOLLOWED = 30
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
 #: Calls that take a callback -> its position, and that of a keyword of this name.
 CALLBACKS = {
@@ -80,6 +84,8 @@ def last(called: ast.AST) -> str:
 def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
     """Yield findings in the files of a submission, each with its file; the surest first."""
     sources = {file: Source(tree) for file, tree in trees.items()}
+    if len(sources) * sum(len(source.parents) for source in sources.values()) > MOST_NODES:
+        return
     whole = [*sources.values()]
     for rule in (_callbacks, _around_spin, _brackets, _recursion, _idle, _bare_nodes):
         for file, source in sources.items():
@@ -221,6 +227,7 @@ def _places(source: Source) -> Iterator[Found]:
 
 def _numbers(source: Source) -> Iterator[Found]:
     """Literals that a message's field gets by way of an argument or a name."""
+    followed: set[tuple[str, str]] = set()
     for node in ast.walk(source.tree):
         match node:
             case ast.Assign(targets=[ast.Attribute(attr=name, value=outer)], value=value):
@@ -231,8 +238,9 @@ def _numbers(source: Source) -> Iterator[Found]:
             case _:
                 continue
         given = last(value)
-        if not known or not given:
+        if not known or not given or len(followed) >= MOST_FOLLOWED or (known, given) in followed:
             continue
+        followed.add((known, given))
         function = source.around(node, ast.FunctionDef, ast.AsyncFunctionDef)
         names = [a.arg for a in function.args.args] if isinstance(function, Function) else []
         names = names[1:] if names[:1] == ["self"] else names
@@ -339,6 +347,7 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
             and isinstance(node.ctx, ast.Store)
             and not isinstance(source.parents[node], ast.AugAssign)
         }
+        seen: set[str] = set()
         is_derived = any(last(base) in classes for base in of.bases)
         known = {n.name for n in methods} | (stored if is_derived else own)
         variables = {name: line for n in methods for name, line in unread(n).items()}
@@ -349,8 +358,11 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
                     is_called = isinstance(call, ast.Call) and call.func is node
                     if name not in known and name in variables:
                         yield "local", name, f"self.{name}", variables[name]
-                    is_meant = get_close_matches(name, own, cutoff=0.8)
-                    if name not in known and inits and not is_called and not is_meant:
+                    if name in known or name in seen or is_called or not inits:
+                        continue
+                    seen.add(name)
+                    is_few = len(seen) <= MOST_FOLLOWED
+                    if is_few and not get_close_matches(name, sorted(own)[:200], cutoff=0.8):
                         yield "never_set", name, "", inits[0].lineno
                 case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
                     if name not in read:
