@@ -1,0 +1,101 @@
+"""How varied runs differ from the nominal one: what an exercise says, and what is drawn."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from grader.errors import ExerciseError
+from grader.exercise.loading import load_exercise
+from grader.recording.subject import Start
+from grader.testing import drive, twist
+from grader.testing.checking import check_exercise
+from turtlesim_py.world.turtle import SIZE_M
+
+NAME = "turtlesim_challenge"
+SAME = {"start": "same", "speed": [1.5, 1.6], "turn": [0.8, 0.9]}
+
+
+def edited(tmp_path, **varied):
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({"exercise": NAME, "varied_runs": varied}))
+    return load_exercise(str(path))
+
+
+def test_the_seed_draws_factors_from_the_ranges_and_the_place_of_the_nominal_run(tmp_path):
+    exercise = edited(tmp_path, count=2, runs=[SAME])
+    same, elsewhere = exercise.starts(5)
+    assert exercise.starts(5) == [same, elsewhere]
+    assert (same.x, same.y, same.theta) == (SIZE_M / 2, SIZE_M / 2, 0.0)
+    assert 1.5 <= same.speed <= 1.6
+    assert 0.8 <= same.turn <= 0.9
+    assert elsewhere.is_as_commanded
+    assert exercise.starts(6)[0].speed != same.speed
+
+
+def test_an_edited_copy_with_fewer_runs_has_the_first_of_them(tmp_path):
+    original = load_exercise(NAME)
+    assert edited(tmp_path, count=1).varied.runs == original.varied.runs[:1]
+
+
+@pytest.mark.parametrize(
+    ("runs", "words"),
+    [
+        ("fast", "varied_runs: runs: expected a list of ranges"),
+        ([{"fast": 1}], "varied_runs: runs: unknown 'fast'"),
+        ([{"start": "home"}], "varied_runs: runs: start: expected elsewhere or same"),
+        ([{"speed": 2}], "varied_runs: runs: speed: expected two numbers"),
+        ([{"turn": [0.9, 0.8]}], "varied_runs: runs: turn: expected two numbers"),
+        ([{"turn": [0, 1]}], "varied_runs: runs: turn: expected two numbers"),
+        ([{}, {}], "varied_runs: runs: expected at most 1"),
+    ],
+)
+def test_what_cannot_be_drawn_from_is_refused_with_its_line(tmp_path, runs, words):
+    with pytest.raises(ExerciseError, match=words):
+        edited(tmp_path, count=1, runs=runs)
+
+
+def test_a_recording_of_other_ranges_is_told_from_this_one(tmp_path):
+    conditions = edited(tmp_path, count=1, runs=[SAME]).conditions
+    assert conditions["varied_runs.1.same"] == 1
+    assert (conditions["varied_runs.1.speed_from"], conditions["varied_runs.1.turn_to"]) == (
+        1.5,
+        0.9,
+    )
+
+
+def test_each_student_of_a_secret_has_runs_of_his_own():
+    exercise = load_exercise(NAME)
+    one, two = (exercise.seed_for(name, "nobody guesses this") for name in ("ann", "bob"))
+    assert one != two
+    assert exercise.seed_for("ann", "nobody guesses that") != one
+    assert exercise.seed_for("ann") is None
+
+
+def test_the_factors_hold_for_every_turtle_and_outlive_reset_kill_and_spawn():
+    def controller(tick, pose, arena):
+        if tick == 10:
+            arena.spawn(2.0, 2.0, 0.0, "other")
+        if tick == 20:
+            arena.command("other", (1.0, 0.0, 0.0), (0.0, 0.0, 0.5))
+        if tick == 30:
+            arena.reset()
+        if tick == 40:
+            arena.kill("turtle1")
+            arena.spawn(5.0, 5.0, 0.0, "turtle1")
+            twist(arena, 1.0, 0.5)
+
+    trace = drive(controller, 60, Start(3.0, 3.0, 0.0, 1.5, 0.5)).trace
+    for name in ("other", "turtle1"):
+        way = trace.trajectory(name)
+        assert way.linear.max() == 1.5  # the pose says what the turtle does
+        assert way.angular.max() == 0.25
+
+
+def test_the_author_is_warned_of_a_range_that_a_computed_stop_may_pass(tmp_path):
+    mutants = tmp_path / "mutants.yaml"
+    mutants.write_text("right: {solution: solution.py}\nmutants: {}\n")
+    (tmp_path / "solution.py").write_text("")
+    exercise = edited(tmp_path, count=1, runs=[{**SAME, "speed": [1.2, 1.6]}])
+    problems = [problem.text for problem in check_exercise(exercise, mutants=mutants).problems]
+    assert any("drive a circle 1.33 times as large" in str(text) for text in problems)
