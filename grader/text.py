@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import fields, is_dataclass, replace
+from difflib import SequenceMatcher
 from functools import cache
 from typing import Any
 
@@ -25,6 +26,10 @@ _REPLACEMENT = "\ufffd"
 #: a narrow terminal any word may come to the start of a line.
 _COMMANDS = re.compile(r"^([^\S\n]*)::|##(?=\[|vso\[)", re.MULTILINE | re.IGNORECASE)
 _COMMANDS_WRAPPED = re.compile(r"::(?=[a-z-]+[ :])|##(?=\[|vso\[)", re.IGNORECASE)
+#: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
+_ALIKE = 0.85
+#: Words of a name that are shorter are no misspellings of each other: last_x, last_y.
+_SHORT = 3
 
 
 def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str:
@@ -120,6 +125,21 @@ def number(value: float) -> float | int:
     """Round a number for JSON: two decimals at most, and an int where it is whole."""
     rounded = round(value, 2)
     return int(rounded) if float(rounded).is_integer() else rounded
+
+
+def misspelt(name: str, other: str) -> bool:
+    """Whether one name is a misspelling of the other."""
+    one, two = name.lower().split("_"), other.lower().split("_")
+    if "".join(one) == "".join(two):
+        return True
+    if any(c.isdigit() for c in name + other):
+        return False
+    if len(one) == len(two):
+        others = [pair for pair in zip(one, two, strict=True) if pair[0] != pair[1]]
+        if any(min(map(len, pair)) < _SHORT for pair in others):
+            return False
+    alike = SequenceMatcher(None, name, other)  # the first two take little time, and are as sure
+    return min(alike.real_quick_ratio(), alike.quick_ratio()) >= _ALIKE and alike.ratio() >= _ALIKE
 
 
 def place(x: float, y: float) -> Message:

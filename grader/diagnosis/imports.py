@@ -55,14 +55,14 @@ def not_importable(case: Case) -> Diagnosis | None:
         "documentation. A module of your own has to be in what you hand in, "
         "beside the file or in its package."
     )
-    if (advice := _better(text)) is not None:
-        help_ = advice
-    elif _INTERFACES.match(text):
+    if _INTERFACES.match(text):
         help_ = msg(
             "Compare the name. If it is right, this package is not installed where "
             "your node was graded: take std_msgs, std_srvs or geometry_msgs "
             "instead, or ask whoever runs the grader to install it."
         )
+    elif (advice := _better(text)) is not None:
+        help_ = advice
     return Diagnosis("not_importable", cause, help_, place=raised.place)
 
 

@@ -17,7 +17,7 @@ from grader.diagnosis.standstill import hears_once, never_spins
 from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.message import Message, as_message, msg
 from grader.recording.observations import LintFinding, LintKind, Raised, SourceLine
-from grader.submission.lint import misspelt
+from grader.text import misspelt
 
 #: So much of an exception's text is searched [characters].
 _LONGEST = 1000
@@ -286,8 +286,9 @@ def spins_in_init(case: Case) -> Diagnosis | None:
         return Diagnosis(
             "stays_in_init",
             msg(
-                "Your program never leaves __init__(){where}: spin() returns only when the program "
-                "ends, and what comes after is never reached.",
+                "Your program never leaves __init__(): it stays at `{code}`{where}, and what comes "
+                "after is never reached: spin() returns only when the program ends.",
+                code=excerpt(finding.place.text),
                 where=line(finding.place),
             ),
             msg("Take it out there; main() makes the node and then calls rclpy.spin(node)."),
@@ -342,7 +343,8 @@ def number(text: str) -> float:
 
 def imported_at(case: Case, end_type: str, wanted: str) -> SourceLine | None:
     """Return the import of a class that has the right name and is another package's."""
-    package, _, name = end_type.split("/")
+    package, _, rest = end_type.partition("/")
+    name = rest.rpartition("/")[2]
     for finding in _of_kind(case, "imports"):
         if finding.name == name == wanted.rpartition("/")[2] and finding.near.startswith(package):
             return finding.place

@@ -248,13 +248,6 @@ def _variation(given: Mapping[str, Any]) -> Variation:
 def _check_varied(varied: VariedRuns, subject: Scene, scene: str) -> None:
     """Refuse varied runs that are too many, start outside, or vary what the scene cannot."""
     part, farthest_m = "varied_runs", subject.farthest_start_m
-    if len(varied.runs) > varied.count:
-        raise Mistake(
-            (part, RUNS),
-            "expected at most {count}, as many as there are runs; found {found}",
-            count=varied.count,
-            found=len(varied.runs),
-        )
     if varied.runs and subject.usual_start is None:
         raise Mistake(
             (part, RUNS), "the scene {scene} cannot vary them: leave it out", scene=repr(scene)

@@ -60,7 +60,8 @@ class VariedRuns:
 
     Attributes:
         per_student: whether they start elsewhere for each student of a class.
-        runs: how each differs besides, in order; those beyond these are driven as commanded.
+        runs: how each differs besides, in order; further runs are driven as commanded, and what is
+            said of runs beyond `count` is not used.
     """
 
     count: int = 0
@@ -149,7 +150,7 @@ class Exercise:
         if not self.is_started:
             return {}
         varied = asdict(self.varied)
-        for number, run in enumerate(varied.pop("runs"), 1):
+        for number, run in enumerate(varied.pop("runs")[: self.varied.count], 1):
             varied[f"{number}.same"] = float(run["start"] == "same")
             for key in ("speed", "turn"):
                 varied[f"{number}.{key}_from"], varied[f"{number}.{key}_to"] = run[key]
@@ -190,7 +191,7 @@ class Exercise:
             return []
         starts = subject.starts(varied.count, used, varied.nearest_m, varied.farthest_m)
         chance = random.Random(f"factors {used}")
-        for number, run in enumerate(varied.runs):
+        for number, run in enumerate(varied.runs[: varied.count]):
             factors = {
                 "speed": round(chance.uniform(*run.speed), 2),
                 "turn": round(chance.uniform(*run.turn), 2),

@@ -196,8 +196,6 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
             example, fits = repr(known[key]), _alike(value, known[key])
             expect(fits, (part, key), "expected e.g. {known}, found {found}", value, known=example)
         merged[part] = {**known, **given}
-        if RUNS in known and RUNS not in given:
-            merged[part][RUNS] = known[RUNS][: int(merged[part]["count"])]
     if translated.PART in original and translated.PART not in edited:
         anew = [key for key in ("title", "task") if merged.get(key) != original.get(key)]
         merged[translated.PART] = translated.without(original[translated.PART], anew)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from difflib import SequenceMatcher
 from pathlib import Path
 
 from grader.recording.observations import LintFinding, LintKind, SourceLine
@@ -18,15 +17,12 @@ from grader.submission import ros_mistakes, scopes
 from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
 from grader.submission.scopes import Function
+from grader.text import misspelt
 
 #: So many findings are kept, and so much of a name or a line [characters].
 MOST, LONGEST = 80, 300
 #: Longer sources are not linted [characters].
 MOST_SOURCE = 200_000
-#: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
-ALIKE = 0.85
-#: Words of a name that are shorter are no misspellings of each other: last_x, last_y.
-SHORT = 3
 SPINS = ("spin", "spin_once", "spin_until_future_complete", "add_node")
 THREADS = ("Thread", "Process", "Timer")
 #: Exceptions that catch every error, and functions that show the one that is being handled.
@@ -220,21 +216,6 @@ def _unread(of: ast.ClassDef, names: Names, file: str) -> Iterator[LintFinding]:
         near = next((o for o in sorted(start & names.read) if misspelt(name, o)), None)
         if near is not None:
             yield _finding("unread", name, near, file, line)
-
-
-def misspelt(name: str, other: str) -> bool:
-    """Whether one name is a misspelling of the other."""
-    one, two = name.lower().split("_"), other.lower().split("_")
-    if "".join(one) == "".join(two):
-        return True
-    if any(c.isdigit() for c in name + other):
-        return False
-    if len(one) == len(two):
-        others = [pair for pair in zip(one, two, strict=True) if pair[0] != pair[1]]
-        if any(min(map(len, pair)) < SHORT for pair in others):
-            return False
-    alike = SequenceMatcher(None, name, other)  # the first two take little time, and are as sure
-    return min(alike.real_quick_ratio(), alike.quick_ratio()) >= ALIKE and alike.ratio() >= ALIKE
 
 
 def _of_methods(of: ast.ClassDef, file: str) -> Iterator[LintFinding]:

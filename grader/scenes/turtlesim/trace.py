@@ -97,7 +97,7 @@ class TurtleTrace:
         """Hash every pose and every input; equal hashes mean equal runs."""
         digest = hashlib.sha256()
         for name in sorted(self.trajectories):
-            digest.update(name.encode())
+            digest.update(name.encode("utf-8", "surrogatepass"))
             digest.update(self.trajectories[name].rows().tobytes())
         digest.update(json.dumps([inputs.to_json(event) for event in self.events]).encode())
         return digest.hexdigest()

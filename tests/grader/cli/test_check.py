@@ -119,10 +119,10 @@ def test_a_file_of_this_name_that_is_no_result_stays(graded):
 
 
 def test_what_only_a_run_can_follow_is_told(graded, tmp_path, capsys):
-    changes = {"limits": {"total_s": 240}, "varied_runs": {"count": 3}}
+    changes = {"limits": {"total_s": 240}, "varied_runs": {"count": 4}}
     assert main(["check", str(graded), "--exercise", edited(tmp_path, **changes)]) == 0
     told = capsys.readouterr().out
-    for key, then, now in (("limits.total_s", 180, 240), ("varied_runs.count", 2, 3)):
+    for key, then, now in (("limits.total_s", 180, 240), ("varied_runs.count", 3, 4)):
         line = (
             f"The recording was made with {key} {then}; the exercise now says {now}. "
             "Run the submission again for that."

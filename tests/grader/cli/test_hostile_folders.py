@@ -91,7 +91,7 @@ def test_no_recording_is_written_through_a_link(repository, secret, name):
     link.symlink_to(secret.parent, target_is_directory=True)
     assert main(["run", "node.py", "--out", "graded"]) == 0
     assert [path.name for path in secret.parent.iterdir()] == [secret.name]
-    assert len(reading.load_all(repository / "graded" / "recording").varied) == 2
+    assert len(reading.load_all(repository / "graded" / "recording").varied) == 3
 
 
 @pytest.mark.parametrize("words", [["--out", "graded"], []])

@@ -74,8 +74,8 @@ def test_runs_go_one_after_the_other_and_verdicts_are_told_as_they_are_known(
     told = [each for each in in_no_time if isinstance(each, live.Grading)]
     headings = list(dict.fromkeys(each.run for each in told))
     assert headings[:2] == ["", "nominal run, five times as fast as in real time"]
-    assert headings[2].startswith("varied run 1 of 2 from (")
-    assert headings[3].startswith("varied run 2 of 2 from (")
+    assert headings[2].startswith("varied run 1 of 3 from (")
+    assert headings[3].startswith("varied run 2 of 3 from (")
     early = next(each for each in told if each.judged)
     assert (early.score, early.is_over) == ("The nominal run is over, the others still go.", False)
     result = json.loads((out / "result.json").read_text())

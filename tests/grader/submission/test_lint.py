@@ -108,22 +108,39 @@ NOTHING = {
 }
 
 
+#: What only gives a place to something that a run has shown.
+PLACES = {
+    "sets",
+    "constant",
+    "never_read",
+    "never_set",
+    "no_super",
+    "imports",
+    "at_wall",
+    "at_middle",
+}
+
+
+def reported(sources):
+    return [each for each in lint.find(sources) if each.kind not in PLACES]
+
+
 @pytest.mark.parametrize("name", FOUND)
 def test_a_slip_is_found_with_its_line(name):
     source, wanted = FOUND[name]
-    found = [(s.kind, s.name, s.near, s.place.line) for s in lint.find({"a.py": source})]
+    found = [(s.kind, s.name, s.near, s.place.line) for s in reported({"a.py": source})]
     assert found == [wanted]
 
 
 @pytest.mark.parametrize("name", NOTHING)
 def test_what_may_be_meant_is_no_slip(name):
-    assert lint.find({"a.py": NOTHING[name]}) == []
+    assert reported({"a.py": NOTHING[name]}) == []
 
 
 def test_what_one_file_sets_another_may_read():
     base = "class Base:\n    def go(self):\n        return self.stoped\n"
     source = f"{HEAD}{READ}    def on_pose(self, pose):\n        self.stoped = True\n"
-    assert lint.find({"a.py": source, "b.py": base}) == []
+    assert reported({"a.py": source, "b.py": base}) == []
 
 
 def test_what_a_package_shows_is_found_where_it_is_read(tmp_path):

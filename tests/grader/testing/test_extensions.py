@@ -44,7 +44,7 @@ class DefinesNothing(Turtlesim):
 @pytest.mark.parametrize(
     ("scene", "told"),
     [
-        (Forgets, "from_channels() of to_messages() has another sha256(), or other ticks"),
+        (Forgets, "from_channels() gives back another sha256() than to_messages() got"),
         (LacksATurtle, "from_channels() cannot read to_messages(): no trace of turtlesim: KeyErr"),
         (DefinesNothing, "message_definitions() lacks "),
     ],
