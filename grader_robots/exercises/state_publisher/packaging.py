@@ -95,8 +95,8 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     (2/5), and the package's own node, without another source of joint states beside it (2/5);
     setup.py installs it and all files that it reads, and none of them is looked for in somebody's
     home (1/5). It is evaluated with its default arguments, where the package is laid out as if
-    installed, and starts nothing. If it ends with an error: 0. Of several launch files the best
-    counts.
+    installed, and starts nothing. If it ends with an error, as for want of a file that it reads or
+    of a program of the package: 0. Of several launch files the best counts.
     """
     trace = recordings.nominal.package
     facts = None if trace is None else PackageFacts.of(trace)
@@ -123,10 +123,23 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
     if launch.problem is not None:
         return launching.ends(launch.file, launch.problem, 0)
     if faults := list(_faults(facts, launch)):
-        return launching.without(launch.file, faults, WORTH)
+        found = launching.without(launch.file, faults, WORTH)
+        return replace(found, share=0) if _starts_nothing(facts, launch) else found
     return Finding(
         1, msg("{file} starts {program} and your node.", file=launch.file, program=PUBLISHER)
     )
+
+
+def _starts_nothing(facts: PackageFacts, launch: LaunchFile) -> bool:
+    """Whether `ros2 launch` ends with an error, for want of a file or of a program of its own."""
+    own = {node.executable for node in launch.nodes if node.package == facts.name}
+    is_file_missing = any(each.kind == "file" for each in launch.lacking)
+    return is_file_missing or bool(launch.moved) or bool(own - _programs(facts))
+
+
+def _programs(facts: PackageFacts) -> set[str]:
+    """The programs of the package that `ros2 run` finds."""
+    return {*(script.name for script in facts.setup.scripts), *facts.plain_programs}
 
 
 def _faults(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
@@ -174,7 +187,7 @@ def _without_node(facts: PackageFacts, launch: LaunchFile) -> Message:
             "it starts {program} as well, which sends other joint states beside your node's.",
             program=others[0],
         )
-    programs = {*(script.name for script in facts.setup.scripts), *facts.plain_programs}
+    programs = _programs(facts)
     if any(n.package == facts.name and n.executable in programs for n in launch.nodes):
         return NOTHING
     meant = filter(None, (_meant(node, facts.name, programs) for node in launch.nodes))

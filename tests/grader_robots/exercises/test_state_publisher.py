@@ -167,7 +167,7 @@ def test_a_path_from_the_current_folder_is_called_one():
             replace(SETUP, scripts=(SCRIPT, replace(SCRIPT, name="b", fault=plain_text("no")))),
             {"package": 0.5},
         ),
-        (replace(SETUP, scripts=()), {"package": 0, "launch": 0.6}),
+        (replace(SETUP, scripts=()), {"package": 0, "launch": 0}),
         (replace(SETUP, problem=Obstacle("error", plain_text("NameError: x"))), {"package": 0.5}),
     ],
 )
@@ -192,13 +192,13 @@ def test_a_package_is_judged_by_what_it_installs(setup, losses):
         (replace(LAUNCH, nodes=(replace(ROBOT, parameters=()), OWN)), {"launch": 0.6}),
         (replace(LAUNCH, nodes=(replace(ROBOT, parameters=(described(1),)), OWN)), {"launch": 0.6}),
         (replace(LAUNCH, nodes=(ROBOT, replace(OWN, package="other"))), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(ROBOT, replace(OWN, executable="x"))), {"launch": 0.6}),
+        (replace(LAUNCH, nodes=(ROBOT, replace(OWN, executable="x"))), {"launch": 0}),
         (
             replace(LAUNCH, nodes=(ROBOT, OWN, node("j", "joint_state_publisher_gui"))),
             {"launch": 0.6},
         ),
-        (replace(LAUNCH, lacking=(Lacking("file", "/home/me/a.urdf", "", ""),)), {"launch": 0.8}),
-        (replace(LAUNCH, moved="/prefix/share/walker/a.urdf"), {"launch": 0.8}),
+        (replace(LAUNCH, lacking=(Lacking("file", "/home/me/a.urdf", "", ""),)), {"launch": 0}),
+        (replace(LAUNCH, moved="/prefix/share/walker/a.urdf"), {"launch": 0}),
         (replace(LAUNCH, lacking=(Lacking("package", "rviz2", "", ""),)), {"launch": 0.8}),
     ],
 )
