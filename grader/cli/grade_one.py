@@ -111,16 +111,12 @@ def _run_and_judge(
     messages.print(_how(args.time, exercise.is_started))
 
     def show_nominal(nominal: Recording) -> None:
-        if not args.watch and live is None:
+        if live is None:
             return
-        from grader.reports import Report, terminal
+        from grader.reports import Report
 
         known = judging.judge_nominal(nominal, exercise, submission=submission.name)
-        report = Report.of(known, out, Recordings(nominal))
-        if args.watch:
-            terminal.show_nominal(report, messages)
-        if live is not None:
-            live.know_of_nominal(report)
+        live.know_of_nominal(Report.of(known, out, Recordings(nominal)))
 
     runner = grading.runner(exercise, args.time, live)
     at_once = None if live is None else 1

@@ -14,7 +14,7 @@ from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.message import msg
 from grader.reports import Report
-from grader.result.result import ARTIFACTS
+from grader.result.result import ARTIFACTS, RESULT
 from grader.result.visible import is_hidden
 from grader.translations import tr, translate
 
@@ -28,7 +28,7 @@ def add_arguments(parser: options.Parser) -> None:
         type=Path,
         nargs="+",
         metavar="RESULT.json",
-        help=tr("a result, or what --error-json has written; several only with csv"),
+        help=tr("a result, its folder, or what --error-json has written; several only with csv"),
     )
     parser.add_argument("--format", choices=reports.names(), default="terminal", metavar="NAME")
     parser.add_argument(
@@ -55,6 +55,7 @@ def add_arguments(parser: options.Parser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Show the results; see `grader.cli` for the exit codes."""
     checks = _checks(args) if args.exercise else ()
+    args.result = [path / RESULT if path.is_dir() else path for path in args.result]
     if args.out is not None:
         files.check_is_no_input(args.out, _read(args))
     shown = [reports.read(path, checks, options.view_of(args)) for path in args.result]

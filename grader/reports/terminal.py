@@ -115,19 +115,6 @@ class _PatientConsole(Console):
             os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
-def show_nominal(report: Report, console: Console) -> None:
-    """Print the verdicts of the nominal run while the varied ones go on."""
-    console.print(_text(tr("The nominal run is over, the others still go."), "bold"))
-    if report.verdicts:
-        _checks(report, console)
-    if report.diagnosis is not None and not report.diagnosis.check:
-        _lead(report, console)
-    first = report.first_to_mend
-    if first is not None and not report.waited_for(first):
-        console.print(_explanation(report, first))
-    console.print()
-
-
 def _lead(report: Report, console: Console) -> None:
     """Print the first thing to fix; in a terminal, lines are wrapped at words."""
     whole = not console.is_terminal

@@ -157,7 +157,9 @@ def _unexpected(trial: Trial) -> Iterator[Fault]:
                 score=verdict.score,
                 max_score=verdict.max_score,
                 file=FILE_NAME,
-                said="some" if expected == "some" else msg("{share:g} of them", share=expected),
+                said="some"
+                if expected == "some"
+                else msg("{points:g}", points=expected * verdict.max_score),
             )
             yield Fault(verdict.check, text)
 

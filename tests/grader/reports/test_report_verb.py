@@ -28,6 +28,12 @@ def test_without_a_format_it_is_for_the_terminal(result, capsys):
     assert capsys.readouterr().out.startswith("Fix this first: Rationale of draws.\n")
 
 
+def test_a_folder_stands_for_the_result_in_it(result, capsys):
+    assert main(["report", str(result)]) == main(["report", str(result.parent)]) == 0
+    once, again = capsys.readouterr().out.split("Fix this first", 2)[1:]
+    assert once == again
+
+
 def test_a_format_goes_to_standard_output(result, capsysbinary):
     assert main(["report", str(result), "--format", "gradescope"]) == 0
     assert json.loads(capsysbinary.readouterr().out)["score"] == 18.33

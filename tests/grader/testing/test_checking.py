@@ -81,7 +81,7 @@ def test_a_mutant_that_nobody_catches_is_told(tmp_path, driven):
 def test_what_is_left_of_the_points_must_be_what_was_said(tmp_path, driven):
     driven["slow"] = None
     assert problems(exercises.write(tmp_path)) == [
-        "commands: leaves 0 of 4 points; mutants.yaml says 1 of them (on slow)",
+        "commands: leaves 0 of 4 points; mutants.yaml says 4 (on slow)",
         "far: leaves 0 of 6 points; mutants.yaml says some (on slow)",
         "far: never fails on any mutant",
     ]
