@@ -490,7 +490,6 @@ def awaiting(program: Program) -> Iterator[Change]:
         if around is None or isinstance(around, ast.AsyncFunctionDef):
             continue
         names = {each.name for each in program.callbacks("create_subscription")}
-        callers = {around.name} | ({around.name} - names)
         if around.name in names:
             begin = program.span(around)[0]
             yield (Edit(begin, begin, "async "), Edit(sends.start(), sends.start(), "await "))
@@ -499,7 +498,7 @@ def awaiting(program: Program) -> Iterator[Change]:
         begin = program.span(around)[0]
         edits.append(Edit(begin, begin, "async "))
         outer = set()
-        for call in program.calls(*callers):
+        for call in program.calls(around.name):
             caller = program.around(program.span(call)[0])
             if caller is not None and caller.name in names:
                 edits.append(Edit(program.span(call)[0], program.span(call)[0], "await "))

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from difflib import SequenceMatcher
 
-from grader.diagnosis import lint_findings, standstill
+from grader.diagnosis import source_lines, standstill
 from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
@@ -188,10 +188,10 @@ def _first(
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
         if end.name == near.name:
-            found = lint_findings.imported_at(case, end.type, near.type)
+            found = source_lines.imported_at(case, end.type, near.type)
             end = replace(end, place=found or end.place)
         else:
-            end = replace(end, place=lint_findings.named_at(case, end.name, end.place))
+            end = replace(end, place=source_lines.named_at(case, end.name, end.place))
         return Diagnosis(key, describe(end, near), _fix(end, near), place=end.place)
     return None
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis import known_exceptions, lint_findings
+from grader.diagnosis import known_exceptions, lint_findings, source_lines
 from grader.diagnosis.case import Case, at, excerpt, line, sentences, thread_exception
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, plain_text
@@ -115,7 +115,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     what, help_ = _wanted(found["field"], excerpt(found["what"]), place)
-    place = lint_findings.given_at(case, found["field"], _fitting(found["what"])) or place
+    place = source_lines.given_at(case, found["field"], _fitting(found["what"])) or place
     if place is not None and re.search(r"\b(?:np|numpy)\.", place.text):
         help_ = msg("A number of numpy is none of Python: write float(...) or int(...) around it.")
     cause = msg(
@@ -132,7 +132,7 @@ def _fitting(what: str) -> Callable[[str], bool]:
     """Return whether a number, as it is written, may be what a field must be."""
     if limits := _RANGE.search(what):
         low, high = float(limits[1]), float(limits[2])
-        return lambda text: low <= lint_findings.number(text) <= high
+        return lambda text: low <= source_lines.number(text) <= high
     if "'float'" in what:
         return lambda text: "." in text or "e" in text
     return lambda text: "." not in text

@@ -13,7 +13,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
-from grader.diagnosis import connections, crash, imports, lint_findings, standstill, unnoticed
+from grader.diagnosis import (
+    connections,
+    crash,
+    imports,
+    lint_findings,
+    source_lines,
+    standstill,
+    unnoticed,
+)
 from grader.diagnosis.case import Case, excerpt, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.verdict import Verdict
@@ -90,14 +98,14 @@ def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagno
 
 def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
     """Give a diagnosis the line to change, where the source shows another than the run."""
-    lines: dict[str, tuple[LintKind, ...]] = {
-        "never_spins": ("no_spin",),
-        "ends_early": ("spins_once",),
-        "does_nothing": ("uncalled",),
+    lines: dict[str, LintKind] = {
+        "never_spins": "no_spin",
+        "ends_early": "spins_once",
+        "does_nothing": "uncalled",
     }
     if found.key not in lines or (found.place is not None and "while" in found.place.text):
         return found
-    return replace(found, place=lint_findings.first_of(case, *lines[found.key]) or found.place)
+    return replace(found, place=source_lines.first_of(case, lines[found.key]) or found.place)
 
 
 def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
@@ -173,4 +181,4 @@ def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
         at = min((found.start() for found in spoken if found), default=len(text))
         if at < first and end.used_at is not None:
             first, place = at, end.used_at
-    return replace(found, place=lint_findings.set_at(case, text) or place)
+    return replace(found, place=source_lines.set_at(case, text) or place)

@@ -27,7 +27,7 @@ _NODE_ATTRIBUTE = (
 _GIVEN = re.compile(
     r"(?:(\w{1,60})\.)?(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w"
 )
-_MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
+MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
 _TAKES_CALLBACK = re.compile(r"create_(?:timer|subscription|service)\(|add_done_callback\(")
 _NO_FILE = re.compile(r"\[Errno \d+\] [^:]{1,60}: '([^'\n]{1,300})")
 _SUBSCRIPTED = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
@@ -42,6 +42,8 @@ _NOT_CALLED = msg(
     "Pass a callback by its name, without parentheses: self.NAME, not self.NAME(), which calls "
     "it at once and passes what it returns."
 )
+NO_INIT = msg("rclpy.init() has not been called")
+NO_NODE = msg("the Node is not made yet when that line uses it")
 #: The meaning of an exception that no rule explains.
 _MEANING = {
     "KeyError": msg(
@@ -105,7 +107,7 @@ def _not_here(name: str, text: str, place: SourceLine | None) -> Hint | None:
 
 def _no_argument(_: str, text: str, place: SourceLine | None) -> Hint | None:
     """publish() or call_async() without anything, or a callback called where it is passed."""
-    found, line = _MISSING.search(text), place.text if place is not None else ""
+    found, line = MISSING.search(text), place.text if place is not None else ""
     if found is None:
         return None
     if found[1] in ("publish", "call_async", "call"):
@@ -136,13 +138,11 @@ def _without_init(name: str, text: str, _: SourceLine | None) -> Hint | None:
     """ROS or the node has not been started."""
     if name == "NotInitializedException" or "rclpy.init() has not been called" in text:
         return Hint(
-            msg("Call rclpy.init() at the start of main(), before the node is made."),
-            msg("rclpy.init() has not been called"),
+            msg("Call rclpy.init() at the start of main(), before the node is made."), NO_INIT
         )
     if name == "AttributeError" and re.search(f"has no attribute {_NODE_ATTRIBUTE}", text):
         return Hint(
-            msg("super().__init__('name_of_the_node') must come first in __init__."),
-            msg("the Node is not made yet when that line uses it"),
+            msg("super().__init__('name_of_the_node') must come first in __init__."), NO_NODE
         )
     if "__init__() missing" in text and "'node_name'" in text:
         return Hint(msg("Give the node a name: super().__init__('name_of_the_node')."))
@@ -242,7 +242,7 @@ def _callback(_: str, text: str, place: SourceLine | None) -> Hint | None:
                 )
             )
         return Hint(msg("Compare that call with what stands at `def {name}`.", name=excerpt(name)))
-    if found := _MISSING.search(text):
+    if found := MISSING.search(text):
         is_called_by_rclpy = place is None or "spin" in place.text or "def " in place.text
         if not is_called_by_rclpy:
             return Hint(msg("Compare with what stands at `def {name}`.", name=excerpt(found[1])))

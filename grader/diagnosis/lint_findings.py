@@ -5,14 +5,15 @@ A lint finding by itself is not reported: it may be meant. `LintFinding` describ
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
+from grader.diagnosis import known_exceptions
 from grader.diagnosis.case import Case, excerpt, function, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import Hint
+from grader.diagnosis.source_lines import of_kind
 from grader.diagnosis.standstill import hears_once, never_spins
 from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.message import Message, as_message, msg
@@ -24,9 +25,12 @@ _LONGEST = 1000
 _GIVEN = re.compile(r"(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w")
 _VARIABLE = re.compile(r"variable '(\w{1,60})'")
 _NO_ATTRIBUTE = re.compile(r"has no attribute '(\w{1,60})'")
-_MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
-_OF_NODE = re.compile(r"'_(?:Node__\w{1,40}|default_callback_group|logger|clock|parameters)'")
 _OF_A_SERVICE = re.compile(r"(\w{1,60})(?:\.__init__)?\(\) (?:got an unexpected k|takes no arg)")
+#: What an exception shows not to have been begun -> what the source lacks.
+_BEGINNINGS: dict[Message, tuple[LintKind, ...]] = {
+    known_exceptions.NO_INIT: ("no_init",),
+    known_exceptions.NO_NODE: ("no_super",),
+}
 _NO_INSTANCE = "Service classes can not be instantiated"
 
 
@@ -35,15 +39,11 @@ def explain(case: Case, raised: Raised) -> Hint | None:
     return next((hint for rule in _RULES if (hint := rule(case, raised)) is not None), None)
 
 
-def _of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
-    return (finding for finding in case.observed.lint_findings if finding.kind in kinds)
-
-
 def _not_global(case: Case, raised: Raised) -> Hint | None:
     found = _VARIABLE.search(raised.text[:_LONGEST])
     if raised.type != "UnboundLocalError" or found is None:
         return None
-    for finding in _of_kind(case, "global"):
+    for finding in of_kind(case, "global"):
         if finding.name == found[1]:
             word = excerpt(finding.near)
             outside = msg("outside")
@@ -73,7 +73,7 @@ def _without_self(case: Case, raised: Raised) -> Hint | None:
     found = _GIVEN.search(raised.text[:_LONGEST])
     if raised.type != "TypeError" or found is None or int(found[3]) != int(found[2]) + 1:
         return None
-    for finding in _of_kind(case, "without_self"):
+    for finding in of_kind(case, "without_self"):
         if finding.name == found[1]:
             written = excerpt(finding.place.text)
             rest = written.partition("(")[2].lstrip()
@@ -91,7 +91,7 @@ def _without_self(case: Case, raised: Raised) -> Hint | None:
 def _hidden_method(case: Case, raised: Raised) -> Hint | None:
     if "object is not callable" not in raised.text[:_LONGEST] or raised.place is None:
         return None
-    for finding in _of_kind(case, "method"):
+    for finding in of_kind(case, "method"):
         name = excerpt(finding.name)
         if f"self.{name}(" in raised.place.text:
             return Hint(
@@ -107,7 +107,7 @@ def _hidden_method(case: Case, raised: Raised) -> Hint | None:
 
 def _class_given(case: Case, raised: Raised) -> Hint | None:
     place = raised.place
-    for finding in _of_kind(case, "class"):
+    for finding in of_kind(case, "class"):
         if place is not None and ("spin" in place.text or place.line == finding.place.line):
             call, name = excerpt(finding.near), excerpt(finding.name)
             return Hint(
@@ -151,14 +151,14 @@ def _misspelt(case: Case, raised: Raised) -> Hint | None:
     if found is None or raised.place is None or f"self.{found[1]}" not in raised.place.text:
         return None
     name = excerpt(found[1])
-    for finding in _of_kind(case, "local"):
+    for finding in of_kind(case, "local"):
         if finding.name == found[1] and finding.near == f"self.{found[1]}":
             return Hint(
                 msg("Write self.{name} = ... there.", name=name),
                 msg("`{name}` is a variable of that function; self.{name} is never set", name=name),
                 finding.place,
             )
-    for finding in _of_kind(case, "never_read"):
+    for finding in of_kind(case, "never_read"):
         if misspelt(finding.name, found[1]):
             return Hint(
                 msg("Write self.{name} there, or the other name here.", name=name),
@@ -170,7 +170,7 @@ def _misspelt(case: Case, raised: Raised) -> Hint | None:
                 ),
                 finding.place,
             )
-    for finding in _of_kind(case, "never_set"):
+    for finding in of_kind(case, "never_set"):
         if finding.name == found[1] and "__init__" in finding.place.text:
             return Hint(
                 msg("Write self.{name} = ... in __init__, or compare the name.", name=name),
@@ -184,7 +184,7 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
     """A callback whose own line has to change."""
     text = raised.text[:_LONGEST]
     if "callback should be" in text:
-        for finding in _of_kind(case, "no_message", "without_self"):
+        for finding in of_kind(case, "no_message", "without_self"):
             if raised.place is None or finding.name in raised.place.text:
                 name = excerpt(finding.name)
                 return Hint(
@@ -196,8 +196,8 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
                     msg("{name}(), the callback of a subscription, takes no message", name=name),
                     finding.place,
                 )
-    missing = _MISSING.search(text)
-    for finding in _of_kind(case, "message_for_timer") if missing else ():
+    missing = known_exceptions.MISSING.search(text)
+    for finding in of_kind(case, "message_for_timer") if missing else ():
         if missing is not None and missing[1] == finding.name:
             name = excerpt(finding.name)
             return Hint(
@@ -210,7 +210,7 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
 
 def _class_kept(case: Case, raised: Raised) -> Hint | None:
     if "'property' object" in raised.text or "'getset_descriptor' object" in raised.text:
-        for finding in _of_kind(case, "class_kept"):
+        for finding in of_kind(case, "class_kept"):
             name = excerpt(finding.name)
             return Hint(
                 msg("The parentheses are missing: write {name}() there.", name=name),
@@ -220,30 +220,16 @@ def _class_kept(case: Case, raised: Raised) -> Hint | None:
     return None
 
 
-def _without_init(case: Case, raised: Raised) -> Hint | None:
-    is_it = raised.type.endswith("NotInitializedException") or "rclpy.init()" in raised.text
-    for finding in _of_kind(case, "no_init") if is_it else ():
-        return Hint(
-            msg("Call rclpy.init() at the start of main(), before the node is made."),
-            msg("rclpy.init() has not been called"),
-            finding.place,
-        )
-    return None
-
-
-def _without_super(case: Case, raised: Raised) -> Hint | None:
-    is_it = raised.type == "AttributeError" and bool(_OF_NODE.search(raised.text[:_LONGEST]))
-    for finding in _of_kind(case, "no_super") if is_it else ():
-        return Hint(
-            msg("super().__init__('name_of_the_node') must come first in __init__."),
-            msg("the Node is not made yet when that line uses it"),
-            finding.place,
-        )
+def _not_begun(case: Case, raised: Raised) -> Hint | None:
+    """ROS or a node that was not begun: the line to change is where that should have been."""
+    known = known_exceptions.explain(raised)
+    for finding in of_kind(case, *_BEGINNINGS.get(known.text, ())):
+        return replace(known, place=finding.place)
     return None
 
 
 def _calls_itself(case: Case, raised: Raised) -> Hint | None:
-    for finding in _of_kind(case, "calls_itself") if raised.type == "RecursionError" else ():
+    for finding in of_kind(case, "calls_itself") if raised.type == "RecursionError" else ():
         name = excerpt(finding.name)
         return Hint(
             msg("Leave that call out: ROS calls {name}() again and again by itself.", name=name),
@@ -255,7 +241,7 @@ def _calls_itself(case: Case, raised: Raised) -> Hint | None:
 
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
     *(_not_global, _without_self, _hidden_method, _class_given, _service_for_request),
-    *(_misspelt, _wrong_callback, _class_kept, _without_init, _calls_itself, _without_super),
+    *(_misspelt, _wrong_callback, _class_kept, _not_begun, _calls_itself),
 )
 
 
@@ -263,7 +249,7 @@ def ends_before_spin(case: Case) -> Diagnosis | None:
     """ROS or the node is ended before anything spins."""
     if any(end.used for end in case.observed.ends if end.kind == "publisher"):
         return None
-    for finding in _of_kind(case, "ends_before_spin"):
+    for finding in of_kind(case, "ends_before_spin"):
         name = excerpt(finding.name)
         if name == "destroy_node":
             what = msg("Your node is destroyed before it spins{where}", where=line(finding.place))
@@ -282,7 +268,7 @@ def spins_in_init(case: Case) -> Diagnosis | None:
     """A spin in an `__init__`, which never gets to what comes after it."""
     if any(end.used for end in case.observed.ends if end.kind == "publisher"):
         return None
-    for finding in _of_kind(case, "spins_in_init"):
+    for finding in of_kind(case, "spins_in_init"):
         return Diagnosis(
             "stays_in_init",
             msg(
@@ -300,7 +286,7 @@ def spins_in_init(case: Case) -> Diagnosis | None:
 def awaits(case: Case) -> Diagnosis | None:
     """A callback awaits an answer, and no further message is handled."""
     found = hears_once(case)
-    for finding in _of_kind(case, "awaits") if found is not None else ():
+    for finding in of_kind(case, "awaits") if found is not None else ():
         return Diagnosis(
             "awaits",
             msg(
@@ -318,73 +304,9 @@ def awaits(case: Case) -> Diagnosis | None:
     return None
 
 
-def first_of(case: Case, *kinds: LintKind) -> SourceLine | None:
-    """Return the place of the first finding of these kinds."""
-    return next((finding.place for finding in _of_kind(case, *kinds)), None)
-
-
-def named_at(case: Case, name: str, place: SourceLine | None) -> SourceLine | None:
-    """Return the line of a name, where that is a constant apart from its use."""
-    if place is None or name.lstrip("/") in place.text:
-        return place
-    for finding in _of_kind(case, "constant"):
-        if finding.name.lstrip("/") == name.lstrip("/"):
-            return finding.place
-    return place
-
-
-def number(text: str) -> float:
-    """Parse a number of a source; not a number where it is none."""
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
-def imported_at(case: Case, end_type: str, wanted: str) -> SourceLine | None:
-    """Return the import of a class that has the right name and is another package's."""
-    package, _, rest = end_type.partition("/")
-    name = rest.rpartition("/")[2]
-    for finding in _of_kind(case, "imports"):
-        if finding.name == name == wanted.rpartition("/")[2] and finding.near.startswith(package):
-            return finding.place
-    return None
-
-
-def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> SourceLine | None:
-    """Return the line that gives a field of a message a number that does not fit."""
-    wrong = (each for each in _of_kind(case, "argument") if not fits(each.near))
-    names = (field, f"linear.{field}", f"angular.{field}", "colour")
-    return next((each.place for each in wrong if each.name in names), None)
-
-
-def set_at(case: Case, text: str) -> SourceLine | None:
-    """Return where the field of a message is set that a finding names first."""
-    if value := re.search(r"\b(linear\.x|angular\.z) is (-?[\d.]+)", text):
-        for finding in _of_kind(case, "argument"):
-            if finding.name == value[1] and number(finding.near) == number(value[2].rstrip(".")):
-                return finding.place
-    if "limits does your node compare" in text or "look at its conditions" in text:
-        middles = [*_of_kind(case, "at_middle")]
-        off = [each for each in middles if not 5.4 < number(each.near) < 5.65]
-        zero = [each for each in _of_kind(case, "at_wall") if number(each.near) == 0]
-        for finding in (*off, *zero, *middles):
-            return finding.place
-    if "wall watched" in text or "zeros to stop" in text or "condition ever true" in text:
-        for finding in _of_kind(case, "at_wall"):
-            return finding.place
-    found = [
-        (at, finding.place)
-        for finding in _of_kind(case, "sets")
-        if (at := text.find(finding.name)) >= 0
-        and ("." in finding.name or f"`{finding.name}`" in text)
-    ]
-    return min(found, key=lambda each: each[0])[1] if found else None
-
-
 def called_at_once(case: Case) -> Diagnosis | None:
     """A function that was to run in a thread runs in the main program, which gets no further."""
-    for finding in _of_kind(case, "called"):
+    for finding in of_kind(case, "called"):
         if never_spins(case) is None and case.observed.spun_s is not None:
             continue
         name = excerpt(finding.name)
@@ -410,7 +332,7 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the lint finding that may be its cause."""
     if (without := _lacks(case)) is not None:
         return replace(without, run=found.run)
-    for finding in _of_kind(case, "compared", "always", "adds_nothing"):
+    for finding in of_kind(case, "compared", "always", "adds_nothing"):
         if finding.kind == "always" and "driving" not in str(found.help):
             continue
         code, where = excerpt(finding.name), line(finding.place)
@@ -421,11 +343,11 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
             text = msg("`{code}`{where} lets nothing grow.", code=code, where=where)
         help_ = msg("Write = for ==.") if finding.kind == "compared" else found.help
         return replace(found, cause=sentences(text, found.cause), help=help_, place=finding.place)
-    for finding in _of_kind(case, "uncalled", "unread", "local"):
+    for finding in of_kind(case, "uncalled", "unread", "local"):
         text, help_ = _cause_and_help(finding)
         cause = sentences(text, found.cause)
         return replace(found, cause=cause, help=help_, place=finding.place)
-    for finding in _of_kind(case, "swallows"):
+    for finding in of_kind(case, "swallows"):
         hides = msg(
             "`{code}`{where} hides every error in {name}().",
             code=excerpt(finding.place.text),
@@ -440,7 +362,7 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
 def _lacks(case: Case) -> Diagnosis | None:
     """A function that looks like a callback, and that nothing passes on."""
     ends = [end.kind for end in case.observed.ends]
-    for finding in _of_kind(case, "unused") if case.observed.is_known else ():
+    for finding in of_kind(case, "unused") if case.observed.is_known else ():
         name, where = excerpt(finding.name), line(finding.place)
         if finding.near == "create_timer" and not case.observed.timers:
             return Diagnosis(
@@ -521,4 +443,4 @@ def _cause_and_help(finding: LintFinding) -> tuple[Message, Message]:
 
 def unsent(case: Case) -> SourceLine | None:
     """Return where a request is made that is never sent."""
-    return next((finding.place for finding in _of_kind(case, "unsent")), None)
+    return next((finding.place for finding in of_kind(case, "unsent")), None)

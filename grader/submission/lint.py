@@ -16,6 +16,7 @@ from grader.recording.observations import LintFinding, LintKind, SourceLine
 from grader.submission import ros_mistakes, scopes
 from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
+from grader.submission.ros_mistakes import last
 from grader.submission.scopes import Function
 from grader.text import misspelt
 
@@ -66,7 +67,7 @@ class Names:
                 case ast.ClassDef(name=name):
                     self.classes.add(name)
                 case ast.Call(args=args, keywords=words):
-                    self.passed |= {_last(each) for each in (*args, *(w.value for w in words))}
+                    self.passed |= {last(each) for each in (*args, *(w.value for w in words))}
                 case ast.Lambda(body=body):
                     self.passed |= _called_in(body)
         for node in ast.walk(tree):  # self.x += 1 reads it as well
@@ -293,13 +294,13 @@ def _passed(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call):
             continue
-        to = _last(node.func)
+        to = last(node.func)
         if to in THREADS:
             for word in node.keywords:
                 inner = word.value
                 if word.arg not in ("target", "function") or not isinstance(inner, ast.Call):
                     continue
-                if _returns_nothing(names.functions.get(_last(inner.func))):
+                if _returns_nothing(names.functions.get(last(inner.func))):
                     name = ast.unparse(inner.func)
                     yield _finding("called", name, f"{to}({word.arg}=", file, inner.lineno)
         if to in SPINS:
@@ -316,15 +317,7 @@ def _returns_nothing(function: Function | None) -> bool:
 
 
 def _called_in(node: ast.AST) -> set[str]:
-    return {_last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
-
-
-def _last(called: ast.expr) -> str:
-    """'drive' of bot.drive."""
-    match called:
-        case ast.Attribute(attr=name) | ast.Name(id=name):
-            return name
-    return ""
+    return {last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
 
 
 def _unsent(tree: ast.AST, file: str) -> Iterator[LintFinding]:
@@ -352,9 +345,9 @@ def _catches_all(handler: ast.ExceptHandler) -> bool:
         case None:
             return True
         case ast.Tuple(elts=kinds):
-            return any(_last(kind) in CATCH_ALL for kind in kinds)
+            return any(last(kind) in CATCH_ALL for kind in kinds)
         case kind:
-            return _last(kind) in CATCH_ALL
+            return last(kind) in CATCH_ALL
 
 
 def _is_silent(handler: ast.ExceptHandler) -> bool:

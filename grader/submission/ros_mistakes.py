@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from typing import TypeGuard
 
 from grader.recording.observations import LintKind
 from grader.submission.scopes import Function, unread
@@ -28,6 +29,7 @@ CALLBACKS = {
     "create_timer": (1, "callback"),
     "add_done_callback": (0, "fn"),
 }
+CREATES = ("create_publisher", "create_client", "create_timer", "create_subscription")
 #: Of a topic or a service.
 _NAME = re.compile(r"[\w/~]{2,80}")
 #: Fields of messages that beginners set wrongly.
@@ -62,7 +64,13 @@ class Source:
             found = self.parents.get(found)
         return found
 
-    def callbacks(self) -> Iterator[tuple[str, Function, ast.Call]]:
+    def imported(self) -> Iterator[tuple[ast.ImportFrom, ast.alias]]:
+        """Yield the imports of messages and services."""
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv")):
+                yield from ((node, alias) for alias in node.names)
+
+    def callbacks(self) -> Iterator[tuple[str, Function]]:
         """Yield the functions that ROS is to call, and by which call it gets them."""
         for name, (position, keyword) in CALLBACKS.items():
             for call in self.calls(name):
@@ -70,7 +78,7 @@ class Source:
                 given += [word.value for word in call.keywords if word.arg == keyword]
                 for each in given:
                     if (function := self.functions.get(last(each))) is not None:
-                        yield name, function, call
+                        yield name, function
 
 
 def last(called: ast.AST) -> str:
@@ -100,7 +108,7 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
 
 def _callbacks(source: Source) -> Iterator[Found]:
     """Callbacks that take the wrong arguments, or wait for an answer."""
-    for by, function, _ in source.callbacks():
+    for by, function in source.callbacks():
         arguments = [*function.args.posonlyargs, *function.args.args]
         is_method = isinstance(source.parents.get(function), ast.ClassDef)
         takes = len(arguments) - (is_method and bool(arguments) and arguments[0].arg == "self")
@@ -109,9 +117,13 @@ def _callbacks(source: Source) -> Iterator[Found]:
         if by == "create_timer" and takes > 0 and not function.args.defaults:
             yield "message_for_timer", function.name, "", function.lineno
         if isinstance(function, ast.AsyncFunctionDef):
-            awaits = [n for n in ast.walk(function) if isinstance(n, ast.Await)]
-            for node in awaits[:1]:
+            node = _first_await(function)
+            if node is not None:
                 yield "awaits", function.name, "", _inner_await(source, node).lineno
+
+
+def _first_await(function: Function) -> ast.Await | None:
+    return next((node for node in ast.walk(function) if isinstance(node, ast.Await)), None)
 
 
 def _inner_await(source: Source, node: ast.Await) -> ast.Await:
@@ -121,7 +133,7 @@ def _inner_await(source: Source, node: ast.Await) -> ast.Await:
         function = source.functions.get(last(called))
         if not isinstance(function, ast.AsyncFunctionDef):
             break
-        inner = next((n for n in ast.walk(function) if isinstance(n, ast.Await)), None)
+        inner = _first_await(function)
         if inner is None:
             break
         node = inner
@@ -149,13 +161,8 @@ def _around_spin(source: Source) -> Iterator[Found]:
 
 
 def _brackets(source: Source) -> Iterator[Found]:
-    """Message classes that are kept instead of a message, and `main` that is not called."""
-    imported = {
-        alias.asname or alias.name
-        for node in ast.walk(source.tree)
-        if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv"))
-        for alias in node.names
-    }
+    """Message classes that are kept instead of a message."""
+    imported = {alias.asname or alias.name for _, alias in source.imported()}
     for node in ast.walk(source.tree):
         match node:
             case ast.Assign(value=ast.Name(id=name)) if name in imported:
@@ -191,12 +198,16 @@ def _idle(source: Source) -> Iterator[Found]:
 def _bare_nodes(source: Source) -> Iterator[Found]:
     """Classes of nodes whose `__init__` does not call that of Node."""
     for of in ast.walk(source.tree):
-        if isinstance(of, ast.ClassDef) and any("Node" in last(base) for base in of.bases):
+        if _is_node(of):
             for each in of.body:
                 if isinstance(each, Function) and each.name == "__init__":
                     calls = (n for n in ast.walk(each) if isinstance(n, ast.Call))
                     if not any(last(call.func) == "__init__" for call in calls):
                         yield "no_super", of.name, "", each.lineno
+
+
+def _is_node(of: ast.AST) -> TypeGuard[ast.ClassDef]:
+    return isinstance(of, ast.ClassDef) and any("Node" in last(base) for base in of.bases)
 
 
 def _number(node: ast.AST | None) -> float | None:
@@ -270,21 +281,14 @@ def _numbers(source: Source) -> Iterator[Found]:
 
 
 def _imports(source: Source) -> Iterator[Found]:
-    for node in ast.walk(source.tree):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv")):
-            for alias in node.names:
-                yield "imports", alias.name, node.module or "", node.lineno
+    for node, alias in source.imported():
+        yield "imports", alias.name, node.module or "", node.lineno
 
 
 def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
     """What a program of ROS needs, and nowhere has: init, spin, a timer, a subscription."""
     makes = list(source.calls("create_node"))
-    nodes = {
-        node.name
-        for each in whole
-        for node in ast.walk(each.tree)
-        if isinstance(node, ast.ClassDef) and any("Node" in last(base) for base in node.bases)
-    }
+    nodes = {node.name for each in whole for node in ast.walk(each.tree) if _is_node(node)}
     makes += source.calls(*nodes)
     if makes and not any(_has(each, "init") for each in whole):
         yield "no_init", "", "", _start_of(source, makes[0])
@@ -296,17 +300,15 @@ def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
         for node in ast.walk(each.tree)
         if isinstance(node, ast.Attribute | ast.Name) and isinstance(node.ctx, ast.Load)
     }
-    creates = [*source.calls("create_publisher", "create_client", "create_timer")]
-    creates += [*source.calls("create_subscription")]
+    creates = [*source.calls(*CREATES)]
     for name, function in source.functions.items():
         if name in used or name.startswith("__") or function.decorator_list or name == "main":
             continue
         takes = [arg.arg for arg in function.args.args if arg.arg != "self"]
-        for lacks in ("create_subscription",) if takes else ("create_timer",):
-            near = [c for c in creates if source.around(c, *_FUNCTIONS) is not function]
-            if near and len(takes) < 2:
-                line = max(call.end_lineno or call.lineno for call in near)
-                yield "unused", name, lacks, line
+        near = [c for c in creates if source.around(c, *_FUNCTIONS) is not function]
+        if near and len(takes) < 2:
+            lacks = "create_subscription" if takes else "create_timer"
+            yield "unused", name, lacks, max(call.end_lineno or call.lineno for call in near)
 
 
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Module)

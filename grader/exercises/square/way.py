@@ -17,14 +17,10 @@ from grader.exercise.check import Tolerances
 from grader.exercise.driven_path import DrivenPath, Side
 from grader.message import NOTHING, msg
 from grader.recording.recording import Recording
-from grader.recording.subject import Start
-from grader.scenes.turtlesim.trace import TurtleTrace, stands_still
+from grader.scenes.turtlesim.trace import USUAL_START, TurtleTrace, stands_still
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.trajectory import Floats
-from turtlesim_py.world.turtle import SIZE_M
 
-#: Where a run starts by default: the middle of the window, heading right.
-USUAL_START = Start(SIZE_M / 2, SIZE_M / 2, 0.0)
 #: A shorter step is no motion: the pose that was set and the published one differ by rounding [m].
 STILL_M = 1e-5
 #: Two sides that meet at the start with less of a turn are one side, begun in its middle [deg].

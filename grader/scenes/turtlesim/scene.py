@@ -18,7 +18,7 @@ from grader.scenes.live import LivePage
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
 from grader.scenes.turtlesim import interfaces, remarks, view
 from grader.scenes.turtlesim.interfaces import endpoints_of
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace, behaviour
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace, behaviour
 from grader.translations import tr
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import TICK_NS
@@ -51,7 +51,7 @@ class Turtlesim(Scene):
     the_thing = msg("the turtle")
     #: from the centre to half a metre before a wall; rounded, for authors of exercises
     farthest_start_m = round(SIZE_M / 2 - 0.5, 2)
-    usual_start = Start(SIZE_M / 2, SIZE_M / 2, 0.0)
+    usual_start = USUAL_START
 
     def wrong_setting(self, setting: str) -> Message:
         """Return why a setting is no scenario; NOTHING where it is one."""

@@ -15,7 +15,7 @@ from typing import NamedTuple, Self, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording.subject import Behaviour, Command, Trace, until_lost
+from grader.recording.subject import Behaviour, Command, Start, Trace, until_lost
 from turtlesim_py.world import events as inputs
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.canvas import SIZE_PX
@@ -29,11 +29,14 @@ from turtlesim_py.world.events import (
     SomeEvent,
 )
 from turtlesim_py.world.trajectory import Trajectory
+from turtlesim_py.world.turtle import SIZE_M
 
 Pixels = npt.NDArray[np.uint8]
 Value = TypeVar("Value", int, str)
 #: The turtle that exercises are about.
 FIRST_TURTLE = "turtle1"
+#: Where a run begins that is given no start: the middle of the window, heading right.
+USUAL_START = Start(SIZE_M / 2, SIZE_M / 2, 0.0)
 #: The picture of every turtle in a graded run.
 SPRITE = "rolling"
 
