@@ -479,8 +479,8 @@ def same_colours(program: Program) -> Iterator[Change]:
     colours = list(program.matches(r"\b\d{1,3}, \d{1,3}, \d{1,3}\b"))
     for one in colours:
         for other in colours:
-            if one[0] != other[0]:
-                yield (Edit(*one.span(), other[0]),)
+            if one[0] != other[0]:  # a student may change either
+                yield (Edit(*one.span(), other[0]), Edit(*other.span(), other[0]))
 
 
 def awaiting(program: Program) -> Iterator[Change]:
@@ -583,7 +583,10 @@ def timer_each_time(program: Program) -> Iterator[Change]:
 _FIELD = r"compare the (?:name|field)|did you mean|is spelt|interface show"
 _NAME = r"compare the name|did you mean|is spelt|never read|mean `?self\."
 _SELF = r"write self\.|self\. before|is a variable of this function"
-_NEVER_TRUE = r"(?:never|ever|always) (?:be )?true|\band\b.{0,25}\bor\b"
+_NEVER_TRUE = (
+    r"(?:never|ever|always) (?:be )?true|true in (?:the middle|a corner)|\band\b.{0,25}\bor\b"
+)
+_NOT_WATCHED = r"not at the \w+ one|not (?:be )?watch(?:ed)?|\w+ wall watched"
 _FLOW = r"drive[sn]? on|driving command|drive no more|overrul|another command"
 _ZERO_STOP = r"(?:\w+\.)?publish\(Twist\(\)\)|[\w.]+\(0\.0, 0\.0\)|self\.(?:halt|stop)\(\)"
 _TURN = (
@@ -705,7 +708,8 @@ OPERATORS: tuple[Operator, ...] = (
              argument("create_publisher", 0, "Pose")),
     Operator("subscription_of_another_type", r"is published there",
              argument("create_subscription", 0, "Twist")),
-    Operator("client_of_another_service", r"it is turtlesim/srv/SetPen|client (?:is|was made) for",
+    Operator("client_of_another_service",
+             r"it is (?:of type )?turtlesim/srv/SetPen|client (?:is|was made) for",
              argument("create_client", 0, "Spawn", "from turtlesim.srv import Spawn")),
     Operator("transient_local", r"TRANSIENT_LOCAL|QoS",
              swap(r"(create_subscription\((?:\s*[^\s,]+,){3}\s*)10",
@@ -751,7 +755,7 @@ OPERATORS: tuple[Operator, ...] = (
     # values
     Operator("int_for_float", r"must be a float", swap(rf"{_TURN}([1-9])\.\d+(?=\)?$)", r"\1\2")),
     Operator("int_zero_for_float", r"must be a float",
-             swap(r"\(0\.0, 0\.0\)|(?<=angular\.z = )0\.0", "0")),
+             swap(r"(?<=\()0\.0(?=, 0\.0\))|(?<=angular\.z = )0\.0", "0")),
     Operator("float_for_int", r"must be an int",
              swap(r"(\.[rgb] = |\.width = |\b[rgb]=)(\d+)\b", r"\1\2.0")),
     Operator("colour_256", r"0 to 255", swap(r"\b255\b", "256")),
@@ -772,10 +776,8 @@ OPERATORS: tuple[Operator, ...] = (
     Operator("swallowed", r"hides|catches", swallowing),
     # the stop
     Operator("stop_flipped", rf"{_NEVER_TRUE}|[<>] ", flipped),
-    Operator("one_wall_forgotten", r"not at the \w+ one|not watched|\w+ wall watched",
-             fewer_walls("")),
-    Operator("only_x_watched", r"not at the \w+ one|not watched|\w+ wall watched|only x",
-             fewer_walls("y")),
+    Operator("one_wall_forgotten", _NOT_WATCHED, fewer_walls("")),
+    Operator("only_x_watched", rf"{_NOT_WATCHED}|only x", fewer_walls("y")),
     Operator("and_for_or", _NEVER_TRUE, and_for_or),
     Operator("stop_not_sent", r"Twist of zeros|zero Twist|told to stop",
              drop(rf"^ +(?:{_ZERO_STOP})\n"), missing=True),

@@ -152,7 +152,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.batch.find": GROUND
     | {"grader.batch"}
     | below("grader.submission", "folder", "unpacking", "archive", "safe_members")
-    | below("grader.submission", "tar_archive", "zip_archive"),
+    | below("grader.submission", "archive_members"),
     "grader.batch.store": GROUND
     | {"grader.batch"}
     | below("grader", "exercise.exercise", "recording.recording", "submission.folder"),

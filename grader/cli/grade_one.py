@@ -111,11 +111,16 @@ def _run_and_judge(
     messages.print(_how(args.time, exercise.is_started))
 
     def show_nominal(nominal: Recording) -> None:
-        if live is None:
+        if live is None and nominal.run.outcome != "stalled":
             return
         from grader.reports import Report
 
         known = judging.judge_nominal(nominal, exercise, submission=submission.name)
+        if live is None:  # the others will take as long
+            if known.diagnosis is not None:
+                text = tr("Seen so far: {cause}", cause=known.diagnosis.cause)
+                messages.print(Text(for_terminal(text)), soft_wrap=True)
+            return
         live.know_of_nominal(Report.of(known, out, Recordings(nominal)))
 
     runner = grading.runner(exercise, args.time, live)

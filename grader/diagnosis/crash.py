@@ -135,7 +135,9 @@ def _fitting(what: str) -> Callable[[str], bool]:
         return lambda text: low <= source_lines.number(text) <= high
     if "'float'" in what:
         return lambda text: "." in text or "e" in text
-    return lambda text: "." not in text
+    if "'int'" in what:
+        return lambda text: "." not in text
+    return lambda _: True
 
 
 def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, Message]:

@@ -55,7 +55,6 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.stuck_in_call,
     standstill.endless_loop,
     lint_findings.called_at_once,
-    lint_findings.spins_in_init,
     standstill.stays_in_init,
     standstill.spins_in_loop,
     standstill.never_spins,
@@ -82,13 +81,15 @@ def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagno
         recordings: of all runs; a cause in the nominal one comes before one in the others.
         verdicts: of the exercise's checks; without any, only the rules about runs are applied.
 
-    Returns: None where no point is lost, or no verdict is known and the runs show nothing.
+    Returns: None where no point is lost and no program died, or no verdict is known and the runs
+        show nothing.
     """
-    if verdicts and all(verdict.passed for verdict in verdicts):
-        return None
+    is_right = bool(verdicts) and all(verdict.passed for verdict in verdicts)
     cases = [Case(recording) for recording in recordings]
-    for rules in (RULES, DISTURBING):
+    for rules in (RULES,) if is_right else (RULES, DISTURBING):
         for number, case in enumerate(cases):
+            if is_right and case.run.outcome != "crashed":
+                continue
             found = _ask(rules, case)
             if found is not None:
                 return _in_run(_at_its_line(found, case), number)
@@ -102,6 +103,7 @@ def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
         "never_spins": "no_spin",
         "ends_early": "spins_once",
         "does_nothing": "uncalled",
+        "stays_in_init": "spins_in_init",
     }
     if found.key not in lines or (found.place is not None and "while" in found.place.text):
         return found
@@ -135,7 +137,7 @@ def _shown(found: Diagnosis) -> Diagnosis:
 
 def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding what the source shows about its possible cause."""
-    with_finding = lint_findings.beside(found, case)
+    with_finding = source_lines.beside(found, case)
     if with_finding is not found:
         return _shown(with_finding)
     return _shown(_with_unused(found, case) or _with_place(found, case))
@@ -159,7 +161,7 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
             return replace(found, help=sentences(found.help, unsent), place=end.place)
         unsent = msg("Your client{where} has sent no request.", where=line(end.place))
         cause = sentences(found.cause, unsent)
-        made = lint_findings.unsent(case)
+        made = source_lines.unsent(case)
         if made is None:
             return replace(found, cause=cause, place=end.place)
         help_ = msg("Send the request that you make: call_async(request).")

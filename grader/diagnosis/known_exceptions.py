@@ -29,6 +29,7 @@ _GIVEN = re.compile(
 )
 MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
 _TAKES_CALLBACK = re.compile(r"create_(?:timer|subscription|service)\(|add_done_callback\(")
+_AWAITED = re.compile(r"object (\w{1,60}) can't be used in 'await' expression")
 _NO_FILE = re.compile(r"\[Errno \d+\] [^:]{1,60}: '([^'\n]{1,300})")
 _SUBSCRIPTED = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
 _CREATES = re.compile(r"\b(create_(?:publisher|subscription|client|service))\(")
@@ -105,6 +106,22 @@ def _not_here(name: str, text: str, place: SourceLine | None) -> Hint | None:
     return None
 
 
+def _not_awaitable(_: str, text: str, place: SourceLine | None) -> Hint | None:
+    """`await` before what is no future."""
+    found = _AWAITED.search(text)
+    if found is None:
+        return None
+    if found[1].endswith("_Response"):
+        return Hint(
+            msg("Write await ... .call_async(request) there, in an async function."),
+            msg("call() waits for the answer itself, and returns it: there is nothing to await"),
+        )
+    return Hint(
+        msg("Leave out await: that call is over when it returns."),
+        msg("await was given something that nobody can wait for"),
+    )
+
+
 def _no_argument(_: str, text: str, place: SourceLine | None) -> Hint | None:
     """publish() or call_async() without anything, or a callback called where it is passed."""
     found, line = MISSING.search(text), place.text if place is not None else ""
@@ -118,7 +135,8 @@ def _no_argument(_: str, text: str, place: SourceLine | None) -> Hint | None:
             if what == "msg"
             else msg("{call}() is called without a request", call=found[1]),
         )
-    if _TAKES_CALLBACK.search(line) and f"{found[1]}(" in line:
+    is_own = not found[1].startswith("create_")
+    if is_own and _TAKES_CALLBACK.search(line) and f"{found[1]}(" in line:
         return Hint(
             _NOT_CALLED,
             msg("{name}() is called at once, where it is to be passed", name=excerpt(found[1])),
@@ -352,6 +370,7 @@ def _none_or_unknown(_: str, text: str, place: SourceLine | None) -> Hint | None
 _RULES: tuple[Callable[[str, str, SourceLine | None], Hint | None], ...] = (
     *(
         _not_here,
+        _not_awaitable,
         _no_argument,
         _without_init,
         _read_only_name,

@@ -10,14 +10,13 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from grader.diagnosis import known_exceptions
-from grader.diagnosis.case import Case, excerpt, function, line, sentences
+from grader.diagnosis.case import Case, excerpt, function, line
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import Hint
 from grader.diagnosis.source_lines import of_kind
 from grader.diagnosis.standstill import hears_once, never_spins
-from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.message import Message, as_message, msg
-from grader.recording.observations import LintFinding, LintKind, Raised, SourceLine
+from grader.recording.observations import LintKind, Raised
 from grader.text import misspelt
 
 #: So much of an exception's text is searched [characters].
@@ -148,7 +147,7 @@ def _service_for_request(case: Case, raised: Raised) -> Hint | None:
 def _misspelt(case: Case, raised: Raised) -> Hint | None:
     """An attribute that is set under another name, or nowhere."""
     found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
-    if found is None or raised.place is None or f"self.{found[1]}" not in raised.place.text:
+    if found is None or raised.place is None or f".{found[1]}" not in raised.place.text:
         return None
     name = excerpt(found[1])
     for finding in of_kind(case, "local"):
@@ -209,7 +208,11 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
 
 
 def _class_kept(case: Case, raised: Raised) -> Hint | None:
-    if "'property' object" in raised.text or "'getset_descriptor' object" in raised.text:
+    is_sent = raised.place is not None and re.search(
+        r"\.(?:call|call_async|publish)\(", raised.place.text
+    )
+    is_class = "'property' object" in raised.text or "'getset_descriptor' object" in raised.text
+    if is_class or (is_sent and raised.type == "TypeError"):
         for finding in of_kind(case, "class_kept"):
             name = excerpt(finding.name)
             return Hint(
@@ -239,9 +242,24 @@ def _calls_itself(case: Case, raised: Raised) -> Hint | None:
     return None
 
 
+def _nothing_returned(case: Case, raised: Raised) -> Hint | None:
+    """None, where a function was to return what it calculates."""
+    for finding in of_kind(case, "no_effect") if "NoneType" in raised.text else ():
+        return Hint(
+            msg("Write return before it, if that is what you mean."),
+            msg(
+                "a function returned None; nothing uses what `{code}` is",
+                code=excerpt(finding.name),
+            ),
+            finding.place,
+        )
+    return None
+
+
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
     *(_not_global, _without_self, _hidden_method, _class_given, _service_for_request),
     *(_misspelt, _wrong_callback, _class_kept, _not_begun, _calls_itself),
+    _nothing_returned,
 )
 
 
@@ -264,28 +282,25 @@ def ends_before_spin(case: Case) -> Diagnosis | None:
     return None
 
 
-def spins_in_init(case: Case) -> Diagnosis | None:
-    """A spin in an `__init__`, which never gets to what comes after it."""
-    if any(end.used for end in case.observed.ends if end.kind == "publisher"):
-        return None
-    for finding in of_kind(case, "spins_in_init"):
-        return Diagnosis(
-            "stays_in_init",
-            msg(
-                "Your program never leaves __init__(): it stays at `{code}`{where}, and what comes "
-                "after is never reached: spin() returns only when the program ends.",
-                code=excerpt(finding.place.text),
-                where=line(finding.place),
-            ),
-            msg("Take it out there; main() makes the node and then calls rclpy.spin(node)."),
-            place=finding.place,
-        )
-    return None
-
-
 def awaits(case: Case) -> Diagnosis | None:
     """A callback awaits an answer, and no further message is handled."""
     found = hears_once(case)
+    for finding in of_kind(case, "waits") if found is not None else ():
+        return Diagnosis(
+            "stuck_in_callback",
+            msg(
+                "{name}() waits in {call}(){where} for what only another callback can bring, and "
+                "no callback is called meanwhile.",
+                name=excerpt(finding.name),
+                call=excerpt(finding.near),
+                where=line(finding.place),
+            ),
+            msg(
+                "Send the request by call_async(request) and go on, without "
+                "spin_until_future_complete()."
+            ),
+            place=finding.place,
+        )
     for finding in of_kind(case, "awaits") if found is not None else ():
         return Diagnosis(
             "awaits",
@@ -326,121 +341,3 @@ def called_at_once(case: Case) -> Diagnosis | None:
             place=finding.place,
         )
     return None
-
-
-def beside(found: Diagnosis, case: Case) -> Diagnosis:
-    """Add to a check's finding the lint finding that may be its cause."""
-    if (without := _lacks(case)) is not None:
-        return replace(without, run=found.run)
-    for finding in of_kind(case, "compared", "always", "adds_nothing"):
-        if finding.kind == "always" and "driving" not in str(found.help):
-            continue
-        code, where = excerpt(finding.name), line(finding.place)
-        text = msg("`{code}`{where} is always true.", code=code, where=where)
-        if finding.kind == "compared":
-            text = msg("`{code}` compares, and sets nothing{where}.", code=code, where=where)
-        if finding.kind == "adds_nothing":
-            text = msg("`{code}`{where} lets nothing grow.", code=code, where=where)
-        help_ = msg("Write = for ==.") if finding.kind == "compared" else found.help
-        return replace(found, cause=sentences(text, found.cause), help=help_, place=finding.place)
-    for finding in of_kind(case, "uncalled", "unread", "local"):
-        text, help_ = _cause_and_help(finding)
-        cause = sentences(text, found.cause)
-        return replace(found, cause=cause, help=help_, place=finding.place)
-    for finding in of_kind(case, "swallows"):
-        hides = msg(
-            "`{code}`{where} hides every error in {name}().",
-            code=excerpt(finding.place.text),
-            where=line(finding.place),
-            name=excerpt(finding.name),
-        )
-        cause, help_ = sentences(found.cause, hides), sentences(found.help, NOT_CAUGHT)
-        return replace(found, cause=cause, help=help_, place=finding.place)
-    return found
-
-
-def _lacks(case: Case) -> Diagnosis | None:
-    """A function that looks like a callback, and that nothing passes on."""
-    ends = [end.kind for end in case.observed.ends]
-    for finding in of_kind(case, "unused") if case.observed.is_known else ():
-        name, where = excerpt(finding.name), line(finding.place)
-        if finding.near == "create_timer" and not case.observed.timers:
-            return Diagnosis(
-                "lacks_timer",
-                msg(
-                    "There is no timer{where}: nothing ever calls {name}().", where=where, name=name
-                ),
-                msg("Write self.create_timer(0.1, self.{name}) there, in __init__.", name=name),
-                place=finding.place,
-            )
-        if finding.near == "create_subscription" and "subscription" not in ends:
-            return Diagnosis(
-                "lacks_subscription",
-                msg(
-                    "There is no subscription{where}: nothing ever calls {name}().",
-                    where=where,
-                    name=name,
-                ),
-                msg(
-                    "Write self.create_subscription(Pose, '/turtle1/pose', self.{name}, 10) there, "
-                    "in __init__.",
-                    name=name,
-                ),
-                place=finding.place,
-            )
-    return None
-
-
-def _cause_and_help(finding: LintFinding) -> tuple[Message, Message]:
-    name, near, where = excerpt(finding.name), excerpt(finding.near), line(finding.place)
-    if finding.kind == "unread":
-        return (
-            msg(
-                "`self.{name}` is set and never read; what is read is `self.{near}`{where}.",
-                name=name,
-                near=near,
-                where=where,
-            ),
-            msg("Write self.{near} there, if that is what you mean.", near=near),
-        )
-    if finding.kind == "local" and near.startswith("self."):
-        return (
-            msg(
-                "`{name}` is a variable of this function and never read; what is read "
-                "elsewhere is `{near}`{where}.",
-                name=name,
-                near=near,
-                where=where,
-            ),
-            msg("Write {near} = ... there.", near=near),
-        )
-    if finding.kind == "local":
-        return (
-            msg(
-                "`{name}` is set in this function only, and never read; outside there "
-                "is another `{name}`{where}.",
-                name=name,
-                where=where,
-            ),
-            msg("Write `{near}` as the first line of the function.", near=near),
-        )
-    text = finding.place.text.lstrip()
-    if text.partition(";")[0].rstrip() == finding.name:
-        return msg(
-            "`{name}` stands there without parentheses, and does nothing{where}.",
-            name=name,
-            where=where,
-        ), msg("Write {name}().", name=name)
-    return (
-        msg(
-            "`{name}` stands there without parentheses: a function itself is always true{where}.",
-            name=name,
-            where=where,
-        ),
-        msg("Write {name}().", name=name),
-    )
-
-
-def unsent(case: Case) -> SourceLine | None:
-    """Return where a request is made that is never sent."""
-    return next((finding.place for finding in of_kind(case, "unsent")), None)

@@ -1,13 +1,20 @@
-"""Finds the line to change by what the source shows, where the run shows only its effect."""
+"""Finds cause and line to change in the source, where the run shows their effect only."""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
-from grader.diagnosis.case import Case
+from grader.diagnosis.case import Case, excerpt, line, sentences
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.unnoticed import NOT_CAUGHT
+from grader.message import Message, msg
 from grader.recording.observations import LintFinding, LintKind, SourceLine
+
+#: Words of checks about a stop that did not come, or came at once.
+ABOUT_STOPPING = ("wall", "zeros")
 
 
 def of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
@@ -55,25 +62,216 @@ def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> SourceLine 
     return next((each.place for each in wrong if each.name in names), None)
 
 
+def is_about_stopping(text: str) -> bool:
+    """Whether a check's words are about a stop that did not come, or came at once."""
+    return any(word in text for word in ABOUT_STOPPING)
+
+
 def set_at(case: Case, text: str) -> SourceLine | None:
     """Return where the field of a message is set that a finding names first."""
-    if value := re.search(r"\b(linear\.x|angular\.z) is (-?[\d.]+)", text):
-        for finding in of_kind(case, "argument"):
-            if finding.name == value[1] and number(finding.near) == number(value[2].rstrip(".")):
-                return finding.place
+    if value := re.search(r"\b(linear\.x|angular\.z) (is|was) (-?[\d.]+)", text):
+        given = [each for each in of_kind(case, "argument") if each.name == value[1]]
+        meant = [e.place for e in given if number(e.near) == number(value[3].rstrip("."))]
+        if meant:  # what was the same all the time is to grow where it is passed on
+            return meant[-1 if value[2] == "was" else 0]
     if "limits does your node compare" in text or "look at its conditions" in text:
+        for colour in of_kind(case, "same_colour"):
+            if colour.name in text:
+                return colour.place
         middles = [*of_kind(case, "at_middle")]
+        one_axis = [each for each in middles if each.name == "one axis"]
         off = [each for each in middles if not 5.4 < number(each.near) < 5.65]
-        zero = [each for each in of_kind(case, "at_wall") if number(each.near) == 0]
-        for finding in (*off, *zero, *middles):
+        for finding in (*off, *one_axis, *middles):
             return finding.place
-    if "wall watched" in text or "zeros to stop" in text or "condition ever true" in text:
-        for finding in of_kind(case, "at_wall"):
-            return finding.place
+    if "turn on the spot" in text:
+        halts = {each.place.line for each in of_kind(case, "argument") if number(each.near) == 0}
+        for finding in of_kind(case, "argument"):
+            is_turning = finding.name == "angular.z" and number(finding.near) != 0
+            if is_turning and finding.place.line in halts:
+                return finding.place
     found = [
         (at, finding.place)
         for finding in of_kind(case, "sets")
         if (at := text.find(finding.name)) >= 0
         and ("." in finding.name or f"`{finding.name}`" in text)
     ]
+    if is_about_stopping(text):
+        at = min(text.find(word) for word in ABOUT_STOPPING if word in text)
+        found += [(at, finding.place) for finding in of_kind(case, "at_wall")]
     return min(found, key=lambda each: each[0])[1] if found else None
+
+
+def beside(found: Diagnosis, case: Case) -> Diagnosis:
+    """Add to a check's finding the lint finding that may be its cause."""
+    if (without := _lacks(case)) is not None:
+        return replace(without, run=found.run)
+    for finding in of_kind(case, "compared", "always", "adds_nothing", "no_effect"):
+        if finding.kind == "always" and "driving" not in str(found.help):
+            continue
+        code, where = excerpt(finding.name), line(finding.place)
+        help_ = found.help
+        match finding.kind:
+            case "compared":
+                text = msg("`{code}` compares, and sets nothing{where}.", code=code, where=where)
+                help_ = msg("Write = for ==.")
+            case "adds_nothing":
+                text = msg("`{code}`{where} lets nothing grow.", code=code, where=where)
+            case "no_effect":
+                text = msg("Nothing uses what `{code}`{where} is.", code=code, where=where)
+                help_ = msg("Write return before it, if that is what you mean.")
+            case _:
+                text = msg("`{code}`{where} is always true.", code=code, where=where)
+        return replace(found, cause=sentences(text, found.cause), help=help_, place=finding.place)
+    for finding in of_kind(case, "uncalled", "unread", "local"):
+        text, help_ = _cause_and_help(finding)
+        cause = sentences(text, found.cause)
+        return replace(found, cause=cause, help=help_, place=finding.place)
+    for finding in of_kind(case, "swallows"):
+        hides = msg(
+            "`{code}`{where} hides every error in {name}().",
+            code=excerpt(finding.place.text),
+            where=line(finding.place),
+            name=excerpt(finding.name),
+        )
+        cause, help_ = sentences(found.cause, hides), sentences(found.help, NOT_CAUGHT)
+        return replace(found, cause=cause, help=help_, place=finding.place)
+    return _beside_condition(found, case)
+
+
+def _beside_condition(found: Diagnosis, case: Case) -> Diagnosis:
+    """Add to a check's finding the condition that may be its cause."""
+    spoken = f"{found.cause!s} {found.help!s}"
+    walls = [*of_kind(case, "at_wall")] if is_about_stopping(spoken) else []
+    for finding in walls:
+        if (wrong := _wrong_condition(finding, spoken)) is not None:
+            text, help_ = wrong
+            cause = sentences(text, found.cause)
+            return replace(found, cause=cause, help=help_ or found.help, place=finding.place)
+    is_about_memory = "driving" in spoken or "needless call" in spoken
+    for finding in of_kind(case, "stays") if is_about_memory else ():
+        text = msg(
+            "`{code}`{where} is always {value}: nothing sets it after the start.",
+            code=excerpt(finding.name),
+            where=line(finding.place),
+            value=excerpt(finding.near),
+        )
+        place = walls[0].place if walls else finding.place
+        return replace(found, cause=sentences(text, found.cause), place=place)
+    return found
+
+
+def _wrong_condition(finding: LintFinding, spoken: str) -> tuple[Message, Message | None] | None:
+    """Say what is wrong with a condition that is to tell that a wall is near, and the way out."""
+    words = {"code": excerpt(finding.name), "where": line(finding.place)}
+    match finding.near:
+        case "never":
+            return (
+                msg("`{code}`{where} is never true.", **words),
+                msg("Look at `and` and `or`, at < and >: x and y go from 0 to 11.09."),
+            )
+        case "always":
+            return (
+                msg("`{code}`{where} is always true.", **words),
+                msg("Look at `and` and `or`, and at < and >."),
+            )
+        case "middle":
+            return (
+                msg("`{code}`{where} is true in the middle of the window, too.", **words),
+                msg("Which of its signs has to be the other one, < or >?"),
+            )
+        case "corners":
+            return (
+                msg("`{code}`{where} is true in a corner only.", **words),
+                msg("Join the walls by `or`: one of them is enough."),
+            )
+    for wall in finding.near.split(", ") if finding.near else ():
+        if f"{wall} wall" in spoken:
+            return msg("`{code}`{where} does not watch that wall.", **words), None
+    return None
+
+
+def _lacks(case: Case) -> Diagnosis | None:
+    """A function that looks like a callback, and that nothing passes on."""
+    ends = [end.kind for end in case.observed.ends]
+    for finding in of_kind(case, "unused") if case.observed.is_known else ():
+        name, where = excerpt(finding.name), line(finding.place)
+        if finding.near == "create_timer" and not case.observed.timers:
+            return Diagnosis(
+                "lacks_timer",
+                msg(
+                    "There is no timer{where}: nothing ever calls {name}().", where=where, name=name
+                ),
+                msg("Write self.create_timer(0.1, self.{name}) there, in __init__.", name=name),
+                place=finding.place,
+            )
+        if finding.near == "create_subscription" and "subscription" not in ends:
+            return Diagnosis(
+                "lacks_subscription",
+                msg(
+                    "There is no subscription{where}: nothing ever calls {name}().",
+                    where=where,
+                    name=name,
+                ),
+                msg(
+                    "Write self.create_subscription(Pose, '/turtle1/pose', self.{name}, 10) there, "
+                    "in __init__.",
+                    name=name,
+                ),
+                place=finding.place,
+            )
+    return None
+
+
+def _cause_and_help(finding: LintFinding) -> tuple[Message, Message]:
+    name, near, where = excerpt(finding.name), excerpt(finding.near), line(finding.place)
+    if finding.kind == "unread":
+        return (
+            msg(
+                "`self.{name}` is set and never read; what is read is `self.{near}`{where}.",
+                name=name,
+                near=near,
+                where=where,
+            ),
+            msg("Write self.{near} there, if that is what you mean.", near=near),
+        )
+    if finding.kind == "local" and near.startswith("self."):
+        return (
+            msg(
+                "`{name}` is a variable of this function and never read; what is read "
+                "elsewhere is `{near}`{where}.",
+                name=name,
+                near=near,
+                where=where,
+            ),
+            msg("Write {near} = ... there.", near=near),
+        )
+    if finding.kind == "local":
+        return (
+            msg(
+                "`{name}` is set in this function only, and never read; outside there "
+                "is another `{name}`{where}.",
+                name=name,
+                where=where,
+            ),
+            msg("Write `{near}` as the first line of the function.", near=near),
+        )
+    text = finding.place.text.lstrip()
+    if text.partition(";")[0].rstrip() == finding.name:
+        return msg(
+            "`{name}` stands there without parentheses, and does nothing{where}.",
+            name=name,
+            where=where,
+        ), msg("Write {name}().", name=name)
+    return (
+        msg(
+            "`{name}` stands there without parentheses: a function itself is always true{where}.",
+            name=name,
+            where=where,
+        ),
+        msg("Write {name}().", name=name),
+    )
+
+
+def unsent(case: Case) -> SourceLine | None:
+    """Return where a request is made that is never sent."""
+    return next((finding.place for finding in of_kind(case, "unsent")), None)

@@ -68,9 +68,13 @@ LintKind = Literal[
     "compared",
     "always",
     "adds_nothing",
+    "no_effect",
     "no_super",
     "at_middle",
     "at_wall",
+    "stays",
+    "waits",
+    "same_colour",
     "argument",
     "imports",
 ]
@@ -222,8 +226,14 @@ class LintFinding:
             `constant` - the text NAME is assigned to something; `sets` - the field NAME of a
             message is set; `compared` - the comparison NAME is a statement; `always` - a condition
             is True; `adds_nothing` - NAME adds 0; `no_super` - the __init__ of the node NAME calls
-            no other; `at_middle`, `at_wall` - NAME (x, y) is compared with NEAR; `argument` - the
-            field NAME gets the number NEAR from this line; `imports` - NAME comes from NEAR.
+            no other; `no_effect` - the expression NAME is a statement; `at_middle` - NAME (x, y, or
+            `one axis` where a condition lacks the other) is compared with NEAR; `at_wall` - the
+            condition NAME tells that a wall is near, and NEAR is what is wrong with it: `never`,
+            `always` or `middle` - it is true, `corners` - in these only, or walls that no condition
+            tells; `stays` - NAME is tested, and is NEAR for ever; `waits` - the callback NAME calls
+            NEAR, which waits for another; `same_colour` - the colour NAME stands elsewhere, too;
+            `argument` - the field NAME gets the number NEAR from this line; `imports` - NAME comes
+            from NEAR.
     """
 
     kind: LintKind

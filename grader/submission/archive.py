@@ -16,7 +16,7 @@ from typing import Final
 
 from grader.errors import SubmissionError
 from grader.message import Message, as_message, msg, plain_text
-from grader.submission import tar_archive, zip_archive
+from grader.submission import archive_members
 from grader.submission.folder import MAX_BYTES, shown
 from grader.submission.safe_members import PACK_AGAIN, Budget, ListTooLong, write
 
@@ -60,9 +60,9 @@ def unpack(archive: Path, into: Path, budget: Budget) -> None:
     kind = "zip" if is_zip else "tar"
     try:
         with (
-            zip_archive.opened(archive)
+            archive_members.opened_zip(archive)
             if is_zip
-            else tar_archive.opened(archive, into.with_suffix(".tar"))
+            else archive_members.opened_tar(archive, into.with_suffix(".tar"))
         ) as members:
             write(name, members, into, budget)
     except ListTooLong as error:

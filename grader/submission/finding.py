@@ -283,9 +283,13 @@ def _from_file(submitted: SubmissionFolder, file: Path) -> Submission:
     # one called like a module of Python may find that loaded already, instead of itself
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
     start = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
-    return Submission(
-        submitted.name, file.parent, start, msg("function main of {file}", file=called)
+    note = msg(
+        "Nothing in {file} calls main(): the grader did, as an entry point of a package would. By "
+        "itself `python3 {file}` does nothing: end it with if __name__ == '__main__': main()",
+        file=called,
     )
+    found = msg("function main of {file}", file=called)
+    return Submission(submitted.name, file.parent, start, found, notes=(note,))
 
 
 def _is_source(file: Path) -> bool:

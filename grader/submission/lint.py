@@ -14,9 +14,9 @@ from pathlib import Path
 
 from grader.recording.observations import LintFinding, LintKind, SourceLine
 from grader.submission import ros_mistakes, scopes
+from grader.submission.conditions import last
 from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
-from grader.submission.ros_mistakes import last
 from grader.submission.scopes import Function
 from grader.text import misspelt
 

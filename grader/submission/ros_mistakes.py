@@ -14,6 +14,8 @@ from difflib import get_close_matches
 from typing import TypeGuard
 
 from grader.recording.observations import LintKind
+from grader.submission import conditions
+from grader.submission.conditions import last
 from grader.submission.scopes import Function, unread
 
 #: Kind, name, near, line; see `LintFinding`.
@@ -81,14 +83,6 @@ class Source:
                         yield name, function
 
 
-def last(called: ast.AST) -> str:
-    """'drive' of bot.drive; '' for what has no name."""
-    match called:
-        case ast.Attribute(attr=name) | ast.Name(id=name):
-            return name
-    return ""
-
-
 def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
     """Yield findings in the files of a submission, each with its file; the surest first."""
     sources = {file: Source(tree) for file, tree in trees.items()}
@@ -101,7 +95,14 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
     for file, source in sources.items():
         yield from ((file, found) for found in _forgotten(source, whole))
         yield from ((file, found) for found in _attributes(source, whole))
-    for rule in (_places, _numbers, _imports, _constants, _fields):
+    values = conditions.Values([*trees.values()])
+    for file, source in sources.items():
+        places = conditions.find(source.tree, source.parents, values)
+        yield from ((file, found) for found in places)
+        yield from ((file, found) for found in _stays(source, values))
+        yield from ((file, found) for found in _waits(source))
+        yield from ((file, found) for found in _numbers(source, values))
+    for rule in (_colours, _imports, _constants, _fields):
         for file, source in sources.items():
             yield from ((file, found) for found in rule(source))
 
@@ -188,6 +189,10 @@ def _idle(source: Source) -> Iterator[Found]:
         match node:
             case ast.Expr(value=ast.Compare() as test):
                 yield "compared", ast.unparse(test), "", node.lineno
+            case ast.Expr(value=ast.IfExp() | ast.BinOp() | ast.BoolOp() | ast.UnaryOp() as value):
+                yield "no_effect", ast.unparse(value), "", node.lineno
+            case ast.Expr(value=ast.Constant(value=int() | float() as value)):
+                yield "no_effect", str(value), "", node.lineno
             case ast.If(test=ast.Constant(value=True)):
                 yield "always", "if True", "", node.lineno
             case ast.AugAssign(op=ast.Add(), value=ast.Constant(value=int() | float() as value)):
@@ -210,34 +215,89 @@ def _is_node(of: ast.AST) -> TypeGuard[ast.ClassDef]:
     return isinstance(of, ast.ClassDef) and any("Node" in last(base) for base in of.bases)
 
 
-def _number(node: ast.AST | None) -> float | None:
-    match node:
-        case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
-            return value
-        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):
-            return -value
-    return None
+def _number(node: ast.expr) -> float | None:
+    """Return the number that is written there."""
+    try:
+        found = ast.literal_eval(node)
+    except ValueError:
+        return None
+    return found if isinstance(found, int | float) and not isinstance(found, bool) else None
 
 
-def _places(source: Source) -> Iterator[Found]:
-    """Where a coordinate is compared with a wall, or with the middle of the window."""
-    kept = {}
+def _stays(source: Source, values: conditions.Values) -> Iterator[Found]:
+    """Tests of what keeps the value that it began with: nothing ever sets it."""
+    seen: set[str] = set()
     for node in ast.walk(source.tree):
-        if isinstance(node, ast.Assign) and (value := _number(node.value)) is not None:
-            kept.update({last(target): value for target in node.targets})
-    for node in ast.walk(source.tree):
-        if not isinstance(node, ast.Compare):
+        match node:
+            case ast.Compare(ops=[ast.Eq() | ast.NotEq() | ast.Is() | ast.IsNot()]):
+                tested = [node.left, *node.comparators]
+            case ast.If(test=test) | ast.While(test=test):
+                tested = [test, *getattr(test, "values", [])]
+            case _:
+                continue
+        for each in tested:
+            while isinstance(each, ast.UnaryOp):
+                each = each.operand
+            name = ast.unparse(each) if last(each) else ""
+            if not name or name.isupper() or name in seen:
+                continue
+            if values.assigned(name) and all(map(_is_plain, values.assigned(name))):
+                begins = {ast.unparse(value) for value in values.assigned(name) if value}
+                if len(begins) == 1:
+                    seen.add(name)
+                    yield "stays", name, begins.pop(), each.lineno
+
+
+def _plain(given: ast.expr | None, values: conditions.Values) -> Iterator[ast.expr]:
+    """Yield the number that an argument is, or that its name begins with."""
+    if given is not None and _number(given) is not None:
+        yield given
+    elif given is not None and last(given):
+        kept = values.assigned(ast.unparse(given))
+        yield from (each for each in kept[:1] if each is not None and _number(each) is not None)
+
+
+def _is_plain(value: ast.expr | None) -> bool:
+    return isinstance(value, ast.Constant | ast.UnaryOp)
+
+
+def _waits(source: Source) -> Iterator[Found]:
+    """Calls in callbacks, and in what these call, that wait for another callback."""
+    waiting = [function for _, function in source.callbacks()]
+    seen: set[str] = set()
+    while waiting:
+        function = waiting.pop()
+        if function.name in seen:
             continue
-        parts = [node.left, *node.comparators]
-        axes = [last(each) for each in parts if last(each) in ("x", "y")]
-        values = [v for p in parts if (v := _number(p) or kept.get(last(p))) is not None]
-        for value in values if axes else []:
-            kind: LintKind = "at_middle" if 4 < value < 7 else "at_wall"
-            yield kind, axes[0], str(value), node.lineno
+        seen.add(function.name)
+        for node in ast.walk(function):
+            if isinstance(node, ast.Call):
+                name = last(node.func)
+                if name in SPINS or (name == "call" and isinstance(node.func, ast.Attribute)):
+                    yield "waits", function.name, ast.unparse(node.func), node.lineno
+                if name in source.functions:
+                    waiting.append(source.functions[name])
 
 
-def _numbers(source: Source) -> Iterator[Found]:
-    """Literals that a message's field gets by way of an argument or a name."""
+def _colours(source: Source) -> Iterator[Found]:
+    """Colours that are written twice: the second place of each."""
+    first: dict[tuple[float, ...], int] = {}
+    for node in ast.walk(source.tree):
+        parts = [*getattr(node, "elts", []), *getattr(node, "args", [])] if _has_parts(node) else []
+        words = {w.arg: w.value for w in getattr(node, "keywords", [])} if _has_parts(node) else {}
+        parts = parts or [words[each] for each in "rgb" if each in words]
+        numbers = [number for part in parts if (number := _number(part)) is not None]
+        color = tuple(numbers[-3:]) if len(numbers) in (3, 4) else ()
+        if len(color) == 3 and first.setdefault(color, id(node)) != id(node):
+            yield "same_colour", str(tuple(map(int, color))), "", node.lineno  # type: ignore[attr-defined]
+
+
+def _has_parts(node: ast.AST) -> bool:
+    return isinstance(node, ast.Tuple | ast.List | ast.Call)
+
+
+def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
+    """Literals that a message's field gets, also by way of an argument or a name."""
     followed: set[tuple[str, str]] = set()
     for node in ast.walk(source.tree):
         match node:
@@ -248,6 +308,8 @@ def _numbers(source: Source) -> Iterator[Found]:
                 known = name
             case _:
                 continue
+        if known and _number(value) is not None:
+            yield "argument", known, ast.unparse(value), value.lineno
         given = last(value)
         if not known or not given or len(followed) >= MOST_FOLLOWED or (known, given) in followed:
             continue
@@ -260,8 +322,9 @@ def _numbers(source: Source) -> Iterator[Found]:
             for call in source.calls(function.name):
                 literal = next((w.value for w in call.keywords if w.arg == given), None)
                 literal = literal or (call.args[at] if at < len(call.args) else None)
-                if literal is not None and _number(literal) is not None:
-                    yield "argument", known, ast.unparse(literal), call.lineno
+                for begin in _plain(literal, values):
+                    yield "argument", known, ast.unparse(begin), begin.lineno
+                    yield "argument", known, ast.unparse(begin), call.lineno
         for each in ast.walk(source.tree):
             match each:
                 case ast.Assign(targets=[target], value=literal) if last(target) == given:
@@ -355,7 +418,9 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
         variables = {name: line for n in methods for name, line in unread(n).items()}
         for node in ast.walk(of):
             match node:
-                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
+                case ast.Attribute(value=ast.Name(id="self"), attr=name) if isinstance(
+                    node.ctx, ast.Load
+                ) or isinstance(source.parents[node], ast.AugAssign):
                     call = source.parents[node]
                     is_called = isinstance(call, ast.Call) and call.func is node
                     if name not in known and name in variables:

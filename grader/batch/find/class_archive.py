@@ -21,7 +21,7 @@ from grader import limited, strict_json
 from grader.batch.find.attempt import short
 from grader.errors import UsageError
 from grader.message import NOTHING, Message, as_message, msg
-from grader.submission import tar_archive, zip_archive
+from grader.submission import archive_members
 from grader.submission.archive import DAMAGED
 from grader.submission.folder import MAX_BYTES, is_junk, listed, marks_generated, shown
 from grader.submission.safe_members import Budget, ListTooLong, Member
@@ -223,10 +223,10 @@ class _Unpacking:
 @contextmanager
 def _members(archive: Path, plain: Path) -> Iterator[Sequence[Member]]:
     if archive.suffix.lower() == ".zip":
-        with zip_archive.opened(archive, MAX_LIST_BYTES) as members:
+        with archive_members.opened_zip(archive, MAX_LIST_BYTES) as members:
             yield members
     else:
-        with tar_archive.opened(archive, plain, MAX_FILES, _Room()) as members:
+        with archive_members.opened_tar(archive, plain, MAX_FILES, _Room()) as members:
             yield members
 
 

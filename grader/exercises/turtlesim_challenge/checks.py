@@ -84,8 +84,8 @@ def _unmoved(path: Path, commands: Sequence[CmdVel], more: Message) -> Finding:
             seconds=seconds,
         )
         help_ = msg(
-            "Is linear.x of the Twist ever set? Look at the condition that is to be true first: "
-            "is it ever?"
+            "Is linear.x of the Twist ever set? If your node stops near a wall: is that condition "
+            "always true, `<` for `>`?"
         )
         return Finding(0, joined([text, more]), help_, first)
     text = msg(
@@ -94,9 +94,8 @@ def _unmoved(path: Path, commands: Sequence[CmdVel], more: Message) -> Finding:
         commands=len(commands),
         seconds=seconds,
     )
-    return Finding(
-        0, joined([text, more]), msg("Is linear.x of the Twist different from zero?"), first
-    )
+    help_ = msg("Is linear.x of the Twist different from zero? If it is to grow: what adds to it?")
+    return Finding(0, joined([text, more]), help_, first)
 
 
 def _relocated(path: Path) -> list[str | Message]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -46,6 +47,7 @@ def distances(colors: npt.ArrayLike, color: Color) -> Floats:
     return np.asarray(np.linalg.norm(lab(colors) - lab(color), axis=1))
 
 
+@lru_cache(4096)  # thousands of entries show a few colours
 def alike(one: Color | None, other: Color | None, distance: float) -> bool:
     """Whether two colours look the same; None is no colour, a pen that is up."""
     if one is None or other is None:

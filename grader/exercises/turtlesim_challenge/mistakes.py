@@ -211,8 +211,9 @@ def _quadrant_before(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
     """The colour fits the quadrant that the turtle came from, each time."""
     by_before: dict[int, Counter[colours.Color | None]] = {}
     by_itself: dict[int, Counter[colours.Color | None]] = {}
+    judged = set(found.judged)
     for before, entry in pairwise(path.entries(tolerances["band_m"])):
-        if entry in found.judged:
+        if entry in judged:
             # at the end of the stay: a colour that is only late is there by then
             color = found.colors[entry.last_tick]
             by_before.setdefault(before.quadrant, Counter())[color] += 1

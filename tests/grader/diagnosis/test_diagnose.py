@@ -35,8 +35,10 @@ def verdict(check, status="failed", score=0.0, most=10.0, **more):
     return Verdict(check, plain_text(check), status, score, most, *texts, **more)
 
 
-def test_there_is_none_at_full_marks():
-    assert diagnose(Recordings(CRASH), [verdict("a", "passed", 10.0)]) is None
+def test_at_full_marks_there_is_none_but_for_a_crash():
+    passed = [verdict("a", "passed", 10.0)]
+    assert diagnose(Recordings(SLOW), passed) is None
+    assert diagnose(Recordings(RIGHT, (CRASH,)), passed).key == "crashed"
 
 
 def test_a_crash_in_a_varied_run_comes_before_what_only_disturbs_the_nominal_one():

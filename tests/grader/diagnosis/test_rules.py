@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from grader.diagnosis.diagnose import diagnose
+from grader.diagnosis.case import Case
+from grader.diagnosis.diagnose import DISTURBING, RULES, diagnose
 from grader.exercise.verdict import Verdict
 from grader.message import plain_text
 from grader.recording.observations import (
@@ -17,6 +18,7 @@ from grader.recording.observations import (
     SlowCallback,
     SourceLine,
     Standstill,
+    TimerLine,
     Wait,
 )
 from grader.recording.recording import PublishedTopic, Recordings
@@ -327,6 +329,116 @@ CAUSES = {
         "hears_once",
         "received /turtle1/pose hardly more than once in 10 s (drive.py, line 39), .* returned",
     ),
+    "a shutdown before the spin": (
+        run_of(
+            said(
+                replace(VELOCITY, used=0),
+                spun_s=None,
+                lint_findings=(LintFinding("ends_before_spin", "shutdown", "", LINE),),
+            )
+        ),
+        "ends_before_spin",
+        "ROS is shut down before anything spins (drive.py, line 39) .* Move shutdown() behind",
+    ),
+    "a publisher of another type, which refuses a message": (
+        raising(
+            "TypeError",
+            "Expected <class 'turtlesim.msg.Pose'>",
+            replace(LINE, text="self.pub.publish(twist)"),
+            ends=(End("publisher", "/turtle1/cmd_vel", POSE, False, 1, LINE),),
+        ),
+        "publishes_to_nobody",
+        "You publish turtlesim/msg/Pose on /turtle1/cmd_vel, but the turtle listens to",
+    ),
+    "an exception that the program caught, and ended": (
+        run_of(
+            said(returned_s=6.1, caught=(Caught("KeyError", "4", 6.0, 1, LINE),)),
+            "exited",
+        ),
+        "ended_by_caught",
+        "Your program caught an exception, and so ended after 6.1 s: KeyError: 4 (drive.py",
+    ),
+    "a function that a thread was to run": (
+        run_of(
+            said(
+                spun_s=None, lint_findings=(LintFinding("called", "run", "Thread(target=", LINE),)
+            ),
+            "stalled",
+        ),
+        "called_at_once",
+        "calls run() at once, in the main program, .* without parentheses: Thread(target=run)",
+    ),
+    "a loop in __init__": (
+        run_of(
+            said(
+                replace(VELOCITY, used=0),
+                stop=Standstill("init", 0.1, "", replace(LINE, text="while True:")),
+            ),
+            "stalled",
+        ),
+        "stays_in_init",
+        "Your program never leaves __init__(): it stays at",
+    ),
+    "a spin in __init__": (
+        run_of(
+            said(
+                replace(VELOCITY, used=0),
+                stop=Standstill("init", 0.1, "", replace(LINE, text="rclpy.spin(self)", line=20)),
+                lint_findings=(LintFinding("spins_in_init", "spin", "", LINE),),
+            )
+        ),
+        "stays_in_init",
+        "never leaves __init__() .* spin() returns only when the program ends.",
+    ),
+    "a spin in a loop": (
+        run_of(
+            said(replace(VELOCITY, used=0), stop=Standstill("spin", 0.1, "", LINE)), "time_limit"
+        ),
+        "spins_in_loop",
+        "never repeats: spin() returns only when the program ends",
+    ),
+    "a timer of milliseconds": (
+        run_of(said(replace(VELOCITY, used=0), timers=(TimerLine(LINE, 100.0, 1),))),
+        "waits_for_timer",
+        "Your timer (drive.py, line 39) has a period of 100 s .* seconds, not milliseconds",
+    ),
+    "an error that a callback hides": (
+        run_of(said(caught=(Caught("AttributeError", "no attribute 'X'", 0.1, 90, LINE),))),
+        "hides_errors",
+        "on_pose() fails, and something in your program catches that and goes on",
+    ),
+    "a timer for each message": (
+        run_of(said(timers=(TimerLine(LINE, 0.1, 600),))),
+        "makes_timers",
+        "You create a new timer each time that on_pose() is called (drive.py, line 39): 600",
+    ),
+    "a timer of no time": (
+        run_of(said(timers=(TimerLine(LINE, 0.001, 1),))),
+        "hurries",
+        "has a period of 0.001 s: it comes as often as it can.",
+    ),
+    "an await in a callback": (
+        run_of(
+            said(
+                VELOCITY,
+                replace(POSES, used=1),
+                lint_findings=(LintFinding("awaits", "on_pose", "", LINE),),
+            )
+        ),
+        "awaits",
+        "on_pose() waits by `await` for an answer (drive.py, line 39), .* Leave out await",
+    ),
+    "a spin in a callback, beside a thread that spins": (
+        run_of(
+            said(
+                VELOCITY,
+                replace(POSES, used=1),
+                lint_findings=(LintFinding("waits", "on_pose", "rclpy.spin_once", LINE),),
+            )
+        ),
+        "stuck_in_callback",
+        "on_pose() waits in rclpy.spin_once() (drive.py, line 39) for what only another callback",
+    ),
     "a sleep in a callback": (
         run_of(
             said(slow=(SlowCallback(replace(LINE, text="time.sleep(0.2)"), 0.2, 50),)), "time_limit"
@@ -349,6 +461,16 @@ def test_the_cause_is_named_with_its_place_and_with_what_to_do(name):
     assert all(part in whole for part in rest), whole
     assert found.help
     assert found.run == 0
+
+
+def test_each_rule_of_the_table_has_a_recording_that_it_explains_first():
+    asked = (
+        next(
+            (rule for rules in (RULES, DISTURBING) for rule in rules if rule(Case(recording))), None
+        )
+        for recording, *_ in CAUSES.values()
+    )
+    assert {*RULES, *DISTURBING} <= {*asked}
 
 
 SILENT = {

@@ -118,6 +118,10 @@ PLACES = {
     "imports",
     "at_wall",
     "at_middle",
+    "argument",
+    "stays",
+    "waits",
+    "same_colour",
 }
 
 

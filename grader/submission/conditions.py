@@ -1,0 +1,252 @@
+"""Finds out where in the window a condition on the pose is true, without running anything."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import Any
+
+from grader.recording.observations import LintKind
+
+#: The window's side [m], as turtlesim draws it.
+SIZE_M = 11.09
+MIDDLE_M = SIZE_M / 2
+#: Where a stop is looked for: so far from a wall [m]; and where nobody stops.
+NEAR_M, RING_M = 0.2, 1.5
+#: So many steps one evaluation may take, and so many conditions are judged.
+MOST_STEPS, MOST = 400, 60
+_FAR_M = SIZE_M - NEAR_M
+_ALONG = (3.0, MIDDLE_M, 8.0)
+WALLS = {
+    "left": [(NEAR_M, at) for at in _ALONG],
+    "right": [(_FAR_M, at) for at in _ALONG],
+    "bottom": [(at, NEAR_M) for at in _ALONG],
+    "top": [(at, _FAR_M) for at in _ALONG],
+}
+_CORNERS = [(x, y) for x in (NEAR_M, _FAR_M) for y in (NEAR_M, _FAR_M)]
+_RING = [
+    (MIDDLE_M + RING_M * math.cos(turn), MIDDLE_M + RING_M * math.sin(turn))
+    for turn in (0.3, 1.2, 1.9, 2.8, 3.5, 4.4, 5.1, 6.0)
+]
+_OPERATORS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "min": min,
+    "max": max,
+    "abs": abs,
+    "fabs": abs,
+    "float": float,
+    "hypot": math.hypot,
+    "sqrt": math.sqrt,
+}
+
+
+class Unknown(Exception):
+    """An expression has other parts than numbers, the pose, and what is assigned once."""
+
+
+class Values:
+    """What the names in a submission's files stand for."""
+
+    def __init__(self, trees: list[ast.Module]) -> None:
+        self._assigned: dict[str, list[ast.expr | None]] = {}
+        for node in (node for tree in trees for node in ast.walk(tree)):
+            match node:
+                case ast.Assign(targets=targets, value=value):
+                    for target in targets:
+                        self._add(target, value)
+                case ast.AnnAssign(target=target, value=ast.expr() as value):
+                    self._add(target, value)
+                case ast.AugAssign(target=target):
+                    self._add(target, None)
+                case ast.arg(arg=name):
+                    self._assigned.setdefault(name, []).append(None)
+        self._steps = 0
+
+    def _add(self, target: ast.expr, value: ast.expr | None) -> None:
+        match target, value:
+            case (ast.Tuple(elts=targets), ast.Tuple(elts=values)) if len(targets) == len(values):
+                for each, part in zip(targets, values, strict=True):
+                    self._add(each, part)
+            case (ast.Name() | ast.Attribute(), _):
+                for name in {last(target), ast.unparse(target)}:
+                    self._assigned.setdefault(name, []).append(value)
+
+    def assigned(self, name: str) -> list[ast.expr | None]:
+        """Return what is assigned to `name` or `self.name`; plain constants where that is all.
+
+        None stands for what cannot be known: an argument, a sum that grows.
+        """
+        found = self._assigned.get(name, [])
+        if None in found:
+            return found
+        return [each for each in found if not isinstance(each, ast.Constant)] or found
+
+    def of(self, node: ast.expr, x: float = math.nan, y: float = math.nan) -> Any:
+        """Evaluate an expression where the turtle is at a place [m]; no place for a constant.
+
+        Raises:
+            Unknown: it cannot be known, or takes too long.
+        """
+        self._steps = 0
+        try:
+            found = self._of(node, x, y)
+        except (ArithmeticError, ValueError, TypeError, RecursionError) as error:
+            raise Unknown from error
+        if not isinstance(found, bool | float) or math.isnan(found):
+            raise Unknown
+        return found
+
+    def _of(self, node: ast.expr, x: float, y: float) -> Any:
+        self._steps += 1
+        if self._steps > MOST_STEPS:
+            raise Unknown
+
+        def value(part: ast.expr) -> Any:
+            return self._of(part, x, y)
+
+        match node:
+            case ast.Constant(value=int() | float() as number):
+                return float(number)
+            case ast.UnaryOp(op=ast.USub(), operand=part):
+                return -value(part)
+            case ast.UnaryOp(op=ast.Not(), operand=part):
+                return not value(part)
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
+                return _OPERATORS[type(op)](value(left), value(right))
+            case ast.BoolOp(op=op, values=parts):
+                known = [value(part) for part in parts]
+                return all(known) if isinstance(op, ast.And) else any(known)
+            case ast.Compare(ops=ops) if all(type(op) in _OPERATORS for op in ops):
+                pairs = pairwise(map(value, (node.left, *node.comparators)))
+                each = [_OPERATORS[type(o)](*pair) for o, pair in zip(ops, pairs, strict=True)]
+                return all(each)
+            case ast.Call(func=called, args=args, keywords=[]) if last(called) in _FUNCTIONS:
+                return _FUNCTIONS[last(called)](*map(value, args))
+            case ast.Attribute(value=ast.Attribute(attr="linear" | "angular")):
+                raise Unknown
+            case ast.Attribute(attr="x") | ast.Name(id="x"):
+                return x
+            case ast.Attribute(attr="y") | ast.Name(id="y"):
+                return y
+            case ast.Attribute() | ast.Name():
+                match self.assigned(last(node)):
+                    case [ast.expr() as kept]:
+                        return value(kept)
+            case ast.List(elts=parts) | ast.Tuple(elts=parts):
+                return [*map(value, parts)]
+        raise Unknown
+
+
+def last(called: ast.AST) -> str:
+    """'drive' of bot.drive; '' for what has no name."""
+    match called:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
+def find(
+    tree: ast.Module, parents: dict[ast.AST, ast.AST], values: Values
+) -> Iterator[tuple[LintKind, str, str, int]]:
+    """Yield where the pose is compared with the middle of the window, or tells that a wall is near.
+
+    Yields: the kind of `LintFinding`, its name and near, and a line.
+    """
+    conditions: list[tuple[ast.expr, set[str], str]] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare):
+            yield from _of_the_middle(node, parents, values)
+        if not isinstance(node, ast.BoolOp | ast.Compare) or len(conditions) >= MOST:
+            continue
+        if not _is_part(node, parents, values) and (told := _walls(node, values)) is not None:
+            conditions.append((node, *told))
+    all_told = {wall for _, told, _ in conditions for wall in told}
+    missing = ", ".join(wall for wall in WALLS if wall not in all_told)
+    for node, _, wrong in conditions:
+        yield "at_wall", ast.unparse(node), wrong or missing, node.lineno
+
+
+def _of_the_middle(
+    node: ast.Compare, parents: dict[ast.AST, ast.AST], values: Values
+) -> Iterator[tuple[LintKind, str, str, int]]:
+    parts = [node.left, *node.comparators]
+    axes = [last(each) for each in parts if last(each) in ("x", "y")]
+    for part in parts if axes else []:
+        try:
+            limit = values.of(part)
+        except Unknown:
+            continue
+        if 4 < limit < 7 or (limit == 0 and len(parts) == 2):
+            beside = _comparisons_beside(node, parents)
+            is_one_axis = len(beside) > 1 and len({axis for axis, _ in beside}) == 1
+            yield "at_middle", "one axis" if is_one_axis else axes[0], str(limit), node.lineno
+
+
+def _comparisons_beside(
+    node: ast.Compare, parents: dict[ast.AST, ast.AST]
+) -> list[tuple[str, int]]:
+    """Return the axes that an expression compares, with the positions."""
+    outer: ast.AST = node
+    while isinstance(parents.get(outer), ast.expr):
+        outer = parents[outer]
+    return [
+        (last(part), part.col_offset)
+        for each in ast.walk(outer)
+        if isinstance(each, ast.Compare) and len(each.ops) == 1
+        for part in (each.left, *each.comparators)
+        if last(part) in ("x", "y")
+    ]
+
+
+def _is_part(node: ast.expr, parents: dict[ast.AST, ast.AST], values: Values) -> bool:
+    """Whether a larger condition is judged as a whole."""
+    outer = parents.get(node)
+    while isinstance(outer, ast.BoolOp) or (
+        isinstance(outer, ast.UnaryOp) and isinstance(outer.op, ast.Not)
+    ):
+        try:
+            values.of(outer, MIDDLE_M, MIDDLE_M)
+        except Unknown:
+            return False
+        if isinstance(outer, ast.BoolOp):
+            return True
+        outer = parents.get(outer)
+    return False
+
+
+def _walls(node: ast.expr, values: Values) -> tuple[set[str], str] | None:
+    """Judge a condition to stop, or to drive on; None for what is neither.
+
+    Returns: the walls that it tells, and what is wrong with it: 'never', 'always' - it is true;
+        'middle' - it is, far from all walls; 'corners' - it is, in corners only; '' for nothing.
+    """
+    try:
+        ring = {bool(values.of(node, x, y)) for x, y in _RING}
+        corners = [bool(values.of(node, x, y)) for x, y in _CORNERS]
+        at = {w: [bool(values.of(node, x, y)) for x, y in each] for w, each in WALLS.items()}
+        is_fixed = not {last(each) for each in ast.walk(node)} & {"x", "y"}
+    except Unknown:
+        return None
+    if len(ring) > 1:
+        return None  # it tells parts of the window apart
+    (inside,) = ring
+    told = {wall for wall, found in at.items() if all(each is not inside for each in found)}
+    if not told and not any(each is not inside for each in corners):
+        return None if is_fixed else (set(), "always" if inside else "never")
+    if not told:
+        return told, "corners"
+    is_any = isinstance(node, ast.BoolOp) and isinstance(node.op, ast.Or)
+    return told, "middle" if inside and is_any else ""
