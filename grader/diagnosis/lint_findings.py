@@ -183,8 +183,9 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
     """A callback whose own line has to change."""
     text = raised.text[:_LONGEST]
     if "callback should be" in text:
-        for finding in of_kind(case, "no_message", "without_self"):
-            if raised.place is None or finding.name in raised.place.text:
+        wrong = [*of_kind(case, "no_message", "without_self")]
+        for finding in wrong:
+            if len(wrong) == 1 or raised.place is None or finding.name in raised.place.text:
                 name = excerpt(finding.name)
                 return Hint(
                     msg(

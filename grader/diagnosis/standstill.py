@@ -290,14 +290,14 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
             cause = msg(
                 "You published {sent} messages on {topic} in {run_s:.0f} s{where}: nothing in "
                 "that loop waits.",
-                where=line(end.place),
+                where=line(end.used_at or end.place),
                 **words,
             )
         help_ = msg(
             "A few commands a second are enough: publish in the callback of "
             "create_timer(), and let rclpy.spin(node) call it."
         )
-        place = loop or end.place
+        place = loop or end.used_at or end.place
         return Diagnosis("publishes_without_waiting", cause, help_, place=place)
     return None
 

@@ -8,6 +8,7 @@ one.
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -134,7 +135,8 @@ def find(
         except SyntaxError:
             continue
         names.add(trees[file])
-    words = {word for text in sources.values() for word in BY_NAME if word in text}
+    by_name = re.compile(rf"\b({'|'.join(BY_NAME)})\b")
+    words = any(by_name.search(text) for text in sources.values())
     found: list[LintFinding] = []
     for file, tree in trees.items():
         classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
