@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -27,6 +27,8 @@ Mask = npt.NDArray[np.bool_]
 
 #: A step that is longer by this than its speed explains is a jump [m].
 JUMP_M = 0.001
+#: Two pieces that meet at the start with less of a turn are one, begun in its middle [deg].
+SAME_SIDE_DEG = 30.0
 #: How often corners are improved; a polygon needs two or three passes.
 MOST_PASSES = 10
 #: A path with more corners was not meant as a polygon, and is not simplified any further.
@@ -35,19 +37,29 @@ MOST_CORNERS = 300
 
 @dataclass(frozen=True)
 class Side:
-    """A straight piece of a path; `last` and `crooked_at` are rows of it."""
+    """A straight piece of a path.
+
+    Attributes:
+        vector: from its beginning to its end [m], float64 (2,).
+        last: the row of its end.
+        crooked_m: how far the path lies beside it at most [m].
+        crooked_at: the row where it does.
+        turn_deg: by how much the path turns in the corner at its end, to the left [deg]; None: the
+            path ends there.
+    """
 
     vector: Floats
     last: int
     crooked_m: float
     crooked_at: int
+    turn_deg: float | None = None
 
     @property
     def length_m(self) -> float:
         """From corner to corner."""
         return float(np.hypot(*self.vector))
 
-    def turn_deg(self, following: Side) -> float:
+    def turn_to_deg(self, following: Side) -> float:
         """By how much the path turns from this side to the following, to the left [deg]."""
         (a, b), (c, d) = self.vector, following.vector
         return math.degrees(math.atan2(a * d - b * c, a * c + b * d))
@@ -111,6 +123,17 @@ class DrivenPath:
     def longest_stretch(self, ticks: Iterable[int]) -> DrivenPath:
         """Return that of its `stretches` which moved in the most ticks."""
         return max(self.stretches(ticks), key=lambda part: int(part.moving.sum()))
+
+    def between_jumps(self, still_m: float = 1e-5) -> DrivenPath:
+        """Return the path from where it first drove, by steps over `still_m` [m], to the next jump.
+
+        A pose that was set and the published one differ by rounding. Without any driving it is the
+        last reading.
+        """
+        driven = (self.steps_m > still_m) & ~self.jumping
+        first = int(np.argmax(driven)) - 1 if driven.any() else len(self) - 1
+        jumps = np.flatnonzero(self.jumping)
+        return self.part(slice(first, next(iter(jumps[jumps > first]), None)))
 
     # Motion -----------------------------------------------------------------------------------
 
@@ -177,14 +200,40 @@ class DrivenPath:
         """Return the length of the path from a row to the end [m]."""
         return float(self.driven_m[-1] - self.driven_m[row])
 
-    def straight_pieces(self, error_m: float) -> list[Side]:
-        """Approximate the path by straight lines that lie `error_m` at most beside it."""
-        marks = simplify(self.points, error_m)
-        return [
+    def first_return(self, near_m: float, away_m: float) -> int | None:
+        """Return the row at which it first came back to its start, None if it never did.
+
+        It was farther than `away_m` from it [m] before. Of the rows from then on that lie within
+        `near_m` [m] without a gap, it is the nearest.
+        """
+        gaps = np.hypot(*(self.points - self.points[:1]).T)
+        back = np.flatnonzero((gaps <= near_m) & np.logical_or.accumulate(gaps > away_m))
+        first = back[back == np.arange(len(back)) + back[:1]]
+        return int(first[np.argmin(gaps[first])]) if len(first) else None
+
+    def sides(self, error_m: float, closed_m: float = 0.0) -> list[Side]:
+        """Approximate the path by straight lines that lie `error_m` [m] at most beside it.
+
+        Three or more that end less than `closed_m` [m] from where they begin are a polygon: there
+        the last one turns into the first, or, by less than `SAME_SIDE_DEG`, is one with it.
+        """
+        marks = simplify(self.points, error_m) if len(self) else []
+        found = [
             Side(self.points[b] - self.points[a], b, beside_m, at)
             for a, b in pairwise(marks)
             for at, beside_m in [farthest(self.points, a, b)]
         ]
+        gap = np.sum([side.vector for side in found], axis=0)
+        closed = len(found) > 2 and bool(np.hypot(*gap) < closed_m)
+        if closed and abs(found[-1].turn_to_deg(found[0])) < SAME_SIDE_DEG:
+            *found, end = found
+            worse = max(end, found[0], key=lambda side: side.crooked_m)
+            vector = end.vector + found[0].vector
+            found[0] = replace(worse, vector=vector, last=found[0].last)
+            closed = len(found) > 2
+        corners = list(zip(found, found[1:] + found[:closed], strict=False))
+        turning = [replace(side, turn_deg=side.turn_to_deg(after)) for side, after in corners]
+        return turning + found[len(corners) :]
 
     # Places -----------------------------------------------------------------------------------
 

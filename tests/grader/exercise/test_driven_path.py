@@ -73,6 +73,36 @@ def test_where_it_was_put_can_be_made_its_first_reading():
     assert driven.first == 0
 
 
+def test_between_jumps_it_drove_alone_from_the_last_place_before_the_first_step():
+    driven = path((1, 1), (3, 3), (3, 3), (3.01, 3), (3.02, 3), (7, 7), (7.01, 7))
+    assert driven.between_jumps().ticks.tolist() == [3, 4, 5]
+    assert path((1, 1), (1, 1)).between_jumps().ticks.tolist() == [2]
+
+
+def test_the_first_return_is_the_nearest_place_of_the_first_visit_after_it_was_away():
+    driven = path((1, 1), (1.1, 1), (3, 1), (1.2, 1), (1.1, 1), (1.3, 1), (1, 1))
+    assert driven.first_return(0.25, away_m=1.0) == 4
+    assert driven.first_return(0.25, away_m=2.5) is None
+
+
+def test_sides_turn_into_each_other_and_those_of_a_closed_path_into_the_first():
+    corners = [(1, 1), (3, 1), (3, 3), (1, 3)]
+    found = path(*corners).sides(0.1)
+    assert [(side.last, side.length_m, side.turn_deg) for side in found] == [
+        *((1, 2, pytest.approx(90)), (2, 2, pytest.approx(90)), (3, 2, None))
+    ]
+    closed = path(*corners, (1, 1)).sides(0.1, closed_m=0.5)
+    assert [side.turn_deg for side in closed] == pytest.approx([90] * 4)
+
+
+def test_a_side_that_a_closed_path_begins_in_the_middle_of_is_one():
+    found = path((2, 1), (3, 1), (3, 3), (1, 3), (1, 1), (1.9, 1)).sides(0.05, closed_m=0.5)
+    assert [(side.last, side.length_m) for side in found] == [
+        *((1, pytest.approx(1.9)), (2, 2), (3, 2), (4, 2))
+    ]
+    assert [side.turn_deg for side in found] == pytest.approx([90] * 4)
+
+
 def test_evidence_names_run_tick_time_and_place():
     driven = path((1.23456, 2), (3, 4), number=2)
     first = driven.evidence(0, "here")
@@ -86,4 +116,5 @@ def test_a_path_without_a_reading_answers_everything():
     assert (len(driven), driven.first, driven.last, driven.stop_tick) == (0, 0, 0, 0)
     assert (driven.length_m, driven.rested_s, driven.wall, driven.lost) == (0, 0, None, None)
     assert driven.at(7, "nowhere").place is None
-    assert len(driven.longest_stretch([3]).until_lost()) == 0
+    assert len(driven.longest_stretch([3]).until_lost().between_jumps()) == 0
+    assert (driven.sides(0.1, closed_m=1.0), driven.first_return(0.2, away_m=1.0)) == ([], None)

@@ -12,7 +12,7 @@ from grader.errors import CheckFailed
 from grader.exercise import driven_path
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.exercises.square.way import Way
+from grader.exercises.square.checks import Way
 from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import drive, twist
@@ -226,7 +226,7 @@ def test_a_way_of_a_thousand_corners_is_looked_at_as_far_as_anybody_would(monkey
     real = driven_path.farthest
     monkeypatch.setattr(driven_path, "farthest", lambda *them: looked.append(1) or real(*them))
     recording = drive(Everywhere(), 4000)
-    assert Way(recording, EXERCISE.tolerances).sides
+    assert Way(recording, EXERCISE.tolerances).straight_sides()
     assert len(looked) < 10 * 300 * 2
 
 
