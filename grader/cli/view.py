@@ -8,11 +8,12 @@ from pathlib import Path
 from grader import files
 from grader.cli import options
 from grader.cli.place import RecordingPlace, find
-from grader.errors import UsageError
+from grader.errors import RecordingError, UsageError
 from grader.message import Message, msg
 from grader.recording.playback import Playback
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
+from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import load_subject
 from grader.reports import Report, playback
 from grader.result.result import ARTIFACTS, PAGE, RESULT
@@ -67,7 +68,9 @@ def main(args: argparse.Namespace) -> int:
     if render is None:
         raise UsageError(_not_played(place, recordings))
     other = None if args.compare is None else _other(args.compare, recordings, seen)
-    content = render(_playback(place, recordings, seen, other))
+    playback = _playback(place, recordings, seen, other)
+    with scene_at_work(recordings.nominal.scene, RecordingError):
+        content = render(playback)
     page = place.folder / NAME if args.out is None else args.out
     if args.out is None:
         files.put(page, content.encode("utf-8"))

@@ -32,6 +32,7 @@ from grader.recording.folder import (
 )
 from grader.recording.observations import Observations
 from grader.recording.recording import Provenance, PublishedTopic, Recording, Recordings, Run
+from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import (
     DEFAULT_SCENE,
     PACKAGE_SCENE,
@@ -262,8 +263,9 @@ def _loaded(found: Sequence[_Header]) -> list[Recording]:
 def _recording(header: _Header, trace: Trace) -> Recording:
     facts = header.facts
     origin = facts[PROVENANCE]
-    _must_agree(header.folder, "ticks", header.run.ticks, trace.ticks)
-    _must_agree(header.folder, "trace_sha256", header.run.trace_sha256, trace.sha256())
+    with scene_at_work(header.subject.name, RecordingError):
+        _must_agree(header.folder, "ticks", header.run.ticks, trace.ticks)
+        _must_agree(header.folder, "trace_sha256", header.run.trace_sha256, trace.sha256())
     return Recording(
         trace=trace,
         run=header.run,

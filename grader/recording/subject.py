@@ -14,15 +14,25 @@ from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol
 import numpy as np
 
 from grader import extensions
-from grader.errors import UsageError
+from grader.errors import SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
+from grader.recording.scene_at_work import at_work
 from grader.recording.view import Floats, Pictures, Plane, View
 from grader.strict_json import SPARSE
 from grader.text import place
 
 #: The scene of an exercise that names none.
 DEFAULT_SCENE: Final = "turtlesim"
+#: Hooks of a subject, and of a scene, and what they may raise; `from_channels` and `decode` may
+#: raise anything.
+HOOKS: Final[Mapping[str, tuple[type[Exception], ...]]] = {
+    **dict.fromkeys(("untouched", "message_definitions", "to_messages", "bag_topics"), ()),
+    **dict.fromkeys(("encode", "scenario", "behaviour", "view", "pictures", "remarks"), ()),
+    **dict.fromkeys(("endpoints", "wrong_setting", "adapted", "how_to_try", "odd_traces"), ()),
+    **dict.fromkeys(("simulate", "preload", "starts"), ()),
+    **{"interfaces_for": (SubmissionError,), "live_page": (OSError,)},
+}
 #: The subject of a package inspection; a run's recording may hold such a trace.
 PACKAGE_SCENE: Final = "package"
 
@@ -152,6 +162,12 @@ class Subject(ABC):
     #: Whether what a person would have seen is that plane, so that places can be shown in it. Else
     #: its `pictures` have a `plan`, if anything moves.
     window_is_plane: ClassVar[bool] = False
+
+    def __init_subclass__(cls, **words: Any) -> None:
+        """Let exceptions of its hooks name the subject, the file and the line."""
+        super().__init_subclass__(**words)
+        for name in HOOKS.keys() & vars(cls).keys():
+            setattr(cls, name, at_work(vars(cls)[name], *HOOKS[name]))
 
     # What is kept in a bag, and read back ---------------------------------------------------------
 

@@ -17,6 +17,7 @@ from grader.errors import GraderFailure
 from grader.message import Message, msg
 from grader.recording.observations import Observations
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
+from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import Trace, load_subject
 from grader.run.handover import Plan
 from grader.run.limits import LIMITS, size
@@ -176,14 +177,15 @@ def record(
     observations: Observations = NO_OBSERVATIONS,
 ) -> Recording:
     """Put together the recording of a run that is over."""
-    run = replace(
-        ending.run,
-        ticks=trace.ticks,
-        simulated_s=trace.duration_ns / 1e9,
-        wall_s=round(ending.run.wall_s, 3),
-        trace_sha256=trace.sha256(),
-        flags=(*ending.run.flags, *plan.flags),
-        seed=plan.seed,
-        interfaces=plan.interfaces,
-    )
+    with scene_at_work(plan.scene):
+        run = replace(
+            ending.run,
+            ticks=trace.ticks,
+            simulated_s=trace.duration_ns / 1e9,
+            wall_s=round(ending.run.wall_s, 3),
+            trace_sha256=trace.sha256(),
+            flags=(*ending.run.flags, *plan.flags),
+            seed=plan.seed,
+            interfaces=plan.interfaces,
+        )
     return Recording(trace, run, topics, ending.output, plan.start, plan.scene, observations)

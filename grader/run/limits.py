@@ -87,6 +87,8 @@ SIMULATOR_BYTES: Final = 3_000_000_000
 #: How long a simulator may take to come up, to do anything at all, and to save what it has recorded
 #: [s]: it is ours, and only an overloaded machine takes so long.
 SIMULATOR_S: Final = 60.0
+#: How long a scene may take for a tick [s]; it is then named, before its simulator is given up.
+SCENE_S: Final = 30.0
 #: What it records [bytes]: more than any run leaves; the grader's process holds it a few times.
 RECORDING_BYTES: Final = 256_000_000
 #: How long a submission's process may take to come up, its own code not counted [s].

@@ -12,9 +12,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import Any, ClassVar, Final, Literal
+from typing import Any, ClassVar, Final, Literal, get_args
 
-from grader.message import Message
+from grader.errors import SceneFailure
+from grader.message import Message, msg
+from grader.recording.scene_at_work import LONGEST_WORDS
 from grader.recording.subject import Start, Subject, Trace
 from grader.scenes.live import LivePage
 
@@ -168,6 +170,17 @@ class Simulation(ABC):
         if now_s >= limits.total_s:
             return "seen" if has_begun else "no_motion"
         return ""
+
+
+def expect_reason(scene: str, found: Reason) -> Reason:
+    """Return what a scene has returned for a tick; raise a `SceneFailure` where it is no reason."""
+    if found not in (known := get_args(Reason)):
+        shown = {"found": repr(found)[:LONGEST_WORDS], "known": ", ".join(map(repr, known))}
+        failed = msg(
+            "the scene {scene} returned {found}, expected one of {known}", scene=scene, **shown
+        )
+        raise SceneFailure(failed)
+    return found
 
 
 def arrived(subscription: Any) -> Iterator[Any]:

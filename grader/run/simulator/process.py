@@ -18,6 +18,7 @@ from collections.abc import Mapping
 from typing import Any, Final, Self
 
 from grader import linux
+from grader.recording.scene_at_work import overdue
 from grader.run.limits import SIMULATOR_BYTES
 
 #: So much may wait to be received [bytes]; then the run waits so long for that, in all [s].
@@ -35,6 +36,7 @@ def protect_process() -> None:
     linux.lower_limit(resource.RLIMIT_DATA, SIMULATOR_BYTES, resource.RLIM_INFINITY)
     # Ctrl-C in a terminal reaches the whole group; the grader decides what happens then.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGALRM, overdue)
 
 
 def send_message(control: socket.socket, what: str, **more: Any) -> None:

@@ -24,12 +24,13 @@ from rclpy.signals import SignalHandlerOptions
 
 from grader.errors import SceneFailure
 from grader.message import Message, msg
+from grader.recording.scene_at_work import scene_at_work
 from grader.run import handover
 from grader.run.handover import Plan
+from grader.run.limits import SCENE_S
 from grader.run.simulator.process import FeedWriter, protect_process, send_message
-from grader.run.simulator.scene_at_work import expect_reason, scene_at_work
 from grader.scenes import load_scene
-from grader.scenes.scene import STEP_NS, Hooks, Reason
+from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
 from turtlesim_py.ros import program
 
 #: How often the submission's topics are read from the graph, and progress is reported [ticks].
@@ -78,7 +79,7 @@ class GradedSimulator:
         self._scene = load_scene(plan.scene)
         self._feed = FeedWriter.of(shown, STEP_NS)
         hooks = Hooks(send_news=None if self._feed is None else self._feed.write)
-        with scene_at_work(plan.scene):
+        with scene_at_work(plan.scene, within_s=SCENE_S):
             self._simulation = self._scene.simulate(
                 plan.limits, plan.start, hooks, plan.interfaces, plan.setting
             )
@@ -101,7 +102,7 @@ class GradedSimulator:
             self._receive()
             if not self._running and self._may_start():
                 self._start()
-            with scene_at_work(self._scene.name):
+            with scene_at_work(self._scene.name, within_s=SCENE_S):
                 reason = self._simulation.tick()
             expect_reason(self._scene.name, reason)
             if self._running:
@@ -113,7 +114,7 @@ class GradedSimulator:
         if self._feed is not None:
             self._feed.close()
         self._topics.update()
-        with scene_at_work(self._scene.name):
+        with scene_at_work(self._scene.name, within_s=SCENE_S):
             handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
             flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
         self._send("done", reason=reason, flags=flags)

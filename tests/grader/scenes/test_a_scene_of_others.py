@@ -13,6 +13,7 @@ from tests.docs.test_examples import BLINKING, environment_with, run_examples
 #: The scene of the page, and its mistakes: an entry point each.
 MISTAKES = '''
 import os
+import time
 
 from grader.message import msg
 from lamp import Lamp, LampSimulation
@@ -62,7 +63,35 @@ def forgets(self, channels, duration_ns):
 exits = scene("exits", tick=leaves)
 loses = type("Loses", (Lamp,), {"name": "loses", "from_channels": forgets})()
 misnamed = scene("lamp")
+
+
+def hashes(self):
+    """Make the simulation of a lamp whose trace has no hash."""
+    trace = LampSimulation.trace(self)
+    return type("Other", (type(trace),), {"sha256": fails})(trace.ticks, trace.switched)
+
+
+def loops(self, *_):
+    while True:
+        pass
+
+
+def sleeps(self, *_):
+    time.sleep(1e6)
+
+
+loops = scene("loops", tick=loops)
+sleeps = scene("sleeps", tick=sleeps)
+sha256 = scene("sha256", trace=hashes)
+for hook in HOOKS:
+    globals()[hook] = type("Other", (Lamp,), {"name": hook, hook: fails})()
 '''
+#: Methods of a scene that the grader calls in a run that does not get all points.
+HOOKS = (
+    *("message_definitions", "bag_topics", "to_messages", "scenario", "wrong_setting"),
+    *("view", "pictures", "remarks", "endpoints", "interfaces_for", "starts"),
+)
+MISTAKES = f"HOOKS = {HOOKS!r}\n{MISTAKES}"
 RAISED = "ZeroDivisionError: no lamp has this"
 SENTENCES = {
     "ticks": f"the scene ticks raised {RAISED} (mistakes.py, line ",
@@ -74,6 +103,11 @@ SENTENCES = {
     "loses": "no trace of loses: ValueError: from_channels() gives back another sha256()",
     "nothing": "the scene nothing returned None, expected one of '', 'rest', ",
     "a_word": "the scene a_word returned 'enough', expected one of '', 'rest', ",
+    "sleeps": "the scene sleeps raised Overdue: it did not return (mistakes.py, line ",
+    "loops": "the scene loops raised Overdue: it did not return (mistakes.py, line ",
+    **{
+        name: f"the scene {name} raised {RAISED} (mistakes.py, line " for name in (*HOOKS, "sha256")
+    },
 }
 NAMES = (*SENTENCES, "ends_its_process", "misnamed")
 
