@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from grader.inspection import trace
 from grader.inspection.examining.examination import Examination
@@ -30,6 +30,10 @@ from grader_robots.inspection import files, meshes
 if TYPE_CHECKING:
     from grader.recording.subject import Trace
     from grader.recording.view import Part, Pixels
+
+
+#: So many descriptions are looked at with other numbers.
+_MOST_MADE: Final = 3
 
 
 class RobotInspector(Inspector):
@@ -86,8 +90,8 @@ class _Robots:
         self._examination = examination
         self._workspace = examination.workspace
         self._surface_of: dict[str, int] = {}
-        #: the first description that is made of a file of the package: its number, and that file
-        self._first: tuple[int, str] | None = None
+        #: descriptions that are made of a file of the package: their numbers, and that file
+        self._made: list[tuple[int, str]] = []
 
     def add_launched(
         self, launch: LaunchFile, sources: Sequence[str], refused: Sequence[str]
@@ -120,14 +124,13 @@ class _Robots:
             self.descriptions.append(Description(-1, "", False, "", problem, (), False))
 
     def varied(self) -> list[Varied]:
-        """Return the first description with one number doubled, for each number of its xacro."""
-        if self._first is None or not self._first[1].endswith((".xacro", ".xml", ".urdf")):
-            return []
-        of, source = self._first
-        with suppress(Ended):
-            answer = step(partial(files.varied, self._workspace, source), self._workspace.own)
-            return attempt(partial(self._varied, of, answer))
-        return []
+        """Return descriptions with one number doubled, for each number of their xacro."""
+        found: list[Varied] = []
+        for of, source in self._made[:_MOST_MADE]:
+            with suppress(Ended):
+                answer = step(partial(files.varied, self._workspace, source), self._workspace.own)
+                found += attempt(partial(self._varied, of, answer))
+        return found
 
     def read_meshes(self) -> None:
         """Read what meshes look like; last, and by an account of its own: it earns nothing."""
@@ -154,8 +157,8 @@ class _Robots:
             is_xml=named is not None,
         )
         is_ours = bool(sources) and sources[0].startswith((f"{trace.PREFIX}/", "/source/"))
-        if is_ours and self._first is None:
-            self._first = len(self.descriptions), self._examination.real(sources[0])
+        if is_ours and sources[0].endswith((".xacro", ".xml", ".urdf")):
+            self._made.append((len(self.descriptions), self._examination.real(sources[0])))
         self.descriptions.append(description)
 
     def _add_answered(self, answer: list[dict[str, str]]) -> None:

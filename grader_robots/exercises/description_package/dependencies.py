@@ -10,6 +10,7 @@ from grader.inspection.error_texts import shown
 from grader.inspection.examining.known import DESKTOP
 from grader.inspection.trace import Description, NamedMesh
 from grader.message import Message, joined, msg
+from grader_robots.exercises.description_package import robots
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     nothing_started,
@@ -41,9 +42,10 @@ def meshes(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     Each file that the description names, textures too, has to be found from its name: by
     package://PACKAGE/PATH, or a file:// that $(find) has made. The share of those that are so is
     the share of the points. One that the package has and does not install is no fault here.
-    A description without any gets all points, if a launch file starts anything.
+    A description without any gets all points, if a launch file starts anything; one that
+    robot_state_publisher does not take is not judged.
     """
-    readable = [each for each in facts.descriptions if each.is_xml]
+    readable = [each for each in robots.readable(facts) if each.is_xml]
     if not readable:
         return unjudged(
             msg("Not judged: there is no description whose meshes could be looked for."),

@@ -98,6 +98,11 @@ def unjudged(why: Message, help: Message) -> Finding:
     return Finding(0, why, help, judged=False)
 
 
+def no_robot(why: Message) -> Finding:
+    """Of what nobody can tell, because there is no robot."""
+    return unjudged(why, msg("See what is said of the description first."))
+
+
 def nothing(remarks: Sequence[Message] = ()) -> Finding:
     """Of a package that nobody could look at; the first remark says why."""
     return Finding(

@@ -40,8 +40,8 @@ def installed(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     - One thing is missing: half of the points. The files of one folder count as one thing.
     - More is missing: 0.
 
-    A marker below share/ament_index, or a package.xml, that nothing installs costs nothing: colcon
-    adds both.
+    A launch file that is not installed is missing where no other one is. A marker below
+    share/ament_index, or a package.xml, that nothing installs costs nothing: colcon adds both.
     """
     found: dict[str, list[PackageFault]] = {}
     if (stop := stops(facts)) is not None:
@@ -159,7 +159,8 @@ def _absent(name: str, is_cmake: bool) -> PackageFault:
 
 def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
     yield from unstarted(facts)
-    for launch in facts.launches:
+    there = [each for each in facts.launches if _is_installed(each)]
+    for launch in there if any(each.nodes for each in there) else facts.launches:
         yield from (lacking(facts, each) for each in launch.lacking)
         if launch.moved:
             yield moved(launch)
@@ -174,6 +175,10 @@ def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
                         "it, with the folder that the description names."
                     ),
                 )
+
+
+def _is_installed(launch: LaunchFile) -> bool:
+    return not any(each.kind == "file" and each.source == launch.file for each in launch.lacking)
 
 
 def moved(launch: LaunchFile) -> PackageFault:

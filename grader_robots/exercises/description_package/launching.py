@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
 from grader.inspection.error_texts import advice, how_it_ends, shown
 from grader.inspection.examining.known import FILES, KNOWN, SIMULATORS
-from grader.inspection.trace import LaunchedNode, LaunchFile, Obstacle
+from grader.inspection.trace import EMPTY, Lacking, LaunchedNode, LaunchFile, Obstacle
 from grader.message import joined, msg
+from grader_robots.exercises.description_package import installing
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,
@@ -18,15 +20,18 @@ from grader_robots.exercises.description_package.facts import (
     of_package,
     unjudged,
 )
+from grader_robots.exercises.description_package.robots import of_description, of_text
 from robot_py.urdf import parse
 
 checks = Checks()
 PUBLISHER = "robot_state_publisher"
 JOINT_SOURCES = ("joint_state_publisher", "joint_state_publisher_gui")
-#: What each part of it is worth here.
-WORTH = {"description": 0.5, "joints": 0.25, "rviz": 0.25}
-#: A launch file of the package that ends with an error leaves no more than this.
-BROKEN = 0.5
+#: What each part of it is worth here: without a description nothing shows.
+WORTH = {"description": 1.0, "joints": 0.25, "rviz": 0.25}
+_WRITE = msg(
+    "Write launch/display.launch.py: it starts robot_state_publisher with the description, "
+    "joint_state_publisher_gui, and rviz2 with your .rviz file."
+)
 _SIMULATORS = ("gz sim", "gazebo", "gzserver", "ign gazebo", "webots")
 _MOVES = re.compile(r'type\s*=\s*["\'](?:revolute|continuous|prismatic)["\']')
 
@@ -37,39 +42,40 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     """A launch file shows the robot: its description, its joints, RViz.
 
     Each launch file (Python, XML or YAML) is evaluated with its default arguments, and nothing is
-    started. The best of them counts, of those that start RViz, where any does:
+    started. The best of them counts; one that puts the robot into Gazebo only if it starts RViz:
 
-    - robot_state_publisher with the parameter robot_description: half of the points,
+    - robot_state_publisher with the parameter robot_description, a URDF that urdfdom takes;
+      without it nothing shows: 0,
     - something that publishes joint states, if any joint moves: joint_state_publisher, with or
       without gui, a node of the package, a controller, a simulator: a quarter,
     - rviz2 with a file: a quarter. Who opens RViz by hand needs an .rviz file that is installed.
 
-    If it ends with an error: 0; if another one of the package does: half at most. One that uses
-    what the grader does not know makes this check not judged, where nothing else passes it.
+    If `ros2 launch` ends with an error, its own or for want of a file that it reads, of a program
+    or of a package: 0. One that uses what the grader does not know makes this check not judged,
+    where nothing else passes it.
     """
     if not facts.launches:
         return Finding(
             0,
             msg("The package has no launch file."),
-            msg(
-                "Write launch/display.launch.py: it starts robot_state_publisher with "
-                "the description, joint_state_publisher_gui, and rviz2 with your .rviz "
-                "file."
-            ),
+            _WRITE,
         )
-    found = {each.file: lacking(facts, each) for each in facts.launches}
-    shows = [each for each in facts.launches if any(map(is_rviz, each.nodes))]
-    best = max(shows or facts.launches, key=lambda each: _share(found[each.file], WORTH))
-    faults = found[best.file]
-    share = _share(faults, WORTH)
-    if share < 1 and facts.not_known is not None:
+    shows = [
+        each
+        for each in facts.launches
+        if any(map(is_rviz, each.nodes)) or not _includes_simulator(each)
+    ]
+    found = [(each, _judge(facts, each)) for each in shows]
+    if not found:
+        found = [(facts.launches[0], _gazebo_alone(facts.launches[0]))]
+    best, finding = max(found, key=lambda each: each[1].share)
+    if finding.share < 1 and facts.not_known is not None:
         why = msg("{best} alone does not show the robot", best=best.file)
         return not_judged(facts.not_known, why)
-    for each in facts.launches:
-        if each.problem is not None and each.problem.kind in ("error", "limit"):
-            left = min(share, BROKEN) if each.file != best.file else 0.0
-            return ends(each.file, each.problem, left)
-    if share <= WORTH["description"] and (include := _not_followed(best)):
+    ended = [judged for each, judged in found if _ends_early(each)]
+    if finding.share < 1 and ended:
+        return replace(ended[0], share=finding.share)
+    if finding.share <= WORTH["joints"] + WORTH["rviz"] and (include := _not_followed(best)):
         return unjudged(
             msg(
                 "Not judged: {best} leaves it to {include}, a file of another package, to show the "
@@ -79,16 +85,84 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
             ),
             msg("This is no fault of the package: tell whoever runs the course."),
         )
-    if not faults:
-        return Finding(
-            1,
-            msg(
-                "{best} starts {publisher} with the description, and what belongs to it.",
-                best=best.file,
-                publisher=PUBLISHER,
-            ),
-        )
-    return without(best.file, faults, WORTH)
+    return finding
+
+
+def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
+    """What one launch file shows."""
+    if (stopped := starts_nothing(facts, launch)) is not None:
+        return stopped
+    for text in filter(str.strip, handed_on(facts, launch)):
+        robot = of_text(launch.file, text)
+        if not robot.share:
+            return robot
+    if faults := lacking(facts, launch):
+        return without(launch.file, faults, WORTH)
+    return Finding(
+        1,
+        msg(
+            "{best} starts {publisher} with the description, and what belongs to it.",
+            best=launch.file,
+            publisher=PUBLISHER,
+        ),
+    )
+
+
+def _gazebo_alone(launch: LaunchFile) -> Finding:
+    return Finding(
+        0,
+        msg(
+            "No launch file shows the robot in RViz: {file} puts it into Gazebo.", file=launch.file
+        ),
+        _WRITE,
+    )
+
+
+def starts_nothing(facts: PackageFacts, launch: LaunchFile) -> Finding | None:
+    """Of a launch file with which `ros2 launch` ends with an error; None where it does not."""
+    if _ends_early(launch):
+        assert launch.problem is not None
+        return ends(launch.file, launch.problem, 0)
+    if (fault := not_started(facts, launch)) is None:
+        return None
+    consequence = msg("`ros2 launch` starts nothing of {file}.", file=launch.file)
+    return Finding(0, joined([fault.rationale, consequence], " "), fault.help)
+
+
+def _ends_early(launch: LaunchFile) -> bool:
+    """Whether it ends with an error of its own."""
+    return launch.problem is not None and launch.problem.kind in ("error", "limit")
+
+
+def not_started(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
+    """What `ros2 launch` ends with for want of something that it needs; None where all is there."""
+    if (stop := installing.stops(facts)) is not None:
+        return stop
+    if facts.setup.manifest:
+        return next(installing.unstarted(facts))
+    if not (launch.nodes or launch.includes or launch.processes):
+        return None  # it has nothing to start
+    for each in launch.lacking:
+        if not _is_handed_on(facts, launch, each):
+            return installing.lacking(facts, replace(each, by=each.by or launch.file))
+    if launch.moved:
+        return installing.moved(launch)
+    unmade = (each for each in facts.descriptions if each.by == launch.file and each.problem)
+    if (description := next(unmade, None)) is not None:
+        found = of_description(facts, description)
+        return PackageFault("description", found.rationale, found.help)
+    return None
+
+
+def _is_handed_on(facts: PackageFacts, launch: LaunchFile, lacks: Lacking) -> bool:
+    """Whether a file that is not there is only named to a program, which starts all the same."""
+    sources = {each.source for each in facts.trace.descriptions}
+    if lacks.kind != "file" or (lacks.source and lacks.source in sources):
+        return False
+    words = [*launch.processes]
+    for node in launch.nodes:
+        words += [*node.arguments, *(each.value for each in node.parameters)]
+    return any(lacks.name.removeprefix(f"{EMPTY}/") in word for word in words)
 
 
 def ends(file: str, problem: Obstacle, share: float) -> Finding:
@@ -108,7 +182,7 @@ def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float
 
 
 def _share(faults: Sequence[PackageFault], worth: Mapping[str, float]) -> float:
-    return 1.0 - sum(worth[fault.what] for fault in faults)
+    return max(0.0, 1.0 - sum(worth[fault.what] for fault in faults))
 
 
 def lacking(facts: PackageFacts, launch: LaunchFile) -> list[PackageFault]:
@@ -236,12 +310,13 @@ def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | No
 
 def _rviz(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
     started = [node for node in launch.nodes if is_rviz(node)]
-    if any(_has_file(node) for node in started):
+    missing = [each.name for each in launch.lacking]
+    if any(_has_file(node, missing) for node in started):
         return None
     if started:
         return PackageFault(
             "rviz",
-            msg("rviz2 starts without a file: it shows an empty grid."),
+            msg("rviz2 starts without a file that is there: it shows an empty grid."),
             msg(
                 "Save RViz's settings into the package, install the file, and start "
                 "rviz2 with arguments=['-d', FILE]."
@@ -263,9 +338,9 @@ def _rviz(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
     )
 
 
-def _has_file(node: LaunchedNode) -> bool:
-    words = list(node.arguments)
-    if any(word.startswith("-d ") or word.startswith("--display-config=") for word in words):
-        return True
+def _has_file(node: LaunchedNode, missing: Sequence[str]) -> bool:
+    words = [word for each in node.arguments for word in each.replace("=", " ", 1).split()]
     at = next((n for n, w in enumerate(words) if w in ("-d", "--display-config")), len(words))
-    return len(words) > at + 1 and words[at + 1].strip() != ""
+    return len(words) > at + 1 and not any(
+        words[at + 1] in (each, each.removeprefix(f"{EMPTY}/")) for each in missing
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
 from grader.exercise.check import Checks, Tolerances
@@ -15,7 +15,7 @@ from grader.inspection.trace import Description
 from grader.message import NOTHING, Message, msg
 from grader_robots.exercises.description_package.facts import PackageFacts, not_judged, of_package
 from robot_py.model import Inertial, Joint, JointType, Model, Origin
-from robot_py.urdf import Consequence, parse
+from robot_py.urdf import Consequence, ParsedUrdf, parse
 
 checks = Checks()
 #: What is left where a robot is there, and something of it is wrong or dropped.
@@ -54,7 +54,7 @@ def urdf(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         )
     links = 0
     for description in facts.descriptions:
-        finding = _of(facts, description)
+        finding = of_description(facts, description)
         if finding.share < 1:
             return finding
         links += facts.text(description.text).count("<link ")
@@ -63,7 +63,8 @@ def urdf(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     )
 
 
-def _of(facts: PackageFacts, description: Description) -> Finding:
+def of_description(facts: PackageFacts, description: Description) -> Finding:
+    """What a description is worth; no share where robot_state_publisher takes none."""
     where = description.source or description.by or msg("the robot of its files")
     text = facts.text(description.text)
     if description.problem is not None:
@@ -72,6 +73,23 @@ def _of(facts: PackageFacts, description: Description) -> Finding:
         refused = xacro_brief(str(description.problem.text), facts.name)
         rationale = msg("{where}: {why}.", where=where, why=shown(refused))
         return Finding(0, rationale, xacro_advice(refused))
+    return of_text(where, text)
+
+
+def readable(facts: PackageFacts) -> list[Description]:
+    """The descriptions that robot_state_publisher takes for a robot."""
+    return [each for each in facts.descriptions if of_description(facts, each).share]
+
+
+def best_of(facts: PackageFacts, judge: Callable[[ParsedUrdf, int], Finding]) -> Finding:
+    """What the best of the robots is worth; `judge` gets its description's number, -1 for none."""
+    there = ((n, e) for n, e in enumerate(facts.trace.descriptions) if e in facts.descriptions)
+    found = [judge(parse(facts.text(each.text)), n) for n, each in there if each.text >= 0]
+    return max(found or [judge(parse(""), -1)], key=lambda each: each.share)
+
+
+def of_text(where: str | Message, text: str) -> Finding:
+    """What a text is as a robot's description: no share where robot_state_publisher refuses it."""
     if not text.strip():
         return Finding(
             0,

@@ -11,10 +11,16 @@ from grader.inspection.trace import LaunchedNode, LaunchFile
 from grader.message import Message, msg
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
+    no_robot,
     nothing_started,
     of_package,
 )
-from grader_robots.exercises.description_package.launching import is_description, is_publisher
+from grader_robots.exercises.description_package.launching import (
+    is_description,
+    is_publisher,
+    starts_nothing,
+)
+from grader_robots.exercises.description_package.robots import readable
 
 checks = Checks()
 #: Program -> where the model may come from (one of these), and what must be named.
@@ -41,7 +47,8 @@ def spawn(facts: PackageFacts, tolerances: Tolerances) -> Finding:
 
     spawn_entity.py of gazebo_ros, or create of ros_gz_sim: exactly one origin (-topic, -file, ...),
     a name where one is needed, numbers as places, and a topic that a launch file publishes.
-    All or nothing; a package that puts nothing into Gazebo gets the points.
+    All or nothing, and nothing where `ros2 launch` ends with an error or robot_state_publisher
+    takes no description; a package that puts nothing into Gazebo gets the points.
     """
     return judge_spawning(facts, is_asked=False)
 
@@ -50,6 +57,8 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
     """Whether the model gets there."""
     if facts.starts_nothing:
         return nothing_started()
+    if facts.descriptions and not readable(facts):
+        return no_robot(msg("Not judged: there is no robot that could be put into Gazebo."))
     found = [(launch, node) for launch in facts.launches for node in spawners(launch)]
     included = [launch for launch in facts.launches if includes_spawner(launch)]
     if not found and not included:
@@ -60,6 +69,9 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
                 msg("Start create of ros_gz_sim with -topic robot_description and -name."),
             )
         return Finding(1, msg("No launch file puts the robot into Gazebo, and none need."))
+    for launch in (*(each for each, _ in found), *included):
+        if (stopped := starts_nothing(facts, launch)) is not None:
+            return stopped
     for launch, node in found:
         fault = next(_faults(facts, launch, node), "")
         if fault:

@@ -20,6 +20,7 @@ from grader_robots.exercises.description_package.facts import (
     nothing,
 )
 from grader_robots.exercises.description_package.launching import JOINT_SOURCES, PUBLISHER
+from grader_robots.exercises.description_package.robots import of_text
 
 checks = Checks()
 DESCRIPTION = "robot_description"
@@ -91,12 +92,13 @@ def _wrong(facts: PackageFacts) -> Iterator[Message]:
 def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """Its launch file starts robot and node.
 
-    A launch file of the package starts robot_state_publisher with the parameter robot_description
-    (2/5), and the package's own node, without another source of joint states beside it (2/5);
-    setup.py installs it and all files that it reads, and none of them is looked for in somebody's
-    home (1/5). It is evaluated with its default arguments, where the package is laid out as if
-    installed, and starts nothing. If it ends with an error, as for want of a file that it reads or
-    of a program of the package: 0. Of several launch files the best counts.
+    A launch file of the package starts robot_state_publisher with the parameter
+    robot_description, a URDF that urdfdom takes (2/5), and the package's own node, without another
+    source of joint states beside it (2/5); setup.py installs it and all files that it names, and
+    none of them is looked for in somebody's home (1/5). It is evaluated with its default
+    arguments, where the package is laid out as if installed, and starts nothing. If `ros2 launch`
+    ends with an error, its own or for want of a file that it reads, of a program or of a package:
+    0. Of several launch files the best counts.
     """
     trace = recordings.nominal.package
     facts = None if trace is None else PackageFacts.of(trace)
@@ -122,19 +124,13 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
     if launch.problem is not None:
         return launching.ends(launch.file, launch.problem, 0)
+    stopped = launching.starts_nothing(facts, launch)
     if faults := list(_faults(facts, launch)):
         found = launching.without(launch.file, faults, WORTH)
-        return replace(found, share=0) if _starts_nothing(facts, launch) else found
-    return Finding(
+        return found if stopped is None else replace(found, share=0)
+    return stopped or Finding(
         1, msg("{file} starts {program} and your node.", file=launch.file, program=PUBLISHER)
     )
-
-
-def _starts_nothing(facts: PackageFacts, launch: LaunchFile) -> bool:
-    """Whether `ros2 launch` ends with an error, for want of a file or of a program of its own."""
-    own = {node.executable for node in launch.nodes if node.package == facts.name}
-    is_file_missing = any(each.kind == "file" for each in launch.lacking)
-    return is_file_missing or bool(launch.moved) or bool(own - _programs(facts))
 
 
 def _programs(facts: PackageFacts) -> set[str]:
@@ -150,6 +146,10 @@ def _faults(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
     is_known = starts_publisher or not launch.includes
     if is_known and not any("<robot" in text for text in texts):
         yield _undescribed(facts, launch, texts)
+    else:
+        refused = (of_text(launch.file, text) for text in texts if "<robot" in text)
+        robots = [PackageFault("description", f.rationale, f.help) for f in refused if not f.share]
+        yield from robots[:1]
     if wrong := _without_node(facts, launch):
         yield PackageFault("own", wrong, _TWO_NODES)
     started = {node.package for node in launch.nodes}

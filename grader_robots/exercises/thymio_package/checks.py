@@ -15,13 +15,20 @@ from grader.exercise.verdict import Finding
 from grader.inspection.error_texts import shown
 from grader.message import NOTHING, Message, msg
 from grader_robots.exercises.description_package import checks as of_packages
-from grader_robots.exercises.description_package.facts import PackageFacts, of_package, unjudged
-from grader_robots.exercises.description_package.launching import JOINT_SOURCES
+from grader_robots.exercises.description_package.facts import (
+    PackageFacts,
+    no_robot,
+    of_package,
+    unjudged,
+)
+from grader_robots.exercises.description_package.launching import JOINT_SOURCES, starts_nothing
+from grader_robots.exercises.description_package.robots import best_of, readable
 from grader_robots.exercises.description_package.spawning import (
     includes_spawner,
     judge_spawning,
     spawners,
 )
+from grader_robots.exercises.thymio_package import wheels
 from robot_py import kinematics
 from robot_py.model import Box, Model, Origin
 from robot_py.urdf import Consequence, ParsedUrdf, parse
@@ -54,6 +61,10 @@ def spawns(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     return judge_spawning(facts, is_asked=True)
 
 
+for check in wheels.checks:
+    checks()(check.function)
+
+
 @checks()
 @of_package
 def parameters(facts: PackageFacts, tolerances: Tolerances) -> Finding:
@@ -63,13 +74,16 @@ def parameters(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     and what hangs on it away from its middle, along that side, has to move. The share of those that
     do so is the share of the points.
     """
-    parsed = _parsed(facts)
+    names = [str(each) for each in tolerances["numbers"]]
+    return best_of(facts, lambda robot, number: _moved(robot, names, _varied(facts, number)))
+
+
+def _moved(parsed: ParsedUrdf, names: list[str], texts: dict[str, str]) -> Finding:
+    """Whether what hangs on the robot's parts moves along with the numbers."""
     model = parsed.model
     if model is None:
-        return _no_robot(msg("Not judged: there is no robot to vary."))
-    names = [str(each) for each in tolerances["numbers"]]
+        return no_robot(msg("Not judged: there is no robot to vary."))
     good, first_fault, help_ = 0, NOTHING, NOTHING
-    texts = _varied(facts)
     for name in names:
         if name not in texts:
             fault, advice = _unnamed(name)
@@ -79,19 +93,12 @@ def parameters(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         first_fault, help_ = first_fault or fault, help_ or advice
     is_incomplete = any(each.consequence is Consequence.DROPPED for each in parsed.findings)
     if first_fault and not good and is_incomplete:
-        return _no_robot(msg("Not judged: there is no robot to vary: parts of it are dropped."))
+        return no_robot(msg("Not judged: there is no robot to vary: parts of it are dropped."))
     if not first_fault:
         return Finding(
             1, msg("What hangs on {names} moves along with them.", names=", ".join(names))
         )
     return Finding(good / max(len(names), 1), msg("In the xacro, {told}.", told=first_fault), help_)
-
-
-def _no_robot(why: Message) -> Finding:
-    return unjudged(
-        why,
-        msg("See what is said of the description first."),
-    )
 
 
 def _unnamed(name: str) -> tuple[Message, Message]:
@@ -137,20 +144,14 @@ def _fault(name: str, model: Model, text: str) -> tuple[Message, Message]:
     return NOTHING, NOTHING
 
 
-def _varied(facts: PackageFacts) -> dict[str, str]:
-    """Name -> the description with that number doubled; of two such numbers the one that counts."""
+def _varied(facts: PackageFacts, number: int) -> dict[str, str]:
+    """Name -> a description with that number doubled; of two such numbers the one that counts."""
     found: dict[str, str] = {}
-    for each in facts.trace.varied:
+    for each in (each for each in facts.trace.varied if each.of == number):
         as_before = facts.trace.descriptions[each.of].text
         if each.name not in found or each.text != as_before:
             found[each.name] = facts.text(each.text)
     return found
-
-
-def _parsed(facts: PackageFacts) -> ParsedUrdf:
-    """The first description that there is; '' holds no robot."""
-    texts = (facts.text(each.text) for each in facts.descriptions if each.text >= 0)
-    return parse(next(texts, ""))
 
 
 def _sizes(model: Model) -> list[object]:
@@ -212,9 +213,13 @@ def masses(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     collision has an inertial. Otherwise half of the points; none without any mass.
     """
     mass_kg, error = tolerances["mass_kg"], tolerances["mass_error"]
-    model = _parsed(facts).model
+    return best_of(facts, lambda robot, _: _weighed(robot.model, mass_kg, error))
+
+
+def _weighed(model: Model | None, mass_kg: float, error: float) -> Finding:
+    """Whether a robot weighs what it should."""
     if model is None:
-        return _no_robot(msg("Not judged: there is no robot to weigh."))
+        return no_robot(msg("Not judged: there is no robot to weigh."))
     bare = [each.name for each in model.links.values() if each.collisions and not each.inertial]
     if bare:
         return Finding(
@@ -263,7 +268,13 @@ def one_source(facts: PackageFacts, tolerances: Tolerances) -> Finding:
 
     No launch file that puts the robot into Gazebo starts a joint_state_publisher. All or nothing.
     """
-    into = [each for each in facts.launches if spawners(each) or includes_spawner(each)]
+    into = [
+        each
+        for each in facts.launches
+        if (spawners(each) or includes_spawner(each)) and starts_nothing(facts, each) is None
+    ]
+    if readable(facts) == []:
+        return no_robot(msg("Not judged: there is no robot that could be put into Gazebo."))
     if not into:
         return unjudged(
             msg("Not judged: no launch file puts the robot into Gazebo."),

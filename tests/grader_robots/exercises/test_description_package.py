@@ -34,7 +34,7 @@ FIRST_LINES = {
     "absolute_path": "a path of one machine",
     "path_in_the_home_folder": "asks for ~/ros2_ws/src/walker_description/urdf/",
     "project_of_another_name": "says project(walker_descripton), and package.xml calls",
-    "launch_file_of_ros_1": "launch/ros1.launch",
+    "launch_file_of_ros_1": "of the type: param (it is one of ROS 1)",
     "relative_path": "a path from the current folder",
     "package_of_another": "the package 'strider_description', which is neither yours",
     "misspelt_program": "starts 'rviz' of the package rviz2",
@@ -222,7 +222,7 @@ def test_a_second_declaration_is_told_as_what_it_is(tmp_path):
     link = '<link name="base_link"/>'
     text = (REFERENCE / file).read_text().replace(link, f"<?xacro?>{link}")
     result = graded(written(tmp_path, {file: text}))
-    assert lost(result) == {"urdf": 0}
+    assert lost(result)["urdf"] == 0
     assert "take the other away" in str(result.diagnosis.help)
 
 

@@ -40,6 +40,7 @@ def node(package, executable, *parameters):
 ROBOT = node("robot_state_publisher", "robot_state_publisher", described(0))
 OWN = node("walker", "state_publisher")
 LAUNCH = LaunchFile("a.launch.py", None, (ROBOT, OWN), (), (), (), (), (), (), "")
+RVIZ = "/prefix/share/walker/rviz/walker.rviz"
 SCRIPT = InstalledScript(
     "state_publisher", "walker.state_publisher", "main", NOTHING, "walker/a.py", True
 )
@@ -153,9 +154,9 @@ def test_a_path_from_the_current_folder_is_called_one():
     ("setup", "losses"),
     [
         (None, {"package": 0, "launch": 0}),
-        (replace(SETUP, manifest=plain_text("there is none")), {"package": 0.5}),
-        (replace(SETUP, absent=("urdf/a.urdf",)), {"package": 0.5}),
-        (replace(SETUP, folders=("meshes/a",)), {"package": 0.5}),
+        (replace(SETUP, manifest=plain_text("there is none")), {"package": 0.5, "launch": 0}),
+        (replace(SETUP, absent=("urdf/a.urdf",)), {"package": 0.5, "launch": 0}),
+        (replace(SETUP, folders=("meshes/a",)), {"package": 0.5, "launch": 0}),
         (replace(SETUP, scripts_folder=""), {"package": 0.5}),
         (
             replace(
@@ -167,8 +168,11 @@ def test_a_path_from_the_current_folder_is_called_one():
             replace(SETUP, scripts=(SCRIPT, replace(SCRIPT, name="b", fault=plain_text("no")))),
             {"package": 0.5},
         ),
-        (replace(SETUP, scripts=()), {"package": 0, "launch": 0}),
-        (replace(SETUP, problem=Obstacle("error", plain_text("NameError: x"))), {"package": 0.5}),
+        (replace(SETUP, scripts=()), {"package": 0, "launch": 0.6}),
+        (
+            replace(SETUP, problem=Obstacle("error", plain_text("NameError: x"))),
+            {"package": 0.5, "launch": 0},
+        ),
     ],
 )
 def test_a_package_is_judged_by_what_it_installs(setup, losses):
@@ -192,14 +196,22 @@ def test_a_package_is_judged_by_what_it_installs(setup, losses):
         (replace(LAUNCH, nodes=(replace(ROBOT, parameters=()), OWN)), {"launch": 0.6}),
         (replace(LAUNCH, nodes=(replace(ROBOT, parameters=(described(1),)), OWN)), {"launch": 0.6}),
         (replace(LAUNCH, nodes=(ROBOT, replace(OWN, package="other"))), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(ROBOT, replace(OWN, executable="x"))), {"launch": 0}),
+        (replace(LAUNCH, lacking=(Lacking("executable", "walker x", "", ""),)), {"launch": 0}),
         (
             replace(LAUNCH, nodes=(ROBOT, OWN, node("j", "joint_state_publisher_gui"))),
             {"launch": 0.6},
         ),
         (replace(LAUNCH, lacking=(Lacking("file", "/home/me/a.urdf", "", ""),)), {"launch": 0}),
         (replace(LAUNCH, moved="/prefix/share/walker/a.urdf"), {"launch": 0}),
-        (replace(LAUNCH, lacking=(Lacking("package", "rviz2", "", ""),)), {"launch": 0.8}),
+        (replace(LAUNCH, lacking=(Lacking("package", "walkr", "", ""),)), {"launch": 0}),
+        (
+            replace(
+                LAUNCH,
+                nodes=(ROBOT, OWN, replace(node("rviz2", "rviz2"), arguments=("-d", RVIZ))),
+                lacking=(Lacking("file", RVIZ, "", ""),),
+            ),
+            {"launch": 0.8},
+        ),
     ],
 )
 def test_a_launch_file_starts_robot_and_node_and_finds_what_it_reads(launch, losses):
