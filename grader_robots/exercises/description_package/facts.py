@@ -12,9 +12,19 @@ from grader.exercise.asking import CheckFunction
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
 from grader.inspection.error_texts import described
-from grader.inspection.trace import Description, LaunchFile, Obstacle, PackageTrace, Setup
+from grader.inspection.examining.known import SIMULATORS
+from grader.inspection.trace import (
+    Description,
+    LaunchedNode,
+    LaunchFile,
+    Obstacle,
+    PackageTrace,
+    Setup,
+)
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Recordings
+
+_SIMULATORS = ("gz sim", "gazebo", "gzserver", "ign gazebo", "webots")
 
 
 class PackageFault(NamedTuple):
@@ -58,6 +68,15 @@ class PackageFacts:
         every = self.trace.descriptions
         return [each for each in every if each.is_launched] or list(every)
 
+    @property
+    def for_rviz(self) -> list[LaunchFile]:
+        """The launch files that do more than put the robot into Gazebo."""
+        return [
+            each
+            for each in self.launches
+            if any(map(is_rviz, each.nodes)) or not includes_simulator(each)
+        ]
+
     def text(self, number: int) -> str:
         """A text by its number."""
         return self.trace.texts[number] if number >= 0 else ""
@@ -79,6 +98,17 @@ class PackageFacts:
         kinds = ("unknown", "argument")
         problems = ((each, each.problem) for each in self.launches if each.problem)
         return next((each for each, problem in problems if problem.kind in kinds), None)
+
+
+def is_rviz(node: LaunchedNode) -> bool:
+    """Whether a node is RViz."""
+    return "rviz2" in (node.package, node.executable)
+
+
+def includes_simulator(launch: LaunchFile) -> bool:
+    """A simulator publishes the joints of what it simulates."""
+    included = any(each.package in SIMULATORS for each in launch.includes)
+    return included or any(each.startswith(_SIMULATORS) for each in launch.processes)
 
 
 def of_package(judge: Callable[[PackageFacts, Tolerances], Finding]) -> CheckFunction:

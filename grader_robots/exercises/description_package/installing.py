@@ -22,6 +22,11 @@ checks = Checks()
 ONE_MISSING = 0.5
 #: The current folder of who launches, in the paths of a trace.
 _EMPTY = f"{EMPTY}/"
+#: Where no launch file shows the robot.
+WRITE = msg(
+    "Write launch/display.launch.py: it starts robot_state_publisher with the description, "
+    "joint_state_publisher_gui, and rviz2 with your .rviz file."
+)
 _BUILD = msg("colcon build stops there, and nothing is installed")
 
 
@@ -40,8 +45,9 @@ def installed(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     - One thing is missing: half of the points. The files of one folder count as one thing.
     - More is missing: 0.
 
-    A launch file that is not installed is missing where no other one is. A marker below
-    share/ament_index, or a package.xml, that nothing installs costs nothing: colcon adds both.
+    A launch file that is not installed is missing where no other one is, and so is one that shows
+    the robot in RViz. A marker below share/ament_index, or a package.xml, that nothing installs
+    costs nothing: colcon adds both.
     """
     found: dict[str, list[PackageFault]] = {}
     if (stop := stops(facts)) is not None:
@@ -159,6 +165,8 @@ def _absent(name: str, is_cmake: bool) -> PackageFault:
 
 def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
     yield from unstarted(facts)
+    if not facts.for_rviz:
+        yield PackageFault("launch", msg("No launch file shows the robot in RViz."), WRITE)
     there = [each for each in facts.launches if _is_installed(each)]
     for launch in there if any(each.nodes for each in there) else facts.launches:
         yield from (lacking(facts, each) for each in launch.lacking)

@@ -9,13 +9,15 @@ from dataclasses import replace
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
 from grader.inspection.error_texts import advice, how_it_ends, shown
-from grader.inspection.examining.known import FILES, KNOWN, SIMULATORS
+from grader.inspection.examining.known import FILES, KNOWN
 from grader.inspection.trace import EMPTY, Lacking, LaunchedNode, LaunchFile, Obstacle
 from grader.message import joined, msg
 from grader_robots.exercises.description_package import installing
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,
+    includes_simulator,
+    is_rviz,
     not_judged,
     of_package,
     unjudged,
@@ -28,11 +30,6 @@ PUBLISHER = "robot_state_publisher"
 JOINT_SOURCES = ("joint_state_publisher", "joint_state_publisher_gui")
 #: What each part of it is worth here: without a description nothing shows.
 WORTH = {"description": 1.0, "joints": 0.25, "rviz": 0.25}
-_WRITE = msg(
-    "Write launch/display.launch.py: it starts robot_state_publisher with the description, "
-    "joint_state_publisher_gui, and rviz2 with your .rviz file."
-)
-_SIMULATORS = ("gz sim", "gazebo", "gzserver", "ign gazebo", "webots")
 _MOVES = re.compile(r'type\s*=\s*["\'](?:revolute|continuous|prismatic)["\']')
 
 
@@ -58,14 +55,9 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         return Finding(
             0,
             msg("The package has no launch file."),
-            _WRITE,
+            installing.WRITE,
         )
-    shows = [
-        each
-        for each in facts.launches
-        if any(map(is_rviz, each.nodes)) or not _includes_simulator(each)
-    ]
-    found = [(each, _judge(facts, each)) for each in shows]
+    found = [(each, _judge(facts, each)) for each in facts.for_rviz]
     if not found:
         found = [(facts.launches[0], _gazebo_alone(facts.launches[0]))]
     best, finding = max(found, key=lambda each: each[1].share)
@@ -114,7 +106,7 @@ def _gazebo_alone(launch: LaunchFile) -> Finding:
         msg(
             "No launch file shows the robot in RViz: {file} puts it into Gazebo.", file=launch.file
         ),
-        _WRITE,
+        installing.WRITE,
     )
 
 
@@ -193,7 +185,7 @@ def lacking(facts: PackageFacts, launch: LaunchFile) -> list[PackageFault]:
     parts = [undescribed] if undescribed else []
     is_needed = not publishers or moves(facts, texts)
     has_source = any(is_joint_source(facts, node) for node in launch.nodes)
-    if is_needed and not has_source and not _includes_simulator(launch):
+    if is_needed and not has_source and not includes_simulator(launch):
         parts.append(
             PackageFault(
                 "joints",
@@ -213,11 +205,6 @@ def lacking(facts: PackageFacts, launch: LaunchFile) -> list[PackageFault]:
 def is_publisher(node: LaunchedNode) -> bool:
     """Whether a node is a robot_state_publisher."""
     return PUBLISHER in (node.package, node.executable)
-
-
-def is_rviz(node: LaunchedNode) -> bool:
-    """Whether a node is RViz."""
-    return "rviz2" in (node.package, node.executable)
 
 
 def handed_on(facts: PackageFacts, launch: LaunchFile) -> list[str]:
@@ -261,12 +248,6 @@ def is_joint_source(facts: PackageFacts, node: LaunchedNode) -> bool:
         return node.executable not in scripts or scripts[node.executable].says
     is_another_s = node.package in facts.setup.depends and node.package not in KNOWN
     return is_another_s or node.package in facts.trace.others
-
-
-def _includes_simulator(launch: LaunchFile) -> bool:
-    """A simulator publishes the joints of what it simulates."""
-    included = any(each.package in SIMULATORS for each in launch.includes)
-    return included or any(each.startswith(_SIMULATORS) for each in launch.processes)
 
 
 def _not_followed(launch: LaunchFile) -> str:

@@ -56,7 +56,9 @@ TAKEN: Mapping[str, Mapping[str, tuple[Change, ...]]] = {
         "turning": ((THYMIO, 'type="continuous"', 'type="fixed"'),),
         "a property": ((THYMIO, '<box size="${base_length}', '<box size="0.11'),),
         "a mass": ((THYMIO, 'name="mass" value="0.27"', 'name="mass" value="0"'),),
-        "the end of the URDF": ((THYMIO, "</robot>", "<link name='a'/></robot>"),),
+        "the end of the URDF": (
+            (THYMIO, '<link name="base_link">', '<link name="a"/><link name="base_link">'),
+        ),
         "urdf installed": (("CMakeLists.txt", " urdf ", " "),),
         "rviz installed": (("CMakeLists.txt", " rviz ", " "),),
         "launch installed": (("CMakeLists.txt", "launch ", ""),),

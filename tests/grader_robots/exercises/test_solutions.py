@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
+
 from grader.exercise.loading import load_exercise
+from grader.testing import check_exercise
 from grader.testing.solutions import read_solutions
 
 
@@ -14,3 +17,11 @@ def test_a_solution_may_be_a_package_of_which_files_are_changed_put_and_removed(
     assert not (found["no_launch_file"].lay_out(tmp_path) / "launch" / "walker.launch.py").exists()
     setup = (found["urdf_not_installed"].lay_out(tmp_path) / "setup.py").read_text()
     assert "urdf/*.xacro" in setup
+
+
+@pytest.mark.more("a grading for each right solution and each mutant")
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("name", ["description_package", "thymio_package", "state_publisher"])
+def test_every_solution_is_judged_and_told_as_its_list_says(name):
+    problems = check_exercise(name).problems
+    assert [(str(each.text), each.on) for each in problems] == []
