@@ -10,18 +10,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Protocol
 
 from grader import content, versions
-from grader.errors import GraderFailure, UsageError
-from grader.exercise import DEFAULT
+from grader.errors import ExerciseError, GraderFailure, UsageError
+from grader.exercise import DEFAULT, places
 from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from grader.judging import AnyPath, judge, loaded
-from grader.message import Message, msg
+from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Clock, Provenance, Recording, Recordings, now
 from grader.recording.subject import PACKAGE_SCENE, Trace, load_subject
 from grader.result.result import Result
@@ -29,11 +32,13 @@ from grader.run import inspecting, real_time, virtual_time
 from grader.run.finish import SimulatorLost, not_run, recording_of_nothing
 from grader.run.handover import Plan
 from grader.run.limits import CpuBudget
-from grader.run.opening import open_submission
+from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
 from grader.run.simulator_process import Audience
 from grader.scenes.scene import Scene
+from grader.submission.folder import listed, shown
 from grader.submission.private_copy import missing_neighbours
+from grader.submission.reader import Marks
 from grader.submission.start import Submission
 
 Progress = Callable[[float], None]
@@ -81,9 +86,54 @@ def runner(exercise: Exercise, time: Clock, audience: Audience | None = None) ->
     return RUNNERS[time] if audience is None else partial(RUNNERS[time], audience=audience)
 
 
+def exercise_for(path: Path, marks: Marks) -> tuple[str, Message]:
+    """Return the exercise that a submission names, else the default one; and what to say of it.
+
+    Raises:
+        UsageError: the one that it names is not installed.
+    """
+    if len(marks.exercises) > 1:
+        names = listed(marks.exercises)
+        several = msg(
+            "It names several exercises ({names}), so that none counts: choose one with --exercise",
+            names=names,
+        )
+        return DEFAULT, several
+    for name, file in marks.exercises.items():
+        if not places.is_installed(name):
+            raise UsageError(
+                "{path} names the exercise {name!r} (in {file}), which is not installed here; give "
+                "its folder: --exercise FOLDER",
+                path=shown(path),
+                name=name,
+                file=file,
+            )
+        said = msg("Exercise: {name} (named in {file})", name=name, file=file)
+        return name, NOTHING if name == DEFAULT else said
+    return DEFAULT, NOTHING
+
+
+def fitting(marks: Marks, recordings: Recordings | None) -> str:
+    """Return the installed exercise that a submission plainly fits; '' for none.
+
+    Args:
+        recordings: of its program; None where nothing could be started.
+    """
+    types = () if recordings is None else {each.type for each in recordings.nominal.topics}
+    files = () if marks.has_program or recordings is not None else marks.files
+    for name in places.names() if types or files else ():
+        with suppress(ExerciseError):
+            fits = load_exercise(name).fits
+            likely = product(files, fits.get("files", ()))
+            is_like = any(fnmatchcase(file.lower(), pattern) for file, pattern in likely)
+            if is_like or not {*types}.isdisjoint(fits.get("publishes", ())):
+                return name
+    return ""
+
+
 def grade(
     submission: AnyPath | Submission,
-    exercise: AnyPath | Exercise = DEFAULT,
+    exercise: AnyPath | Exercise | None = None,
     *,
     time: Clock = "virtual",
     seed: int | None = None,
@@ -98,7 +148,8 @@ def grade(
     Args:
         submission: the path of a .py file, a folder, a package or a zip; or what `open_submission`
             has returned for one.
-        exercise: the name of an installed exercise, the path of one, or one that is loaded.
+        exercise: the name of an installed exercise, the path of one, or one that is loaded; None
+            for the one that the path names, else the default one.
         time: the clock of the submission: "virtual" takes seconds, "real" minutes.
         seed: chooses where the varied runs start; None for the exercise's seed.
         executable: which console script or file to start, where there are several.
@@ -111,7 +162,7 @@ def grade(
         ExerciseError: there is no such exercise, or it cannot be used.
         GraderFailure: the grader itself failed, twice; never the submission's fault.
     """
-    asked = loaded(exercise)
+    asked = _asked(submission, exercise)
     with _opened(submission, executable, asked) as opened:
         recordings = _record(opened, asked, time, seed, progress)
         return judge(recordings, asked, submission=opened.name)
@@ -119,7 +170,7 @@ def grade(
 
 def record(
     submission: AnyPath | Submission,
-    exercise: AnyPath | Exercise = DEFAULT,
+    exercise: AnyPath | Exercise | None = None,
     *,
     time: Clock = "virtual",
     seed: int | None = None,
@@ -127,7 +178,7 @@ def record(
     progress: Progress | None = None,
 ) -> Recordings:
     """Run a submission without judging it; see `grade`."""
-    asked = loaded(exercise)
+    asked = _asked(submission, exercise)
     with _opened(submission, executable, asked) as opened:
         return _record(opened, asked, time, seed, progress)
 
@@ -306,6 +357,12 @@ def _record(
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
         raise UsageError(f"seed: expected a whole number, found {seed!r}")
     return run_all(submission, exercise, runner(exercise, time), seed=seed, progress=progress)
+
+
+def _asked(submission: AnyPath | Submission, exercise: AnyPath | Exercise | None) -> Exercise:
+    if exercise is None and not isinstance(submission, Submission):
+        exercise, _ = exercise_for(Path(submission), marks_of(Path(submission)))
+    return loaded(DEFAULT if exercise is None else exercise)
 
 
 @contextmanager

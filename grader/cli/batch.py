@@ -17,7 +17,8 @@ from rich.text import Text
 from grader.cli import GRADER_FAILED, JUDGED, options
 from grader.cli.run import LEVELS, add_of_runs
 from grader.errors import UsageError
-from grader.message import Message, msg, msg_many
+from grader.exercise import DEFAULT
+from grader.message import NOTHING, Message, joined, msg, msg_many
 from grader.text import for_terminal
 from grader.translations import tr, translate
 
@@ -110,24 +111,56 @@ def main(args: argparse.Namespace) -> int:
     from grader.cli import class_progress
     from grader.exercise.loading import load_exercise
 
-    exercise = load_exercise(args.exercise)
-    path = args.exercise if args.exercise == exercise.name else str(Path(args.exercise).absolute())
-    order = Order(
-        *(exercise, path, args.time, args.seed, args.again),
-        secret=options.secret_of(args),
-        hides_seed=options.hides_seed(args),
-    )
     messages = Console(stderr=True, highlight=False)
-    with _found(args, messages) as found, Store.opened(args.out) as store:
-        order = replace(order, isolation=begun_at(args.out, args.again, args.isolation or ""))
-        check_same_class(store, order.class_file, order.again)
-        _grade(args, order, found, store, messages)
-        graded = entries(args.out)
-        _print_notes(
-            messages, batch.write_outputs(args.out, graded, exercise, view, args.assignment)
+    exercise = load_exercise(args.exercise) if args.exercise else None  # refused at once
+    secret = options.secret_of(args)
+    with _found(args, messages) as found:
+        if exercise is None:
+            args.named = _named(found, messages)
+            exercise = load_exercise(args.named)
+        path = args.exercise or args.named
+        order = Order(
+            *(exercise, path if path == exercise.name else str(Path(path).absolute())),
+            *(args.time, args.seed, args.again),
+            secret=secret,
+            hides_seed=options.hides_seed(args),
         )
+        with Store.opened(args.out) as store:
+            order = replace(order, isolation=begun_at(args.out, args.again, args.isolation or ""))
+            check_same_class(store, order.class_file, order.again)
+            _grade(args, order, found, store, messages)
+            graded = entries(args.out)
+            written = batch.write_outputs(args.out, graded, exercise, view, args.assignment)
+            _print_notes(messages, written)
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
+
+
+def _named(found: Found, messages: Console) -> str:
+    """Return the one exercise that hand-ins name, else the default one.
+
+    Raises:
+        UsageError: they name several, or one that is not installed.
+    """
+    from grader import grading
+    from grader.run.opening import marks_of
+    from grader.submission.folder import listed
+
+    named: dict[str, list[str]] = {}
+    said = NOTHING
+    for hand_in in found.hand_ins:
+        if hand_in.path is not None and len((marks := marks_of(hand_in.path)).exercises) == 1:
+            name, said = grading.exercise_for(hand_in.path, marks)
+            named.setdefault(name, []).append(hand_in.id)
+    if len(named) > 1:
+        who = (joined([name, listed(ids, 3)], ": ") for name, ids in named.items())
+        raise UsageError(
+            "the hand-ins name several exercises ({who}), and a class has one: choose it with "
+            "--exercise. Nothing was changed.",
+            who=joined(list(who), "; "),
+        )
+    _print_notes(messages, [said] if said else [])
+    return next(iter(named), DEFAULT)
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import shlex
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -21,9 +22,11 @@ from rich.text import Text
 
 from grader import files, grading, judging
 from grader.cli import options
+from grader.errors import SubmissionError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.grading import Finished
+from grader.message import NOTHING, Message, joined, msg
 from grader.recording import saving
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import (
@@ -35,11 +38,12 @@ from grader.result.result import (
     artifacts,
     put_artifacts,
 )
-from grader.run.opening import open_submission
+from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
+from grader.submission.reader import Marks
 from grader.submission.start import Submission
 from grader.text import for_terminal
-from grader.translations import tr
+from grader.translations import tr, translate
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
@@ -61,15 +65,40 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
     """Grade once: run, judge, write, print; `live` shows the runs while they go on."""
     out = out_of(args)
     _withdraw(out, args)
-    exercise = load_exercise(args.exercise)
+    messages = Console(stderr=True, highlight=False)
+    marks = None if args.exercise else marks_of(args.submission)
+    if marks is not None:
+        args.named, said = grading.exercise_for(args.submission, marks)
+        _say(messages, said)
+    exercise = load_exercise(args.exercise or args.named)
     with ExitStack() as held:
         opening = exercise.opening
-        with open_submission(args.submission, args.executable, **opening) as submission:
-            result, recordings = _run_and_judge(args, submission, exercise, out, held, live)
+        try:
+            with open_submission(args.submission, args.executable, **opening) as submission:
+                result, recordings = _run_and_judge(args, submission, exercise, out, held, live)
+        except SubmissionError as error:
+            if advice := _advice(args.submission, marks, None):
+                raise SubmissionError(joined([error.message, advice], " ")) from error
+            raise
         report = _report(args, result, recordings, out)
+        if not result.score:
+            _say(messages, _advice(args.submission, marks, recordings))
         if live is not None:
             live.know(report)
     return result
+
+
+def _advice(path: Path, marks: Marks | None, recordings: Recordings | None) -> Message:
+    """Say by which exercise to grade what names none and is plainly for another one."""
+    if marks is None or marks.exercises or not (name := grading.fitting(marks, recordings)):
+        return NOTHING
+    command = shlex.join(["grader", "run", str(path), "--exercise", name])
+    return msg("This looks like {name}: {command}", name=name, command=command)
+
+
+def _say(messages: Console, what: Message) -> None:
+    if what:
+        messages.print(Text(for_terminal(translate(what))), soft_wrap=True)
 
 
 def out_of(args: argparse.Namespace) -> Path:
@@ -95,10 +124,7 @@ def _run_and_judge(
 ) -> tuple[Result, Recordings]:
     """Run a submission, judge it, and save its recordings; `held` keeps the folder locked."""
     messages = Console(stderr=True, highlight=False)
-    messages.print(
-        Text(for_terminal(tr("Found: {found}", found=submission.found))),
-        soft_wrap=True,
-    )
+    _say(messages, msg("Found: {found}", found=submission.found))
     secret, seed = options.secret_of(args), args.seed
     if secret:
         seed = exercise.seed_for(Path(os.path.abspath(args.submission)).stem, secret)  # noqa: PTH100

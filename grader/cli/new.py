@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
+import keyword
 import os
 import re
 import shlex
 import shutil
-from collections.abc import Iterator
+import sys
+import unicodedata
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -16,8 +20,12 @@ from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.exercise.places import is_installed
 from grader.exercise.sheet import Start, sheet
 from grader.recording.subject import Subject
+from grader.submission.folder import NO_SOURCES
+from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.manifest import naming
 from grader.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
@@ -25,7 +33,7 @@ RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 #: The files of a starter that depend on the release.
 ADAPTED = ("*.py", "package.xml", "README.md")
 SHEET = "README.md"
-#: The name of the program on the sheet if there is no starter.
+#: The program where there is no starter.
 PROGRAM = "my_node.py"
 
 
@@ -60,14 +68,21 @@ def main(args: argparse.Namespace) -> int:
             raise UsageError(
                 "{folder} is not empty; give a new folder, nothing was written", folder=folder
             )
+        called = folder.resolve().name
+        package = _package_name(called, exercise.starter)
         with _whole_or_not_at_all(folder) as copy:
-            if exercise.starter is None:
-                copy.mkdir()
-            else:
+            if exercise.starter is not None:
                 skip = shutil.ignore_patterns("__pycache__", "*.pyc")
                 shutil.copytree(exercise.starter, copy, ignore=skip)
+                _rename(copy, _package_of(copy), package)
+            else:
+                copy.mkdir()
+                if exercise.is_started:
+                    (copy / PROGRAM).write_text("# TODO: your node\n", encoding="utf-8")
+            is_named = _name_exercise(copy, exercise.name) and is_installed(args.exercise)
+            words = [] if is_named else ["--exercise", args.exercise]
             if not (copy / SHEET).exists():  # else its author has written one
-                _write_sheet(copy, exercise, _grading(folder.resolve().name, args.exercise))
+                _write_sheet(copy, exercise, Path(called), package, _grading(called, words))
             if args.ros:
                 _adapt(copy, exercise.subject, args.ros)
     except shutil.Error as error:
@@ -77,40 +92,97 @@ def main(args: argparse.Namespace) -> int:
         ) from None
     except OSError as error:
         raise files.cannot_write(folder, error.strerror or str(error)) from None
-    has_starter = exercise.starter is not None
-    if has_starter:
-        print(tr("The starter package is in {folder}.", folder=folder))
-    else:
-        print(tr("The exercise sheet is in {folder}.", folder=folder))
-    print(tr("{sheet} says what is asked for and how it is judged.", sheet=SHEET))
     to_fill_in = _with_todos(folder)
+    if exercise.starter is None:
+        print(tr("The exercise sheet is in {folder}.", folder=folder))
+    else:
+        print(tr("The starter package is in {folder}.", folder=folder))
+    if package not in ("", called):
+        print(tr("The package is called {package}.", package=package))
+    print(tr("{sheet} says what is asked for and how it is judged.", sheet=SHEET))
     if to_fill_in:
         print(tr("Fill in the TODOs of {to_fill_in}, then run:", to_fill_in=", ".join(to_fill_in)))
     else:
-        then = tr("Write {program} beside it, then run:", program=PROGRAM)
-        print(tr("Then run:") if has_starter else then)
-    print(f"    {_grading(str(folder), args.exercise)}")
+        print(tr("Then run:"))
+    print(f"    {_grading(str(folder), words)}")
     return 0
 
 
-def _grading(folder: str, exercise: str) -> str:
+def _grading(folder: str, words: Sequence[str]) -> str:
     """Return the command that grades a folder."""
-    words = ["grader", "run", f"./{folder}" if folder.startswith("-") else folder]
-    if exercise != DEFAULT:
-        words += ["--exercise", exercise]
-    return shlex.join(words)
+    place = f"./{folder}" if folder.startswith("-") else folder
+    return shlex.join(["grader", "run", place, *words])
 
 
-def _write_sheet(folder: Path, exercise: Exercise, grade: str) -> None:
-    manifest = folder / "package.xml"
+def _package_of(folder: Path) -> str:
+    """Return the name of a package; '' for a folder that is none."""
+    manifest = folder / MANIFEST
     text = manifest.read_text(encoding="utf-8", errors="replace") if manifest.is_file() else ""
     package = re.search(r"<name>\s*(\w+)\s*</name>", text)
-    to_fill_in = _with_todos(folder)  # what lies in a Python package first
-    to_fill_in.sort(key=lambda file: not (folder / file).with_name("__init__.py").exists())
+    return package[1] if package else ""
+
+
+def _package_name(called: str, starter: Path | None) -> str:
+    """Return the name for the package of a starter in a folder; '' where it is none.
+
+    Two packages in a workspace may not share one, and it hides no module that is there already.
+
+    Raises:
+        UsageError: the folder's name has no letter or digit for it.
+    """
+    if starter is None or not (before := _package_of(starter)):
+        return ""
+    plain = unicodedata.normalize("NFKD", called).encode("ascii", "ignore").decode().lower()
+    name = re.sub("[^a-z0-9]+", "_", plain).strip("_")
+    if not name:
+        raise UsageError(
+            "cannot name a package after the folder {folder}: give one whose name has letters from "
+            "a to z; nothing was written",
+            folder=called,
+        )
+    others = {path.name for path in starter.iterdir()} - {before}
+    module = None if keyword.iskeyword(name) else importlib.util.find_spec(name)
+    is_taken = (
+        len(name) == 1  # colcon's linter asks for two letters
+        or name[0].isdigit()
+        or keyword.iskeyword(name)
+        or name in sys.stdlib_module_names
+        or name in NO_SOURCES
+        or name in others
+        or (module is not None and module.origin is not None)
+    )
+    return f"my_{name}" if is_taken else name
+
+
+def _rename(folder: Path, before: str, package: str) -> None:
+    """Give the package in a folder another name, wherever that stands in files and their names."""
+    if not before:
+        return
+    word = re.compile(rf"\b{re.escape(before)}\b")
+    for path in sorted(folder.rglob("*"), reverse=True):  # what is inside a folder first
+        if path.is_file():
+            text = path.read_bytes().decode("utf-8", "surrogateescape")
+            path.write_bytes(word.sub(package, text).encode("utf-8", "surrogateescape"))
+        path.rename(path.with_name(word.sub(package, path.name)))
+
+
+def _name_exercise(folder: Path, exercise: str) -> bool:
+    """Have the files of a starter name their exercise; return whether there is one to do so."""
+    files = list(folder.rglob(MANIFEST)) or list(folder.rglob("*.py"))
+    for path in files:
+        text = path.read_bytes().decode("utf-8", "surrogateescape")
+        made = naming(text, exercise, is_manifest=path.name == MANIFEST)
+        path.write_bytes(made.encode("utf-8", "surrogateescape"))
+    return bool(files)
+
+
+def _write_sheet(copy: Path, exercise: Exercise, called: Path, package: str, grade: str) -> None:
+    to_fill_in = _with_todos(copy)  # what lies in a Python package first
+    to_fill_in.sort(key=lambda file: not (copy / file).with_name("__init__.py").exists())
     program = next(iter(to_fill_in), PROGRAM)
-    start = Start(program, package[1] if package else "", grade)
+    start = Start(str(called / program), package, grade)
     made = sheet(exercise, exercise.subject, start)
-    (folder / SHEET).write_text(made, encoding="utf-8")
+    (copy / SHEET).write_text(made, encoding="utf-8")
 
 
 @contextmanager

@@ -219,7 +219,7 @@ def write(error: GraderError, args: argparse.Namespace) -> None:
 
 
 def _max_score(args: argparse.Namespace) -> float | None:
-    name = getattr(args, "exercise", None)
+    name = getattr(args, "exercise", None) or getattr(args, "named", None)
     if name is None:
         return None
     from grader.exercise.loading import load_exercise

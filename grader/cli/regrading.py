@@ -12,6 +12,7 @@ from rich.progress import TimeRemainingColumn
 from rich.text import Text
 
 from grader import files
+from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry
 from grader.batch.regrade import judging, shown
 from grader.batch.regrade.changes import Regrade
@@ -40,10 +41,11 @@ def run(args: Namespace, jobs: int, view: View) -> int:
     out: Path = args.regrade
     into: Path = args.out or out / REGRADE
     console, messages = Console(highlight=False), Console(stderr=True, highlight=False)
-    judged = judging.check(out, args.exercise)
+    path = args.exercise or ClassFile.read(out).exercise
+    judged = judging.check(out, path)
     with Store.opened(out) if args.apply else nullcontext() as store:
         with _progress(messages, judged, tr("judging")) as show:
-            found = judging.regrade(out, args.exercise, jobs, show, store)
+            found = judging.regrade(out, path, jobs, show, store)
         shown.show(found, console)
         _write(found, into, console)
         if store is None:

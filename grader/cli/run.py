@@ -59,10 +59,13 @@ def add_of_runs(parser: argparse.ArgumentParser, clock: str, isolation: str) -> 
     """Declare how submissions are run; the texts are the help on --time and --isolation."""
     parser.add_argument(
         "--exercise",
-        default=DEFAULT,
         metavar="NAME|FOLDER|FILE",
-        help=tr("an installed one, the folder of another, or an edited exercise.yaml"),
+        help=tr(
+            "an installed one, the folder of another, or an edited exercise.yaml; default: the one "
+            "that the files of a starter name (one for a class), else the challenge"
+        ),
     )
+    parser.set_defaults(named=DEFAULT)  # by what is handed in, where --exercise is left out
     parser.add_argument("--time", choices=CLOCKS, default="virtual", help=clock)
     seeds = parser.add_mutually_exclusive_group()
     seeds.add_argument(

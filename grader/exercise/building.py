@@ -39,8 +39,10 @@ NO_LIMITS = Limits(0.0, 0.0, 0.0)
 LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
 MOST_RUNS = 100
+#: Says which hand-ins that name no exercise are for this one.
+FITS = "fits"
 #: Keys that are for people and judge nothing.
-WORDS = ("title", "task", "starter", translated.PART)
+WORDS = ("title", "task", "starter", FITS, translated.PART)
 SETTING = "setting"
 #: It is sent from process to process [characters].
 LONGEST_SETTING = 50_000
@@ -90,6 +92,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         visible=policies.visible(data.get("visible"), checks, points),
         late=policies.late(data.get("late"), round(sum(points.values()), 2)),
         explained=words.tolerances,
+        fits=_fits(data.get(FITS) or {}),
         title=authored(str(data["title"]), words.title),
         task=authored(data.get("task", ""), words.task),
     )
@@ -313,6 +316,15 @@ def _starter(where: object, place: Place) -> Path | None:
             real=str(real),
         )
     return folder
+
+
+def _fits(given: Any) -> dict[str, tuple[str, ...]]:
+    expect(isinstance(given, dict), (FITS,), "expected names with lists, found {found}", given)
+    check_known(given, ("files", "publishes"), (FITS,))
+    for key, value in given.items():
+        is_list = isinstance(value, list) and all(isinstance(each, str) for each in value)
+        expect(is_list, (FITS, key), "expected a list of texts, found {found}", value)
+    return {key: tuple(value) for key, value in given.items()}
 
 
 def _points(points: Any, checks: Checks) -> dict[str, float]:

@@ -89,6 +89,8 @@ class Exercise:
         checks: the exercise's check functions.
         visible: check name -> what students see of it; everything for those that are not named.
         late: what a late submission costs; None for nothing.
+        fits: what a hand-in that names no exercise has where it is plainly for this one: `files`,
+            patterns of names, where it has no program; `publishes`, types of its topics.
         explained: tolerance -> language -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
         setting: the text of the file that it is set up with; '' for none.
@@ -121,6 +123,7 @@ class Exercise:
     visible: Mapping[str, Visible] = field(default_factory=dict)
     late: LatePolicy | None = None
     explained: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    fits: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def subject(self) -> Subject:

@@ -34,7 +34,7 @@ class Start:
     """The files that a student begins with.
 
     Attributes:
-        program: the Python file that is their node, relative to where they begin.
+        program: the Python file that is their node, from the folder above where they begin.
         package: the ROS package that it is in; '' for none.
         grade: the command that grades it, from the folder above.
     """

@@ -275,7 +275,7 @@ class Subject(ABC):
         """Describe how a student tries a solution by hand, in Markdown; '' for nothing.
 
         Args:
-            program: the node's Python file.
+            program: the node's Python file, as the folder above that of the submission finds it.
             package: the ROS package that it is in; '' for none.
         """
         return ""

@@ -21,6 +21,7 @@ from grader.scratch import make_folder
 from grader.submission import reader
 from grader.submission.folder import USUAL_NAME
 from grader.submission.private_copy import PrivateCopy, copy_privately
+from grader.submission.reader import Marks
 from grader.submission.set_ups import NotInspected
 from grader.submission.start import EntryPoint, Script, Submission, Whole
 
@@ -67,6 +68,12 @@ def open_submission(
         else:
             copy = copy_privately(path, found.root, scratch)
         yield _in_private(found, copy)
+
+
+def marks_of(path: Path) -> Marks:
+    """Return what a submission shows of its exercise, before it is opened for one."""
+    with make_folder() as scratch:
+        return reader.read_marks(path, scratch.resolve())
 
 
 def _inspected(

@@ -8,6 +8,7 @@ needs no ROS. A scene knows nothing of exercises, submissions and results.
 
 from __future__ import annotations
 
+import shlex
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -252,13 +253,14 @@ class Scene(Subject):
 def command_by_hand(program: str, package: str) -> str:
     """Return the command that starts a node by hand as it is graded, for exercise sheets.
 
-    A file in a package is run as a module, so that it can import the package by its name.
+    A file in a package is run as a module, so that it can import the package by its name: in the
+    folder of the package, since elsewhere another module of that name may be started.
 
     Args:
-        program: the node's file, relative to the submission's folder.
+        program: the node's file, relative to the folder above that of the submission.
         package: of the file; '' for none.
     """
-    path = PurePath(program)
-    if package and len(path.parts) > 1:
-        return f"python3 -m {'.'.join(path.with_suffix('').parts)}"
-    return f"python3 {program}"
+    folder, *inside = PurePath(program).with_suffix("").parts
+    if package and len(inside) > 1:
+        return f"(cd {shlex.quote(folder)} && python3 -m {'.'.join(inside)})"
+    return f"python3 {shlex.quote(program)}"

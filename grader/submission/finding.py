@@ -159,7 +159,7 @@ def _in_folder(
             return launched.start(submitted, found)
     if choice := packages.choose(executable):
         return _from_script(submitted, packages, choice, unpacking.scratch)
-    candidates = [file for file in files if _may_be_node(file)]
+    candidates = [file for file in files if may_be_node(file)]
     if not candidates:
         raise no_python(submitted, files)
     sources = {file: read_source(file) for file in candidates}
@@ -296,7 +296,8 @@ def _is_source(file: Path) -> bool:
     return file.suffix == ".py" or file.name in SETUP_FILES or file.suffix.lower() in CPP
 
 
-def _may_be_node(file: Path) -> bool:
+def may_be_node(file: Path) -> bool:
+    """Whether a file is Python, and none of those that every package has."""
     is_launch_file = file.name.endswith((".launch.py", "_launch.py"))
     is_other = is_launch_file or file.name in ("setup.py", "__init__.py")
     return file.suffix == ".py" and not is_other

@@ -37,7 +37,8 @@ HAND_IN: Final = msg("Hand in a .py file, the folder of your package, or a .zip 
 
 _JUNK: Final = {"__pycache__", "__MACOSX", "Thumbs.db", "desktop.ini"}
 _COLCON: Final = {"build", "install", "log"}
-_NO_SOURCES: Final = {"venv", "env", "test", "tests"} | _COLCON
+#: Names of folders that are not searched, but for a package.
+NO_SOURCES: Final = {"venv", "env", "test", "tests"} | _COLCON
 
 
 #: The challenge asks for a node of this name.
@@ -170,7 +171,7 @@ def _is_searched(entry: Path) -> bool:
         return False
     # students do call a package "test": what holds a package is one, whatever its name
     is_package = (entry / "package.xml").exists() or (entry / "setup.py").exists()
-    return is_package or entry.name not in _NO_SOURCES
+    return is_package or entry.name not in NO_SOURCES
 
 
 def read_bounded(path: Path) -> bytes | None:

@@ -1,5 +1,8 @@
 """Reads a package.xml as far as colcon does: whether it is a ROS package, its name, its build type.
 
+Files of a starter name their exercise, whatever becomes of their own names: a package.xml by an
+element that colcon ignores, a Python file that is in no package by a comment.
+
 The required elements are those of catkin_pkg, which colcon parses it with (`package.py`:
 `parse_package`, `PackageFolder.validate`).
 """
@@ -21,6 +24,12 @@ FILE: Final = "package.xml"
 
 _REQUIRED: Final = ("name", "version", "description", "maintainer", "license")
 _NAME: Final = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]*")
+#: What names an exercise in a package.xml, and in a Python file.
+_ELEMENT: Final = '<grader exercise="{exercise}"/>'
+_COMMENT: Final = "# grader: exercise={exercise}"
+_COMMENTED: Final = re.compile(rb"^# grader: exercise=(\S+)\s*$", re.MULTILINE)
+#: So much of a Python file is searched for it [bytes].
+_BEGINNING: Final = 2000
 _VERSION: Final = re.compile(r"[0-9]+\.[0-9]+\.[0-9]+")
 
 
@@ -37,11 +46,13 @@ class Manifest:
         build_type: "ament_python"; '' where it has none, None where it depends on a condition.
         fault: why it is no ROS package for colcon, as what follows the file's name; '' where it
             is one.
+        exercises: those that it names.
     """
 
     name: str
     build_type: str | None
     fault: Message
+    exercises: tuple[str, ...] = ()
 
 
 def read_manifest(file: Path) -> Manifest | None:
@@ -60,7 +71,36 @@ def read_manifest(file: Path) -> Manifest | None:
     types = root.findall("export/build_type")
     conditional = any(node.attrib for node in types)
     build_type = None if conditional else "".join((types[0].text or "").split()) if types else ""
-    return Manifest(name, build_type, _fault(root, name))
+    named = (node.get("exercise", "").strip() for node in root.findall("export/grader"))
+    return Manifest(name, build_type, _fault(root, name), tuple(filter(None, named)))
+
+
+def exercises_named(file: Path) -> tuple[str, ...]:
+    """Return the exercises that a package.xml or a Python file names.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    if file.name == FILE:
+        manifest = read_manifest(file)
+        return manifest.exercises if manifest else ()
+    with file.open("rb") as source:
+        found = _COMMENTED.findall(source.read(_BEGINNING))
+    return tuple(each.decode("utf-8", "replace") for each in found)
+
+
+def naming(text: str, exercise: str, *, is_manifest: bool) -> str:
+    """Return the text of a package.xml or a Python file, which names an exercise now."""
+    if not is_manifest:
+        begin = re.match(r"\ufeff?(#!.*\n)?(#.*coding.*\n)?", text)
+        at = begin.end() if begin else 0
+        return f"{text[:at]}{_COMMENT.format(exercise=exercise)}\n{text[at:]}"
+    element = _ELEMENT.format(exercise=exercise)
+    before, end, after = text.rpartition("</export>")
+    if end:
+        return f"{before}  {element}\n  {end}{after}"
+    before, end, after = text.rpartition("</package>")
+    return f"{before}  <export>\n    {element}\n  </export>\n{end}{after}"
 
 
 def parse_xml(data: bytes) -> Element | Message | None:

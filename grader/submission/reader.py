@@ -11,8 +11,8 @@ import mmap
 import os
 import signal
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -22,10 +22,12 @@ from grader import limited, strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
 from grader.submission import encoding, folder, unpacking, whole
-from grader.submission.finding import find, find_inspected
-from grader.submission.folder import USUAL_NAME, shown
+from grader.submission.finding import find, find_inspected, may_be_node
+from grader.submission.folder import USUAL_NAME, is_source, shown
 from grader.submission.imports import read_imports
 from grader.submission.lint import lint
+from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.manifest import exercises_named
 from grader.submission.set_ups import NotInspected
 from grader.submission.start import Imports, Submission, Whole
 from grader.text import clip
@@ -51,6 +53,21 @@ LIMITS: Final = limited.WorkLimits(
 )
 _PLAIN: Final = msg("Hand in nothing but the files of your package, written plainly.")
 _PARSER_BREAKS: Final = (signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT)
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What a submission shows of its exercise before it is opened for one.
+
+    Attributes:
+        exercises: those that it names, each with the file that does.
+        files: the names of its files, so many of them.
+        has_program: whether one of them may be a node.
+    """
+
+    exercises: Mapping[str, str] = field(default_factory=dict)
+    files: tuple[str, ...] = ()
+    has_program: bool = False
 
 
 @dataclass(frozen=True)
@@ -157,6 +174,19 @@ def read(
     return answer.submission()
 
 
+def read_marks(path: Path, scratch: Path) -> Marks:
+    """Read what a submission shows of its exercise; of one that cannot be read, nothing."""
+
+    def found() -> bytes:
+        _be_confined()
+        return strict_json.line(_marks(path, scratch))
+
+    try:
+        return strict_json.of_line(Marks, limited.call(found, LIMITS))
+    except (limited.LimitHit, ValueError):
+        return Marks()
+
+
 def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> _Answer:
     """Make the answer for a copy that reached a limit and gave none."""
     too_much = _too_much(hit)
@@ -197,6 +227,13 @@ def _too_much(hit: limited.LimitHit) -> Message:
 def _answered(
     found: Callable[[], Submission], path: Path, scratch: Path, place: mmap.mmap
 ) -> bytes:
+    _be_confined()
+    base = path if path.is_dir() else path.parent
+    _note_what_is_read(place, base, *unpacking.places(scratch))
+    return strict_json.line(_answer(found, path))
+
+
+def _be_confined() -> None:
     import resource  # here: Windows has none
 
     from grader import linux
@@ -205,9 +242,25 @@ def _answered(
     for stream in range(3):
         os.dup2(nowhere, stream)
     linux.lower_limit(resource.RLIMIT_FSIZE, folder.MAX_BYTES, folder.MAX_BYTES)
-    base = path if path.is_dir() else path.parent
-    _note_what_is_read(place, base, *unpacking.places(scratch))
-    return strict_json.line(_answer(found, path))
+
+
+def _marks(path: Path, scratch: Path) -> Marks:
+    try:
+        if path.suffix == ".py" and path.is_file():
+            base, files = path.parent, [path]
+        else:
+            submitted, files = whole.opened(path, scratch, lambda file: is_source(file.name))
+            base = submitted.base
+        exercises = {
+            shown(exercise): shown(file.relative_to(base))
+            for file in reversed(files)
+            if (file.name == MANIFEST or file.suffix == ".py") and not file.is_symlink()
+            for exercise in exercises_named(file)
+        }
+    except (SubmissionError, UsageError, OSError):
+        return Marks()
+    names = tuple(shown(file.name) for file in files[:_MAX_MODULES])
+    return Marks(_some(exercises), names, any(map(may_be_node, files)))
 
 
 def _answer(found: Callable[[], Submission], path: Path) -> _Answer:

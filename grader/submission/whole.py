@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
@@ -33,7 +34,19 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
         return _find(path, package, scratch)
 
 
-def _find(path: Path, package: str | None, scratch: Path) -> Submission:
+def opened(
+    path: Path, scratch: Path, is_part: Callable[[Path], bool]
+) -> tuple[SubmissionFolder, list[Path]]:
+    """Return the folder of a submission, unpacked, and its files.
+
+    Args:
+        scratch: an empty folder, for what has to be unpacked.
+        is_part: whether a file is one of a submission; where none is, the one archive is it.
+
+    Raises:
+        SubmissionError: it is neither a folder nor an archive, or cannot be unpacked.
+        UsageError: there is no such path.
+    """
     name = shown(path.name or path.resolve().name)
     if not path.exists():
         raise missing(path)
@@ -50,10 +63,16 @@ def _find(path: Path, package: str | None, scratch: Path) -> Submission:
         )
     files = files_below(top_of(submitted.base))
     archives = [file for file in files if is_archive(file)]
-    if len(archives) == 1 and not any(file.name in _MARKS for file in files):
+    if len(archives) == 1 and not any(map(is_part, files)):
         submitted.must_hold(archives[0])
         submitted = SubmissionFolder(name, unpacking.unpack(archives[0]))
         files = files_below(top_of(submitted.base))
+    return submitted, files
+
+
+def _find(path: Path, package: str | None, scratch: Path) -> Submission:
+    submitted, files = opened(path, scratch, lambda file: file.name in _MARKS)
+    name = submitted.name
     folders = sorted({file.parent for file in files if file.name in _MARKS})
     if not folders:
         names = [submitted.called(file) for file in files]

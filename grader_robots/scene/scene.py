@@ -62,8 +62,8 @@ class RobotScene(Scene):
     def how_to_try(self, program: str, package: str) -> str:
         """Beside robot_state_publisher."""
         run = tr(
-            "In one terminal `robot_state_publisher` with the robot's description, in another your "
-            "node:\n\n"
+            "From the folder above this one, in one terminal `robot_state_publisher` with the "
+            "robot's description, in another your node:\n\n"
             "    ros2 run robot_state_publisher robot_state_publisher "
             '--ros-args -p robot_description:="$(cat FILE.urdf)"\n'
             "    {command}\n",

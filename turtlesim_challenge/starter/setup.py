@@ -1,6 +1,6 @@
 from setuptools import setup
 
-package_name = "turtlesim_challenge"
+package_name = "my_solution"
 
 setup(
     name=package_name,
@@ -18,7 +18,7 @@ setup(
     license="BSD-3-Clause",
     entry_points={
         "console_scripts": [
-            "turtle_controller = turtlesim_challenge.turtle_controller:main",
+            "turtle_controller = my_solution.turtle_controller:main",
         ],
     },
 )

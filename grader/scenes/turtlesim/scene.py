@@ -83,7 +83,10 @@ class Turtlesim(Scene):
         """Explain how to run a node beside turtlesim, and how to see the turtle."""
         name = PurePath(program).stem
         parts = [
-            tr("In one terminal the simulator, in another your node:"),
+            tr(
+                "From the folder above this one, in one terminal the simulator, in another your "
+                "node:"
+            ),
             _BESIDE.format(command=command_by_hand(program, package)),
         ]
         if package:

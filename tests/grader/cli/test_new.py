@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
 from grader.cli import main
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
+from grader.run.opening import open_submission
+from grader.submission.manifest import read_manifest
+from grader.submission.start import EntryPoint
 from tests.grader.testing import exercises
+from tests.programs import ROOT
+
+BIN = str(Path(sys.executable).parent)
 
 
 def test_the_challenge_s_starter_comes_by_itself(tmp_path, capsys):
@@ -18,22 +30,91 @@ def test_the_challenge_s_starter_comes_by_itself(tmp_path, capsys):
     assert capsys.readouterr().out.splitlines() == [
         f"The starter package is in {tmp_path / 'mine'}.",
         "README.md says what is asked for and how it is judged.",
-        "Fill in the TODOs of turtlesim_challenge/turtle_controller.py, then run:",
+        "Fill in the TODOs of mine/turtle_controller.py, then run:",
         f"    grader run {tmp_path / 'mine'}",
     ]
 
 
-def test_the_sheet_names_what_is_there(tmp_path):
-    assert main(["new", str(tmp_path / "mine")]) == 0
-    text = (tmp_path / "mine" / "README.md").read_text()
-    assert text.startswith("# A spiral in four colours\n")
-    assert (tmp_path / "mine" / "turtlesim_challenge" / "turtle_controller.py").is_file()
-    for command in (
-        "python3 -m turtlesim_challenge.turtle_controller",
-        "ros2 run turtlesim_challenge turtle_controller",
-        "grader run mine",
-    ):
-        assert f"    {command}\n" in text
+def commands_of(sheet):
+    """The commands on a sheet, which are indented, but for those that need ROS."""
+    lines = [line[4:] for line in sheet.splitlines() if line.startswith("    ")]
+    return [line for line in lines if not line.startswith(("ros2 ", "colcon "))]
+
+
+@pytest.mark.parametrize("called", ["mine", "My-Robot 2"])
+@pytest.mark.parametrize("exercise", ["turtlesim_challenge", "square"])
+def test_the_commands_on_the_sheet_start_the_student_s_own_file(tmp_path, called, exercise):
+    mine = tmp_path / called
+    assert main(["new", str(mine), "--exercise", exercise]) == 0
+    simulator, by_hand, grade = commands_of((mine / "README.md").read_text())
+    assert shutil.which(simulator, path=BIN), simulator
+    (program,) = (path for path in mine.rglob("*.py") if b"TODO" in path.read_bytes())
+    program.write_text("import sys\nprint('my own')\nsys.exit()\n" + program.read_text())
+
+    def typed(command, **more):
+        env = {**os.environ, "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}", **more}
+        done = subprocess.run(
+            command, shell=True, cwd=tmp_path, env=env, capture_output=True, text=True
+        )
+        return done.returncode, done.stdout
+
+    for _ in range(2):  # once more where it was typed
+        assert typed(by_hand) == (0, "my own\n")
+    with_ours = grade.replace("grader", f"{shlex.quote(sys.executable)} -m grader", 1)
+    code, said = typed(with_ours, PYTHONPATH=str(ROOT))
+    assert (code, f"\n{called}: {exercise}\n" in said) == (0, True), said
+    assert (tmp_path / "graded" / called / "output.txt").read_text() == "my own\n"
+
+
+@pytest.mark.parametrize(
+    ("called", "package"),
+    [
+        ("my_solution", "my_solution"),
+        ("MyRobot", "myrobot"),
+        ("my-robot", "my_robot"),
+        ("My  robot (2)", "my_robot_2"),
+        ("Übung.1", "ubung_1"),
+        ("3rd", "my_3rd"),
+        ("x", "my_x"),
+        ("class", "my_class"),  # a keyword
+        ("test", "my_test"),  # a module of Python's
+        ("tests", "my_tests"),  # a folder that no grading searches
+        ("resource", "my_resource"),  # a folder of the starter
+        ("geometry_msgs", "my_geometry_msgs"),  # installed
+        ("turtlesim_challenge", "my_turtlesim_challenge"),  # ... and the reference
+    ],
+)
+@pytest.mark.parametrize("exercise", ["turtlesim_challenge", "state_publisher"])
+def test_the_package_is_called_like_its_folder(tmp_path, capsys, called, package, exercise):
+    mine = tmp_path / called
+    assert main(["new", str(mine), "--exercise", exercise]) == 0
+    told = f"The package is called {package}." in capsys.readouterr().out.splitlines()
+    assert told == (called != package)
+    assert (mine / package / "__init__.py").is_file()
+    assert (mine / "resource" / package).is_file()
+    assert f"<name>{package}</name>" in (mine / "package.xml").read_text()
+    assert f'package_name = "{package}"' in (mine / "setup.py").read_text()
+    assert f" = {package}." in (mine / "setup.py").read_text()
+    assert (mine / "setup.cfg").read_text().count(f"$base/lib/{package}\n") == 2
+    assert f"    ros2 run {package} " in (mine / "README.md").read_text()
+    placeholder = read_manifest(load_exercise(exercise).starter / "package.xml").name
+    if package != placeholder:
+        for path in (path for path in mine.rglob("*") if path.is_file()):
+            assert not re.search(rf"\b{placeholder}\b", f"{path.name} {path.read_text()}")
+
+
+def test_it_is_started_by_that_name(tmp_path):
+    assert main(["new", str(tmp_path / "test")]) == 0
+    with open_submission(tmp_path / "test") as submission:
+        assert submission.start == EntryPoint("my_test.turtle_controller", "main")
+        assert submission.remarks == ()
+
+
+def test_a_name_without_letters_is_refused(tmp_path, capsys):
+    assert main(["new", str(tmp_path / "数学")]) == 2
+    assert "give one whose name has letters from a to z" in capsys.readouterr().err
+    assert not (tmp_path / "数学").exists()
+    assert main(["new", str(tmp_path / "数学"), "--exercise", "square"]) == 0  # no package
 
 
 def text_of(folder, name):
@@ -61,16 +142,18 @@ def test_the_starter_is_for_the_release_that_is_asked_for_or_sourced(
     assert f"a `{package}.msg.Pose`" in text_of(tmp_path / "mine", "README.md")
     manifest = text_of(tmp_path / "mine", "package.xml")
     assert f"<exec_depend>{package}</exec_depend>" in manifest
-    assert "<name>turtlesim_challenge</name>" in manifest
+    assert "<name>mine</name>" in manifest
 
 
 def test_without_any_ros_it_is_as_it_comes(tmp_path, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     assert main(["new", str(tmp_path / "mine")]) == 0
     starter = load_exercise("turtlesim_challenge").starter
-    written = {*(tmp_path / "mine").rglob("*.*")} - {tmp_path / "mine" / "README.md"}
-    for path in written:
-        assert path.read_bytes() == (starter / path.relative_to(tmp_path / "mine")).read_bytes()
+    for path in starter.rglob("*.*"):
+        written = tmp_path / str(path).replace(str(starter), "mine").replace("my_solution", "mine")
+        text = path.read_text().replace("my_solution", "mine")
+        named = '    <grader exercise="turtlesim_challenge"/>\n  </export>'
+        assert written.read_text() == text.replace("  </export>", named)
 
 
 def test_an_unknown_release_is_refused(tmp_path, capsys):
@@ -93,15 +176,15 @@ def test_an_exercise_elsewhere_has_its_own(tmp_path, capsys):
     ]
 
 
-def test_where_there_is_no_starter_the_sheet_comes_alone(tmp_path, capsys):
+def test_where_there_is_no_starter_the_sheet_comes_with_an_empty_file(tmp_path, capsys):
     assert main(["new", str(tmp_path / "mine"), "--exercise", "square"]) == 0
-    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["README.md"]
-    assert "    python3 my_node.py\n" in (tmp_path / "mine" / "README.md").read_text()
+    assert {path.name for path in (tmp_path / "mine").iterdir()} == {"README.md", "my_node.py"}
+    assert "    python3 mine/my_node.py\n" in (tmp_path / "mine" / "README.md").read_text()
     assert capsys.readouterr().out.splitlines() == [
         f"The exercise sheet is in {tmp_path / 'mine'}.",
         "README.md says what is asked for and how it is judged.",
-        "Write my_node.py beside it, then run:",
-        f"    grader run {tmp_path / 'mine'} --exercise square",
+        "Fill in the TODOs of my_node.py, then run:",
+        f"    grader run {tmp_path / 'mine'}",
     ]
 
 

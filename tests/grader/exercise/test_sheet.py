@@ -12,7 +12,7 @@ from grader.exercise.sheet import Start, in_force, sheet
 from grader.recording.subject import load_subject
 from tests.grader.testing import exercises
 
-START = Start("pkg/node.py", "pkg", "grader run mine")
+START = Start("mine/pkg/node.py", "pkg", "grader run mine")
 
 
 def sheet_of(where, start=START):
@@ -26,8 +26,8 @@ ASKED = {
     "robot": ("joint_states", "`odom` to `axis`", "radians"),
 }
 TRIED = {
-    "turtlesim": ("    turtlesim\n    python3 -m pkg.node\n", "save_canvas"),
-    "robot": ("    python3 -m pkg.node\n", "rviz2"),
+    "turtlesim": ("    turtlesim\n    (cd mine && python3 -m pkg.node)\n", "save_canvas"),
+    "robot": ("    (cd mine && python3 -m pkg.node)\n", "rviz2"),
 }
 
 
@@ -68,7 +68,7 @@ def test_numbers_are_those_in_force_and_keep_their_explanations(tmp_path):
 
 def test_an_exercise_needs_no_words_of_its_own(tmp_path):
     folder = exercises.write(tmp_path / "ahead", tolerances={"far_m": 0.5})
-    text = sheet_of(folder, Start("my_node.py", "", "grader run mine"))
+    text = sheet_of(folder, Start("mine/my_node.py", "", "grader run mine"))
     assert text.startswith("# Drive ahead\n\n## What it is worth: 10 points\n")
     assert "- Judged only where `commands` passed: `far`." in text
     assert "far_m: 0.5" in text

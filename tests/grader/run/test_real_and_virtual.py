@@ -7,6 +7,9 @@ from dataclasses import replace
 import pytest
 
 import grader
+from grader.recording.recording import Clock
+from grader.run.handover import Plan
+from grader.scenes.scene import Limits
 from tests import runs
 from tests.runs import CHALLENGE
 
@@ -30,3 +33,12 @@ def verdicts(result: grader.Result) -> dict[str, tuple[str, float]]:
 def test_real_and_virtual_time_give_the_same_verdicts(name: str) -> None:
     real = grader.grade(runs.path_of(name), ALONE, time="real")
     assert verdicts(real) == verdicts(runs.graded(name, ALONE))
+
+
+@pytest.mark.parametrize("time", ["virtual", "real"])
+def test_the_reference_is_not_there_to_be_imported(time: Clock) -> None:
+    path = runs.written("import turtlesim_challenge.turtle_controller\n", "without_a_package.py")
+    plan = Plan(Limits(first_motion_s=3, rest_s=1, total_s=3))
+    recording = runs.recorded(path, plan, time=time)
+    assert recording.run.outcome == "crashed"
+    assert "ModuleNotFoundError: No module named 'turtlesim_challenge'" in recording.output

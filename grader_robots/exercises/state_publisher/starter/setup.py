@@ -1,6 +1,6 @@
 from setuptools import setup
 
-package_name = "walker"
+package_name = "my_walker"
 
 setup(
     name=package_name,
@@ -18,6 +18,6 @@ setup(
     description="A walking robot, and a node that moves it",
     license="Apache-2.0",
     entry_points={
-        "console_scripts": ["state_publisher = walker.state_publisher:main"],
+        "console_scripts": ["state_publisher = my_walker.state_publisher:main"],
     },
 )

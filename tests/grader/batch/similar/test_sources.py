@@ -33,7 +33,7 @@ def test_jplag_finds_a_folder_for_each_hand_in_and_the_base_code(out):
     assert handed_in == HONEST["quick"].read_bytes()
     base = {path.relative_to(jplag / "base").as_posix() for path in jplag.rglob("base/**/*.py")}
     assert "reference/turtle_controller.py" in base
-    assert "starter/turtlesim_challenge/turtle_controller.py" in base
+    assert "starter/my_solution/turtle_controller.py" in base
 
 
 def table(out):

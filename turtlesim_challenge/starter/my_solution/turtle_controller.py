@@ -1,7 +1,8 @@
 """Draw a spiral in four colours and stop near the edge.
 
-As it stands, the node starts, listens and does nothing. Fill in the three TODOs.
-Try it:      python3 -m turtlesim_challenge.turtle_controller     (with a turtlesim running)
+As it stands, the node starts, listens and does nothing. Fill in the three TODOs. In the folder that
+holds package.xml:
+Try it:      python3 -m my_solution.turtle_controller     (with a turtlesim running)
 Judge it:    grader run .
 """
 

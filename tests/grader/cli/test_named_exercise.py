@@ -1,0 +1,196 @@
+"""The exercise that a hand-in names, whatever its files are called, and what is said of it."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+import grader
+from grader import grading
+from grader.batch.class_file import ClassFile
+from grader.cli import main
+from grader.errors import UsageError
+from grader.exercise.loading import load_exercise
+from grader.message import NOTHING
+from grader.recording.recording import PublishedTopic
+from grader.result.result import Result
+from grader.run.opening import marks_of
+from grader.submission.reader import Marks
+from tests.files import lay
+from tests.grader.driving import Spiral, drive
+from tests.grader.testing import exercises
+
+DESCRIPTION = load_exercise("description_package").folder / "reference"
+COMMENT = "# grader: exercise={}\n"
+PACKAGE = '<package><export><grader exercise="{}"/></export></package>'
+NODE = "import turtlesim.msg\n"
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Runs that take no time."""
+    run = drive(Spiral(), ticks=200)
+    monkeypatch.setitem(grading.RUNNERS, "virtual", lambda *_, **__: run)
+    return run
+
+
+def test_a_starter_names_its_exercise_whatever_becomes_of_its_names(tmp_path):
+    assert main(["new", str(tmp_path / "mine"), "--exercise", "state_publisher"]) == 0
+    ours = (tmp_path / "mine").rename(tmp_path / "yours")
+    (ours / "mine").rename(ours / "walking")
+    shutil.copytree(ours, tmp_path / "ws" / "src" / "walking")
+    packed = shutil.make_archive(str(tmp_path / "alice"), "zip", tmp_path / "ws")
+    twice = shutil.make_archive(str(tmp_path / "server"), "zip", tmp_path, "alice.zip")
+    assert marks_of(ours).exercises == {"state_publisher": "package.xml"}
+    for path in (tmp_path / "ws", Path(packed), Path(twice)):
+        assert marks_of(path).exercises == {"state_publisher": "src/walking/package.xml"}
+
+
+def test_so_does_a_single_file(tmp_path):
+    assert main(["new", str(tmp_path / "mine"), "--exercise", "square"]) == 0
+    node = (tmp_path / "mine" / "my_node.py").rename(tmp_path / "other.py")
+    assert marks_of(node).exercises == {"square": "other.py"}
+
+
+@pytest.mark.parametrize(
+    "begin", ["", "#!/usr/bin/env python3\n", "#!/usr/bin/python3\n# coding: latin-1\n"]
+)
+def test_what_a_file_begins_with_stays_there(tmp_path, begin):
+    exercise = exercises.write(tmp_path / "ahead", starter="begin")
+    lay(exercise / "begin", {"node.py": f'{begin}"""It drives."""\n'})
+    assert main(["new", str(tmp_path / "mine"), "--exercise", str(exercise)]) == 0
+    text = (tmp_path / "mine" / "node.py").read_text()
+    assert text == f'{begin}{COMMENT.format("ahead")}"""It drives."""\n'
+
+
+def test_a_manifest_without_exports_gets_them(tmp_path):
+    exercise = exercises.write(tmp_path / "ahead", starter="begin")
+    lay(exercise / "begin", {"package.xml": "<package>\n  <name>begin</name>\n</package>\n"})
+    assert main(["new", str(tmp_path / "mine"), "--exercise", str(exercise)]) == 0
+    assert marks_of(tmp_path / "mine").exercises == {"ahead": "package.xml"}
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"node.py": "print('# grader: exercise=square')\n"},
+        {"node.py": "#" * 3000 + "\n" + COMMENT.format("square")},
+        {"notes.txt": COMMENT.format("square"), "node.py": ""},
+        {"package.xml": f"<!DOCTYPE package>{PACKAGE.format('square')}"},
+        {"package.xml": PACKAGE.format("square").removesuffix("</package>")},
+        {"package.xml": PACKAGE.format("")},
+        {"build/package.xml": PACKAGE.format("square") * 2, "node.py": ""},
+    ],
+)
+def test_nothing_else_names_one(tmp_path, files):
+    assert marks_of(lay(tmp_path / "mine", files)).exercises == {}
+
+
+def test_what_cannot_be_read_names_none(tmp_path):
+    lay(tmp_path, {"broken.zip": b"PK and nothing more", "notes.txt": ""})
+    for name in ("broken.zip", "notes.txt", "nothing"):
+        assert marks_of(tmp_path / name) == Marks()
+
+
+def test_a_link_out_of_the_hand_in_names_none(tmp_path):
+    lay(tmp_path, {"other.py": COMMENT.format("square"), "mine/node.py": ""})
+    (tmp_path / "mine" / "linked.py").symlink_to(tmp_path / "other.py")
+    assert marks_of(tmp_path / "mine").exercises == {}
+
+
+# grader run -----------------------------------------------------------------------------------
+
+
+def test_the_named_exercise_is_used_and_told(tmp_path, capsys, drawn):
+    node = lay(tmp_path, {"node.py": COMMENT.format("square") + NODE}) / "node.py"
+    assert main(["run", str(node), "--out", str(tmp_path / "out")]) == 0
+    assert "Exercise: square (named in node.py)\n" in capsys.readouterr().err
+    assert Result.read(tmp_path / "out" / "result.json").exercise == "square"
+    assert grader.grade(node).exercise == "square"
+
+
+def test_who_calls_decides(tmp_path, capsys, drawn):
+    node = lay(tmp_path, {"node.py": COMMENT.format("square") + NODE}) / "node.py"
+    words = ["run", str(node), "--out", str(tmp_path / "out"), "--exercise", "turtlesim_challenge"]
+    assert main(words) == 0
+    assert "Exercise:" not in capsys.readouterr().err
+    assert Result.read(tmp_path / "out" / "result.json").exercise == "turtlesim_challenge"
+
+
+def test_the_default_is_not_told(tmp_path):
+    node = lay(tmp_path, {"node.py": COMMENT.format("turtlesim_challenge")}) / "node.py"
+    assert grading.exercise_for(node, marks_of(node)) == ("turtlesim_challenge", NOTHING)
+
+
+def test_of_several_none_counts(tmp_path):
+    files = {"a.py": COMMENT.format("square"), "b/package.xml": PACKAGE.format("state_publisher")}
+    mine = lay(tmp_path / "mine", files)
+    name, said = grading.exercise_for(mine, marks_of(mine))
+    assert name == "turtlesim_challenge"
+    assert "several exercises (state_publisher, square), so that none counts" in str(said)
+
+
+@pytest.mark.parametrize("name", ["of_another_course", "../exercise", "exercise.yaml"])
+def test_one_that_is_not_installed_is_asked_for(tmp_path, capsys, name):
+    node = lay(tmp_path, {"node.py": COMMENT.format(name), "exercise.yaml": ""}) / "node.py"
+    assert main(["run", str(node), "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert f"names the exercise {name!r} (in node.py), which is not installed here" in said
+    assert "--exercise FOLDER" in said
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(UsageError, match="is not installed here"):
+        grader.grade(node)
+
+
+def test_a_package_that_is_plainly_for_another_one_is_told_which(tmp_path, capsys):
+    mine = shutil.copytree(DESCRIPTION, tmp_path / "mine")
+    said = f"This looks like description_package: grader run {mine} --exercise description_package"
+    words = ["run", str(mine), "--out", str(tmp_path / "out")]
+    assert main(words) == 2
+    assert said in capsys.readouterr().err
+    assert main([*words, "--exercise", "turtlesim_challenge"]) == 2
+    assert "This looks like" not in capsys.readouterr().err
+
+
+def test_so_is_a_node_that_publishes_what_another_one_asks_for():
+    run = drive(Spiral(), ticks=1)
+    for kind, name in (("sensor_msgs/msg/JointState", "state_publisher"), ("a/msg/B", "")):
+        topics = (PublishedTopic("/joint_states", kind),)
+        recordings = grader.Recordings(grader.Recording(run.trace, topics=topics))
+        assert grading.fitting(Marks(has_program=True), recordings) == name
+
+
+@pytest.mark.parametrize(
+    "marks", [Marks(files=("a.urdf", "node.py"), has_program=True), Marks(files=("package.xml",))]
+)
+def test_a_guess_is_not_told(marks):
+    assert grading.fitting(marks, None) == ""
+
+
+# grader batch ---------------------------------------------------------------------------------
+
+
+def batch(*words: object) -> int:
+    return main(["batch", *map(str, words), "--jobs", "1"])
+
+
+def test_a_class_is_graded_by_the_exercise_that_its_hand_ins_name(tmp_path, capsys):
+    handed_in = lay(tmp_path / "handed_in", {"carol/notes.txt": ""})
+    assert main(["new", str(handed_in / "alice"), "--exercise", "description_package"]) == 0
+    out = tmp_path / "class"
+    assert batch(handed_in, "--out", out) == 0
+    assert "Exercise: description_package (named in package.xml)" in capsys.readouterr().err
+    assert ClassFile.read(out).exercise == "description_package"
+    assert batch("--regrade", out) == 0  # by the same
+
+
+def test_a_class_that_names_several_is_not_graded(tmp_path, capsys):
+    handed_in = tmp_path / "handed_in"
+    for who, exercise in (("alice", "description_package"), ("bob", "square")):
+        assert main(["new", str(handed_in / who), "--exercise", exercise]) == 0
+    assert batch(handed_in, "--out", tmp_path / "class") == 2
+    said = capsys.readouterr().err
+    assert "several exercises (description_package: alice; square: bob)" in said
+    assert not (tmp_path / "class").exists()
