@@ -159,7 +159,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.batch.similar.sources": GROUND
     | {"grader.batch"}
     | below("grader", "exercise.exercise", "submission.folder", "testing.solutions")
-    | {"grader.reports.csv"},
+    | below("grader", "submission.manifest", "reports.csv"),
     # at which level a class is confined
     "grader.batch.class_file": GROUND
     | {"grader.run.processes.levels"}

@@ -25,7 +25,7 @@ from grader.exercise.sheet import Start, sheet
 from grader.recording.subject import Subject
 from grader.submission.folder import NO_SOURCES
 from grader.submission.manifest import FILE as MANIFEST
-from grader.submission.manifest import naming
+from grader.submission.manifest import naming, read_manifest, renamed
 from grader.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
@@ -116,10 +116,8 @@ def _grading(folder: str, words: Sequence[str]) -> str:
 
 def _package_of(folder: Path) -> str:
     """Return the name of a package; '' for a folder that is none."""
-    manifest = folder / MANIFEST
-    text = manifest.read_text(encoding="utf-8", errors="replace") if manifest.is_file() else ""
-    package = re.search(r"<name>\s*(\w+)\s*</name>", text)
-    return package[1] if package else ""
+    manifest = read_manifest(folder / MANIFEST) if (folder / MANIFEST).is_file() else None
+    return manifest.name if manifest else ""
 
 
 def _package_name(called: str, starter: Path | None) -> str:
@@ -158,12 +156,12 @@ def _rename(folder: Path, before: str, package: str) -> None:
     """Give the package in a folder another name, wherever that stands in files and their names."""
     if not before:
         return
-    word = re.compile(rf"\b{re.escape(before)}\b")
     for path in sorted(folder.rglob("*"), reverse=True):  # what is inside a folder first
         if path.is_file():
             text = path.read_bytes().decode("utf-8", "surrogateescape")
-            path.write_bytes(word.sub(package, text).encode("utf-8", "surrogateescape"))
-        path.rename(path.with_name(word.sub(package, path.name)))
+            made = renamed(text, before, package)
+            path.write_bytes(made.encode("utf-8", "surrogateescape"))
+        path.rename(path.with_name(renamed(path.name, before, package)))
 
 
 def _name_exercise(folder: Path, exercise: str) -> bool:

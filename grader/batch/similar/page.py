@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
@@ -71,20 +71,30 @@ def compare_class(entries: Sequence[Entry], exercise: Exercise) -> Class:
     Raises:
         ExerciseError, OSError: the given files cannot be read.
     """
-    given = {hashlib.sha256(each.data).hexdigest() for each in sources.given_files(exercise)}
+    given = _hashes(sources.given_files(exercise))
+
+    def is_given(found: Features) -> bool:
+        """Whether a hand-in is what everybody was given, in a package with the name of a folder."""
+        own = {file.sha256 for file in found.files} - given
+        folders = {part for file in found.files for part in Path(file.name).parts[:-1]}
+        starters = (sources.renamed_starter(exercise, name) for name in folders if own)
+        return not own or any(own <= _hashes(starter) for starter in starters)
+
     by_id = {student.entry.id: student for student in students(entries)}
     present = [entry for entry in entries if entry.state != "nothing"]
     found = [Features.read(entry.folder) for entry in present]
     only_given = tuple(
-        number
-        for number, each in enumerate(found)
-        if each and each.files and {file.sha256 for file in each.files} <= given
+        number for number, each in enumerate(found) if each and each.files and is_given(each)
     )
     compared = [
         Compared("" if number in only_given else _content(entry, each), each)
         for number, (entry, each) in enumerate(zip(present, found, strict=True))
     ]
     return Class(tuple(by_id[entry.id] for entry in present), compare(compared), only_given)
+
+
+def _hashes(given: Iterable[sources.File]) -> set[str]:
+    return {hashlib.sha256(each.data).hexdigest() for each in given}
 
 
 def _content(entry: Entry, found: Features | None) -> str:

@@ -33,6 +33,8 @@ from grader.exercise.exercise import Exercise
 from grader.removal import remove
 from grader.reports.csv import cell, table
 from grader.submission.folder import MAX_SOURCE_BYTES, files_below, read_bounded
+from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.manifest import read_manifest, renamed
 from grader.testing.solutions import FILE_NAME, read_solutions
 
 SOURCE: Final = "source"
@@ -134,6 +136,17 @@ def given_files(exercise: Exercise) -> list[File]:
     for path in _right_solutions(exercise):
         found += _below(path, "reference")
     return sorted(set(found))
+
+
+def renamed_starter(exercise: Exercise, package: str) -> list[File]:
+    """Return the starter as `grader new` writes it into a package of this name."""
+    starter = exercise.starter
+    if starter is None or not (starter / MANIFEST).is_file():
+        return []
+    manifest = read_manifest(starter / MANIFEST)
+    before = manifest.name if manifest else ""
+    texts = ((name, data.decode("utf-8", "replace")) for name, data in _below(starter, "starter"))
+    return [File(name, renamed(text, before, package).encode()) for name, text in texts if before]
 
 
 def _right_solutions(exercise: Exercise) -> Iterator[Path]:

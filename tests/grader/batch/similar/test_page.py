@@ -8,6 +8,7 @@ import pytest
 
 from grader.batch.entry import entries
 from grader.batch.similar import page
+from grader.cli import main
 from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in, text
 
 
@@ -19,6 +20,9 @@ def out(tmp_path_factory):
     hand_in(out, "zz_copy", {"</pre><b>.py": text("states")}, name="<script>alert('Zoë')</script>")
     for who in ("starter_1", "starter_2"):
         hand_in(out, who, CHALLENGE.starter)
+    for folder in ("mine", "My-Robot"):
+        assert main(["new", str(out.parent / folder)]) == 0
+        hand_in(out, f"starter_{folder}", out.parent / folder)
     page.write(entries(out), CHALLENGE, out)
     return out
 
@@ -46,7 +50,7 @@ def test_it_says_where_the_sources_are_and_who_compares_them(out):
 def test_who_handed_in_the_starter_is_told_as_such_and_with_nobody(out):
     found = page.compare_class(entries(out), CHALLENGE)
     ids = [found.students[number].entry.id for number in found.only_given]
-    assert ids == ["starter_1", "starter_2"]
+    assert ids == ["starter_1", "starter_2", "starter_My-Robot", "starter_mine"]
     assert "Nothing of their own" in html(out)
 
 
