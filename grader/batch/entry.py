@@ -70,6 +70,11 @@ class HandIn:
         """The names of the people, else their ids."""
         return ", ".join(person.name or person.id for person in self.people)
 
+    @property
+    def known_as(self) -> str:
+        """The ids of the people as they know them, in any script."""
+        return ", ".join(person.id for person in self.people) or self.id
+
 
 SCHEMA = "turtlesim-grader/entry/v1"
 ENTRY = "entry.json"

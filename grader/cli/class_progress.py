@@ -60,10 +60,9 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
     def line(hand_in: HandIn) -> None:
         nonlocal over
         over += 1
-        entry = Entry.read(store.student(hand_in.id))
-        console.print(
-            Text(for_terminal(f"[{over}/{total}] {hand_in.id}: {_outcome(entry)}")), soft_wrap=True
-        )
+        outcome = _outcome(Entry.read(store.student(hand_in.id)))
+        said = for_terminal(f"[{over}/{total}] {hand_in.known_as}: {outcome}")
+        console.print(Text(said), soft_wrap=True)
 
     yield line
 
@@ -107,7 +106,7 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
             advance(
                 rate=tr("{a_minute:.0f} a minute", a_minute=a_minute),
                 failed=tr("{failed} failed", failed=failed) if failed else "",
-                description=clip(for_terminal(f"{hand_in.id}: {_outcome(entry)}"), 60),
+                description=clip(for_terminal(f"{hand_in.known_as}: {_outcome(entry)}"), 60),
             )
 
         yield show
@@ -144,7 +143,7 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
         if entry.state == "failed":
             text = tr(
                 "The grader failed for {id}; nobody is to blame for it: {message}",
-                id=entry.id,
+                id=entry.hand_in.known_as,
                 message=entry.message,
             )
             console.print(Text(for_terminal(text), "red"), soft_wrap=True)

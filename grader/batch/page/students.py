@@ -120,8 +120,7 @@ def evenly(chosen: Sequence[Student], most: int) -> list[Student]:
 
 
 def _ids(entry: Entry) -> str:
-    names = ", ".join(person.id for person in entry.hand_in.people) or entry.id
-    return _safe(names) or entry.id
+    return _safe(entry.hand_in.known_as) or entry.id
 
 
 def _safe(name: str) -> str:

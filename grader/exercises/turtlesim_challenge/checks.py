@@ -159,8 +159,8 @@ def steady_rate(recordings: Recordings, tolerances: Tolerances) -> Finding:
     The times between the velocity commands of the run from the centre, up to the stop:
     {rate_share%} of them differ from the usual time by {rate_deviation%} of it at most. A pause
     longer than a second, or several commands in every step of the simulator, is no rate. All or
-    nothing, but for a path with fewer than {turns} turns: half of them are worth nothing, all of
-    them everything, and between it goes in proportion.
+    nothing, but for a path with fewer than {turns} turns: half that many earn nothing, {turns}
+    all points, linear in between.
     """
     return error_first(recordings, judge_rate(Path(recordings.nominal), tolerances))
 

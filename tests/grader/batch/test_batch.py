@@ -108,6 +108,14 @@ def test_who_hands_in_the_same_is_run_once(made: Path) -> None:
     assert "[5/5]" in messages
 
 
+def test_progress_names_people_as_they_know_themselves(
+    rubric: tuple[str, Path], tmp_path: Path
+) -> None:
+    handed_in = lay(tmp_path / "handed_in", {"王小明/notes.txt": "I could not do it."})
+    _, messages = batch(handed_in, "--out", tmp_path / "class", *rubric)
+    assert "[1/1] 王小明: cannot be started" in messages
+
+
 def test_everybody_gets_what_is_earned_and_one_bad_hand_in_touches_nobody(graded: Path) -> None:
     found = scores(graded)
     assert found["alice"] == found["bob"] == ("judged", 100.0)
