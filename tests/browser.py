@@ -111,6 +111,34 @@ def cut_off(page: Any) -> list[str]:
     return page.evaluate(_CUT_OFF)
 
 
+_CLIPPED = """
+() => {
+  // a phone's tables may scroll
+  const tables = innerWidth < 900 ? "" : ", .table, .scroll, th, td";
+  const parts = "main section, .card, .check, .column, figure, li, p" + tables;
+  const told = ({ tagName, id, textContent }) => [tagName, id, textContent.trim()].join(" ");
+  const isCut = (part) => (
+    part.clientWidth && part.scrollWidth > part.clientWidth + 1 && !part.closest(".hidden")
+  );
+  const isLow = (part) => part.scrollHeight > part.clientHeight + 1;
+  return [
+    ...[...document.querySelectorAll(parts)].filter(isCut),
+    ...[...document.querySelectorAll("section.pictures:not(:has(.solid + figure))")].filter(isLow),
+  ].map(told);
+}
+"""
+
+
+def clipped(page: Any) -> dict[int, list[str]]:
+    """Which cards, columns and tables hold more than they show, on a phone and on desks."""
+    found = {}
+    for width in (390, 900, 1280):
+        page.set_viewport_size({"width": width, "height": 700})
+        if parts := page.evaluate(_CLIPPED):
+            found[width] = parts
+    return found
+
+
 def moving(page: Any) -> int:
     """How many parts move by style sheet."""
     return page.evaluate("document.getAnimations().length")

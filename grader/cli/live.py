@@ -19,13 +19,15 @@ from grader import text as texts
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.message import Message, msg
+from grader.recording.playback import JudgedCheck
 from grader.recording.recording import Clock
 from grader.reports import Report, playback
+from grader.result.visible import is_hidden
 from grader.run.handover import Plan
 from grader.scenes.live import Grading, LivePage
 from grader.scenes.scene import Scene
 from grader.text import for_terminal
-from grader.translations import tr
+from grader.translations import tr, translate
 from turtlesim_py import browser
 
 #: A value of --speed -> how many times as fast as in real time, and that in words.
@@ -51,6 +53,7 @@ class Live:
         self.speed, self._pace = SPEEDS[speed]
         self._page: LivePage | None = None
         self._plans: Sequence[Plan] = ()
+        self._titles: Sequence[str] = ()  # the titles of the checks
         self._grading = Grading("")
         self._lock = threading.Lock()
 
@@ -75,7 +78,15 @@ class Live:
             self._page = _serve(exercise)
         name = texts.one_line(texts.plain(submission))
         title = tr("{submission}, {exercise}", submission=name, exercise=exercise.title)
-        self._change(Grading(title))
+        when = tr("Verdicts come after the run.")
+        if len(plans) > 1:
+            when = tr("Verdicts come after the nominal run, some after the varied runs.")
+        self._titles = [
+            texts.one_line(texts.plain(translate(check.title)))
+            for check in exercise.checks
+            if not is_hidden(exercise.visible.get(check.name, "now"))
+        ]
+        self._change(Grading(title, score=when, judged=self._listed((), tr("after the run"))))
         if is_first:
             self._invite(messages)
 
@@ -129,7 +140,8 @@ class Live:
     def know_of_nominal(self, report: Report) -> None:
         """Show the verdicts of the nominal run while the others go on."""
         score = tr("The nominal run is over, the others still go.")
-        self._change(score=score, judged=playback.judged(report, 1))
+        judged = self._listed(playback.judged(report, 1), tr("after the varied runs"))
+        self._change(score=score, judged=judged)
 
     def know(self, report: Report) -> None:
         """Show the final verdicts."""
@@ -139,6 +151,12 @@ class Live:
             judged=playback.judged(report, len(self._plans)),
             is_over=True,
         )
+
+    def _listed(self, judged: Sequence[JudgedCheck], when: str) -> tuple[JudgedCheck, ...]:
+        """Return all checks, those that are not judged yet with the words for when they will be."""
+        known = {check.title: check for check in judged}
+        waiting = {title: JudgedCheck(title, "waiting", when, "", "", ()) for title in self._titles}
+        return tuple({**waiting, **known}.values())
 
     def stay(self) -> None:
         """Keep the page until Ctrl-C, if this is a terminal."""

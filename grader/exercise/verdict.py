@@ -128,6 +128,12 @@ class Verdict:
         """Whether it failed, and earned points all the same."""
         return self.status == "failed" and self.score > 0
 
+    def waited_for(self, verdicts: Mapping[str, Verdict]) -> tuple[str, ...]:
+        """Return which of these had to pass before it is judged, and did not."""
+        if self.status != "not_judged":
+            return ()
+        return tuple(n for n in self.depends_on if n in verdicts and not verdicts[n].passed)
+
     @property
     def share(self) -> float:
         """How much of the points is earned, 0 to 1."""

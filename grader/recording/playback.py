@@ -32,7 +32,7 @@ class JudgedCheck:
 
     Attributes:
         title: what it asks for.
-        status: `passed`, `failed` or `not_judged`.
+        status: `passed`, `failed` or `not_judged`; on a live page, `waiting` before that.
         word: the same for people, with its points.
         rationale, help: what was found, and a hint.
         moments: where to see it.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -91,7 +90,9 @@ class Report:
         self.notes = list(filter(None, (*attempt, self.not_shown)))
         self.verdicts = tuple(map(readable.of_verdict, shown.verdicts, names))
         self.diagnosis = None if shown.diagnosis is None else readable.of_diagnosis(shown.diagnosis)
-        self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))
+        by_check = {verdict.check: verdict for verdict in shown.verdicts}
+        waits = (verdict.waited_for(by_check) for verdict in shown.verdicts)
+        self._waits = dict(zip(names, waits, strict=True))
 
     @classmethod
     def of(
@@ -291,14 +292,3 @@ class Report:
     def output(self) -> str:
         """The output of the node in the nominal run."""
         return text.plain(self.beside.output)
-
-
-def _waits(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
-    """Return for each verdict the checks that it waited for."""
-    status = {verdict.check: verdict.status for verdict in verdicts}
-    return [
-        tuple(name for name in verdict.depends_on if status.get(name, "passed") != "passed")
-        if verdict.status == "not_judged"
-        else ()
-        for verdict in verdicts
-    ]

@@ -99,11 +99,12 @@ def to_mend_first(students: Iterable[Student]) -> list[Cluster]:
 
 
 def of_check(students: Iterable[Student], check: str) -> list[Cluster]:
-    """Cluster why points of a check were lost."""
+    """Cluster why points of a check were lost, but for those whom an earlier check cost them."""
     remarks = [
         Remark(student, title_of(verdict), verdict.rationale, _diagnosed(student))
         for student in students
-        if (verdict := student.entry.verdicts.get(check)) is not None and not verdict.passed
+        if (verdict := student.entry.verdicts.get(check)) is not None
+        and not (verdict.passed or verdict.waited_for(student.entry.verdicts))
     ]
     return _clusters(remarks, MOST_KINDS)
 

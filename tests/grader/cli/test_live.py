@@ -46,7 +46,7 @@ def in_no_time(monkeypatch, drawn):
 
     def tell(page, known):
         order.append(known)
-        if known.judged:
+        if is_judged(known):
             judged.set()
 
     def made(submission, plan, progress=None, *, audience=None):
@@ -63,6 +63,11 @@ def in_no_time(monkeypatch, drawn):
     return order
 
 
+def is_judged(known):
+    """Whether there is a verdict."""
+    return any(check.status != "waiting" for check in known.judged)
+
+
 def test_runs_go_one_after_the_other_and_verdicts_are_told_as_they_are_known(
     in_no_time, tmp_path, capfd
 ):
@@ -76,10 +81,17 @@ def test_runs_go_one_after_the_other_and_verdicts_are_told_as_they_are_known(
     assert headings[:2] == ["", "nominal run, five times as fast as in real time"]
     assert headings[2].startswith("varied run 1 of 3 from (")
     assert headings[3].startswith("varied run 2 of 3 from (")
-    early = next(each for each in told if each.judged)
+    early = next(each for each in told if is_judged(each))
     assert (early.score, early.is_over) == ("The nominal run is over, the others still go.", False)
     result = json.loads((out / "result.json").read_text())
-    assert 0 < len(early.judged) < len(result["verdicts"]) == len(told[-1].judged)
+    assert told[0].score == "Verdicts come after the nominal run, some after the varied runs."
+    titles = [verdict["title"] for verdict in result["verdicts"]]
+    for each in told:
+        assert [check.title for check in each.judged] == titles
+    assert {check.word for check in told[0].judged} == {"after the run"}
+    waiting = {check.word for check in early.judged if check.status == "waiting"}
+    assert waiting == {"after the varied runs"}
+    assert "waiting" not in {check.status for check in told[-1].judged}
     assert (told[-1].score, told[-1].is_over) == (f"Score: {result['score']} of 100", True)
     said = capfd.readouterr().err
     assert re.search(r"See the runs at http://127.0.0.1:\d+/\?token=\S+\n", said)

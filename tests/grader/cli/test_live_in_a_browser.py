@@ -9,7 +9,7 @@ import numpy as np
 import PIL.Image
 import pytest
 
-from tests.browser import english, needs_browser, obstacles, open_browser
+from tests.browser import clipped, english, needs_browser, obstacles, open_browser
 from tests.grader.cli.test_live import QUICK
 from tests.programs import DEADLINE_S, Program
 from tests.turtlesim_py.live.test_in_a_browser import PIXELS, pixels_of
@@ -57,6 +57,8 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
         for what in ("#controls", "#keys", "#graph"):  # nothing that would drive
             assert page.locator(what).is_hidden()
         assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert clipped(page) == {}
+        page.set_viewport_size({"width": width, "height": 900})
         assert obstacles(page) == []
         assert errors == []
         page.close()

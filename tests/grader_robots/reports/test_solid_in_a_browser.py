@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from grader_robots.scene.driving import drive
-from tests.browser import needs_browser, open_browser
+from tests.browser import clipped, needs_browser, open_browser
 from tests.grader.reports.samples import verdict
 from tests.grader_robots.reports.test_parts import package_trace, page_of
 from tests.grader_robots.scene.robots import walks
@@ -85,7 +85,7 @@ def read(browser, folder, page: str, width: int) -> dict:
     path.write_text(page)
     opened = browser.new_page(viewport={"width": width, "height": 900})
     opened.goto(path.as_uri())
-    said = opened.evaluate(READER)
+    said = opened.evaluate(READER) | {"clipped": clipped(opened)}
     opened.close()
     return said
 
@@ -96,7 +96,7 @@ def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(
 ):
     said = read(browser, tmp_path, robot, width)
     assert said["wide"] <= 0 and said["width"] == width
-    assert said["hidden"] == [True, False]
+    assert (said["hidden"], said["clipped"]) == ([True, False], {})
     first = said["first"]
     assert first["blue"] > 100 and first["red"] > 30
     views = [said[name]["sum"] for name in ("first", "key", "drag", "nearer", "earlier")]
@@ -108,6 +108,6 @@ def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(
 def test_a_package_s_robot_stands_still_and_can_be_turned(browser, tmp_path):
     page = page_of(tmp_path, package_trace(), "package", verdict("a"))
     said = read(browser, tmp_path, page, 375)
-    assert said["wide"] <= 0
+    assert (said["wide"] <= 0, said["clipped"]) == (True, {})
     assert said["first"]["red"] > 2000
     assert said["key"]["sum"] != said["first"]["sum"] == said["back"]["sum"]

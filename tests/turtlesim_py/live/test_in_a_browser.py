@@ -13,7 +13,16 @@ import pytest
 from playwright.sync_api import expect
 from std_srvs.srv import Trigger
 
-from tests.browser import WIDTHS, cut_off, english, moving, needs_browser, obstacles, open_browser
+from tests.browser import (
+    WIDTHS,
+    clipped,
+    cut_off,
+    english,
+    moving,
+    needs_browser,
+    obstacles,
+    open_browser,
+)
 from tests.programs import DEADLINE_S, Program
 from tests.tiers import others_are_more
 from tests.turtlesim_py.live.conftest import Page
@@ -254,6 +263,7 @@ def test_nothing_is_wider_than_the_screen(browser, page, language):
         person.page.set_viewport_size({"width": width, "height": 512})
         assert person.page.evaluate("document.documentElement.scrollWidth") <= width
         assert cut_off(person.page) == []
+    assert clipped(person.page) == {}
     person.leave()
 
 

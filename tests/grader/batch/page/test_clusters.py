@@ -71,6 +71,14 @@ def test_of_a_check_the_rationales_count_and_the_first_causes_are_told():
     assert of_check(everybody, "b") == []
 
 
+def test_who_was_not_judged_by_an_earlier_check_is_counted_there_alone():
+    judged = result({"a": 0.0, "b": -1.0, "c": -1.0})
+    a, b, c = judged.verdicts
+    waiting = replace(judged, verdicts=(a, replace(b, depends_on=("a",)), c))
+    everybody = students([entry("s1", waiting)])
+    assert [len(of_check(everybody, check)) for check in "abc"] == [1, 0, 1]
+
+
 def test_the_example_is_what_is_said_most_often():
     said = [off(3), off(2), off(2)]
     everybody = students(entry(f"s{k}", result(BAD, text)) for k, text in enumerate(said))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import subprocess
+from datetime import UTC, datetime
 
 import pytest
 
 from grader.batch.page import html
 from grader.exercise.loading import load_exercise
-from tests.browser import BROWSER, needs_browser
+from tests.browser import BROWSER, clipped, needs_browser, open_browser
 from tests.grader.batch.page.classes import entry, result
 
 pytestmark = needs_browser
@@ -59,3 +60,15 @@ def test_hidden_names_are_nowhere(page):
     rows = re.findall(r'<tr data-of="\d"><th scope="row">.*?>(Student \d)</bdi>', table)
     assert rows == ["Student 1", "Student 2", "Student 3"]
     assert dom.count('aria-disabled="true"') == 4  # two rows, two clusters
+
+
+def test_cards_columns_and_tables_show_all_that_they_hold(tmp_path):
+    exercise = load_exercise("turtlesim_challenge")
+    points = {check: 0.0 if number % 2 else 10.0 for number, check in enumerate(exercise.points)}
+    at = datetime(2026, 11, 26, 14, tzinfo=UTC)
+    everybody = [entry("zoe_mueller_1234567", result(points), name="Zoë Müller-Lüdenscheid", at=at)]
+    (tmp_path / "index.html").write_text(html.render(everybody, exercise), encoding="utf-8")
+    with open_browser() as browser:
+        page = browser.new_page()
+        page.goto((tmp_path / "index.html").as_uri())
+        assert clipped(page) == {}

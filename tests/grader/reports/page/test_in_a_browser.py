@@ -9,7 +9,7 @@ import pytest
 
 from grader.reports import read as read_report
 from grader.reports.page import html
-from tests.browser import needs_browser, open_browser
+from tests.browser import clipped, needs_browser, open_browser
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
@@ -48,6 +48,10 @@ def test_it_opens_at_the_run_and_the_moment_of_the_first_fault(shown):
     hidden = re.findall(r'<div class="run[^"]*" data-run="(\d)"( hidden="")?>', shown)
     assert hidden == [("0", ' hidden=""'), ("1", ""), ("2", ' hidden=""')]
     assert "30.0 s" in re.findall(r"<output>(.*?)</output>", shown)
+
+
+def test_cards_columns_and_tables_show_all_that_they_hold(shown):
+    assert clipped(shown) == {}
 
 
 @needs("pdftotext")

@@ -15,6 +15,7 @@ from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.translations import ENGLISH, use
 from tests.browser import (
     WIDTHS,
+    clipped,
     cut_off,
     english,
     moving,
@@ -275,6 +276,16 @@ def test_nothing_is_wider_than_the_screen(visit, name):
         page.set_viewport_size({"width": width, "height": 512})
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert cut_off(page) == []
+    assert clipped(page) == {}
+
+
+def test_a_value_that_jumps_to_and_fro_does_not_fill_its_plot(visit):
+    jumps, curve = visit().locator("#plots figure:nth-child(4) path").all()
+    assert (jumps.get_attribute("class"), curve.get_attribute("class")) == ("curve jumps", "curve")
+    faint, whole = (
+        each.evaluate("it => getComputedStyle(it).strokeOpacity") for each in (jumps, curve)
+    )
+    assert "L" in jumps.get_attribute("d") and float(faint) < float(whole) == 1
 
 
 def test_nothing_moves_by_itself_where_less_motion_is_asked_for(visit):

@@ -71,13 +71,17 @@ export class Plots {
     const x = (frame) => (frame / this.last) * WIDTH;
     const y = (value) => HEIGHT - 4 - ((value - bottom) / (top - bottom)) * (HEIGHT - 8);
     lines.forEach((line, index) => {
-      let d = "";
-      let isOn = false;
+      // a value that jumps to and fro would fill its plot: what it jumps over is drawn faintly
+      const drawnAs = index ? "curve other" : "curve";
+      let [d, jumps, before] = ["", "", null];
       for (const point of line) {
-        if (point) d += `${isOn ? "L" : "M"}${x(point[0]).toFixed(1)} ${y(point[1]).toFixed(1)}`;
-        isOn = Boolean(point);
+        const at = point && [x(point[0]).toFixed(1), y(point[1]).toFixed(1)];
+        const isJump = at && before && Math.abs(at[1] - before[1]) > HEIGHT / 30;
+        if (isJump) jumps += `M${before.join(" ")}L${at.join(" ")}`;
+        if (at) d += before && !isJump ? `L${at.join(" ")}` : `M${at.join(" ")}h.6`;
+        before = at;
       }
-      drawn.append(svg("path", { d, class: index ? "curve other" : "curve" }));
+      drawn.append(svg("path", { d: jumps, class: `${drawnAs} jumps` }), svg("path", { d, class: drawnAs }));
     });
     const cursor = svg("line", { y1: 0, y2: HEIGHT, class: "cursor" });
     drawn.append(cursor);
