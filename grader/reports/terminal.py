@@ -7,6 +7,7 @@ import os
 import shutil
 import sys
 from collections.abc import Callable, Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import Final
 
@@ -66,9 +67,9 @@ def show(report: Report, console: Console) -> None:
     head = tr("{submission}: {exercise}", submission=report.submission, exercise=report.exercise)
     console.print(_text(head, "bold"), soft_wrap=True)
     _checks(report, console)
-    for verdict in report.verdicts:
-        if not verdict.passed and not report.waited_for(verdict):
-            console.print(_explanation(report, verdict))
+    lost = (v for v in report.verdicts if not v.passed and not report.waited_for(v))
+    for _, alike in groupby(lost, lambda v: (v.rationale, report.help_for(v), v.evidence)):
+        console.print(_explanation(report, list(alike)))
     run = report.run
     console.print()
     console.print(
@@ -184,14 +185,18 @@ def _row(verdict: Verdict, seen: str) -> tuple[Text, Text, Text, Text]:
     )
 
 
-def _explanation(report: Report, verdict: Verdict) -> Group:
-    sign, color = _MARKS[verdict.status]
-    values = {"title": title_of(verdict), "score": score_text(verdict)}
-    if verdict.is_partial:
-        head = tr("{title}: {score} (partial credit)", **values)
-    else:
-        head = tr("{title}: {score}", **values)
-    lines: list[RenderableType] = [Text(), _text(f"{sign} {head}", f"bold {color}")]
+def _explanation(report: Report, alike: Sequence[Verdict]) -> Group:
+    """Return the headings of verdicts that say the same, and once what they say."""
+    lines: list[RenderableType] = [Text()]
+    for verdict in alike:
+        sign, color = _MARKS[verdict.status]
+        values = {"title": title_of(verdict), "score": score_text(verdict)}
+        if verdict.is_partial:
+            head = tr("{title}: {score} (partial credit)", **values)
+        else:
+            head = tr("{title}: {score}", **values)
+        lines.append(_text(f"{sign} {head}", f"bold {color}"))
+    verdict = alike[0]
     lines.append(Padding(_text(" ".join(translate(verdict.rationale).split())), (0, 0, 0, 2)))
     lines += [_indented("•", str(point)) for point in report.points_of(verdict)]
     if help_ := report.help_for(verdict):

@@ -95,6 +95,16 @@ def test_advice_that_the_first_line_repeats_stays():
     assert "→ Help for a." in shown(samples.result(verdict("a", "failed", 0), diagnosis=found))
 
 
+def test_what_several_checks_say_stands_once_below_their_titles():
+    same = {"rationale": "Nothing came.", "help": "Does it publish?"}
+    text = shown(
+        samples.result(verdict("a", "failed", 0, **same), verdict("b", "failed", 0, **same))
+    )
+    titles = "✗ Title of a: 0 / 10\n✗ Title of b: 0 / 10\n  Nothing came."
+    assert titles in "\n".join(line.rstrip() for line in text.splitlines())
+    assert text.count("→ Does it publish?") == 1
+
+
 def test_a_check_without_a_title_is_called_by_its_name():
     text = shown(samples.result(verdict("a", "failed", 0, title="")))
     assert " ✗ failed  0 / 10  a" in text
