@@ -87,6 +87,9 @@ TAKEN: Mapping[str, Mapping[str, tuple[Change, ...]]] = {
 MENDS = {
     frozenset(("meshes in data_files", "the mesh")),
     frozenset(("the file for Gazebo", "Gazebo's origin")),
+    frozenset(("rviz in data_files", "RViz's file")),
+    frozenset(("xacro", "the description")),  # the other launch file hands on a robot
+    frozenset(("xacro", "the file for display")),
 }
 EXTRA_LAUNCH = """
 from launch import LaunchDescription
