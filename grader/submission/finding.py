@@ -174,7 +174,7 @@ def _in_folder(
         return _without_script(submitted, package, chosen)
     others = [submitted.called(file) for file in starting if file != chosen]
     found = _from_file(submitted, chosen)
-    notes = [*found.notes, *_unbuilt(submitted, chosen), *not_started("program", others)]
+    notes = [*(_unbuilt(submitted, chosen) or found.notes), *not_started("program", others)]
     return replace(found, notes=tuple(notes))
 
 
