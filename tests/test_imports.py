@@ -176,7 +176,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # a page is shown as the simulator's is
     "grader.cli.live": GROUND
     | below("grader", "recording", "run", "scenes", "exercise.exercise", "reports")
-    | {"turtlesim_py.browser"},
+    | {"grader.result.visible", "turtlesim_py.browser"},
     "grader.cli": GROUND
     | RECORDED
     | below("grader", "__init__", "grading", "judging", "testing", "batch", "cli.live")

@@ -68,6 +68,9 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
                 msg("No launch file puts the robot into Gazebo."),
                 msg("Start create of ros_gz_sim with -topic robot_description and -name."),
             )
+        ended = (starts_nothing(facts, each) for each in facts.launches if each.problem)
+        if (stopped := next((each for each in ended if each is not None), None)) is not None:
+            return stopped  # it may be the one that was to
         return Finding(1, msg("No launch file puts the robot into Gazebo, and none need."))
     for launch in (*(each for each, _ in found), *included):
         if (stopped := starts_nothing(facts, launch)) is not None:
