@@ -194,7 +194,9 @@ def _mutant(program: Program, change: Change, missing: bool) -> Mutant | None:
     function = program.around(first.start) if missing else None
     if missing and function is None:
         function = next((f for f in program.functions if f.name in ("main", "run")), None)
-    lines = lines if missing else _statements(text, lines)
+    # what Python cannot read has its statements where they were
+    readable = text if _parses(text) else program.text
+    lines = lines if missing else _statements(readable, lines)
     if function is None:
         return Mutant(text, tuple(sorted(lines)), None)
     begin, end = program.span(function)

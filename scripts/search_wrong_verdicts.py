@@ -78,7 +78,7 @@ PALETTES = (
 )
 #: The controllers that the mistakes are made in, and the processor time of a grading [s].
 RIGHT = ROOT / "tests" / "submissions" / "right"
-CPU_S = 90.0
+CPU_S = 200.0
 #: By what the words of a first line go.
 Words = Literal["own", "another's", "unnamed"]
 

@@ -55,6 +55,7 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.stuck_in_call,
     standstill.endless_loop,
     lint_findings.called_at_once,
+    lint_findings.spins_in_init,
     standstill.stays_in_init,
     standstill.spins_in_loop,
     standstill.never_spins,
@@ -103,7 +104,6 @@ def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
         "never_spins": "no_spin",
         "ends_early": "spins_once",
         "does_nothing": "uncalled",
-        "stays_in_init": "spins_in_init",
     }
     if found.key not in lines or (found.place is not None and "while" in found.place.text):
         return found

@@ -18,7 +18,10 @@ from grader.recording.observations import Caught, Raised, SourceLine
 _LONGEST = 1000
 #: Properties of a Node that can only be read.
 _OF_A_NODE = frozenset(
-    {"publishers", "subscriptions", "clients", "services", "timers", "guards", "waitables"}
+    (
+        *("publishers", "subscriptions", "clients", "services", "timers", "guards", "waitables"),
+        "handle",
+    )
 )
 _NODE_ATTRIBUTE = (
     r"'(?:_Node__\w{1,40}|_default_callback_group|_logger|_clock|_parameters|_context|_rate_group"
@@ -39,7 +42,7 @@ _IN_ORDER = {
     "create_client": "create_client(SetPen, '/service')",
     "create_service": "create_service(SetPen, '/service', self.on_request)",
 }
-_NOT_CALLED = msg(
+NOT_CALLED = msg(
     "Pass a callback by its name, without parentheses: self.NAME, not self.NAME(), which calls "
     "it at once and passes what it returns."
 )
@@ -138,7 +141,7 @@ def _no_argument(_: str, text: str, place: SourceLine | None) -> Hint | None:
     is_own = not found[1].startswith("create_")
     if is_own and _TAKES_CALLBACK.search(line) and f"{found[1]}(" in line:
         return Hint(
-            _NOT_CALLED,
+            NOT_CALLED,
             msg("{name}() is called at once, where it is to be passed", name=excerpt(found[1])),
         )
     if found[1].startswith("create_") and "qos_profile" in text:
@@ -170,15 +173,15 @@ def _without_init(name: str, text: str, _: SourceLine | None) -> Hint | None:
 def _read_only_name(_: str, text: str, __: SourceLine | None) -> Hint | None:
     """The program sets an attribute that can only be read."""
     found = re.search(r"property '(\w{1,60})' of .{1,80} object has no setter", text) or re.search(
-        r"can't set attribute '?(\w{1,60})", text
+        r"can't set attribute '?(\w{1,60})|^(handle) cannot be modified", text
     )
     if found is None:
         return None
-    if found[1] in _OF_A_NODE:
+    if found[found.lastindex or 1] in _OF_A_NODE:
         return Hint(
             msg(
                 "A Node has a `{name}` of its own: choose another name, as self.my_{name}.",
-                name=excerpt(found[1]),
+                name=excerpt(found[found.lastindex or 1]),
             )
         )
     return Hint(
@@ -237,7 +240,7 @@ def _no_node(_: str, text: str, place: SourceLine | None) -> Hint | None:
 def _callback(_: str, text: str, place: SourceLine | None) -> Hint | None:
     """A callback that cannot be called as rclpy calls it."""
     if "object is not callable" in text and ("'NoneType'" in text or "'coroutine'" in text):
-        return Hint(_NOT_CALLED)
+        return Hint(NOT_CALLED)
     if "callback should be" in text:
         return Hint(
             msg(

@@ -208,6 +208,20 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
     return None
 
 
+def _called_callback(case: Case, raised: Raised) -> Hint | None:
+    for finding in of_kind(case, "called_callback"):
+        if raised.place is not None and raised.place.line == finding.place.line:
+            return Hint(
+                known_exceptions.NOT_CALLED,
+                msg(
+                    "{name}() is called at once, where it is to be passed",
+                    name=excerpt(finding.name),
+                ),
+                finding.place,
+            )
+    return None
+
+
 def _class_kept(case: Case, raised: Raised) -> Hint | None:
     is_sent = raised.place is not None and re.search(
         r"\.(?:call|call_async|publish)\(", raised.place.text
@@ -245,7 +259,28 @@ def _calls_itself(case: Case, raised: Raised) -> Hint | None:
 
 def _nothing_returned(case: Case, raised: Raised) -> Hint | None:
     """None, where a function was to return what it calculates."""
-    for finding in of_kind(case, "no_effect") if "NoneType" in raised.text else ():
+    if "NoneType" not in raised.text or raised.place is None:
+        return None
+    for finding in of_kind(case, "ends_before_spin"):
+        if "spin" in raised.place.text and finding.place.line < raised.place.line:
+            return Hint(
+                msg("Move {name}() to the end of main().", name=excerpt(finding.name)),
+                msg("ROS is shut down before that line spins"),
+                finding.place,
+            )
+    for finding in of_kind(case, "local"):
+        if finding.name in raised.place.text and not finding.near.startswith("self."):
+            return Hint(
+                msg(
+                    "Write `{near}` as the first line of the function.", near=excerpt(finding.near)
+                ),
+                msg(
+                    "`{name}` is still None: what is set is another one, of that function",
+                    name=excerpt(finding.name),
+                ),
+                finding.place,
+            )
+    for finding in of_kind(case, "no_effect"):
         return Hint(
             msg("Write return before it, if that is what you mean."),
             msg(
@@ -258,7 +293,14 @@ def _nothing_returned(case: Case, raised: Raised) -> Hint | None:
 
 
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
-    *(_not_global, _without_self, _hidden_method, _class_given, _service_for_request),
+    *(
+        _called_callback,
+        _not_global,
+        _without_self,
+        _hidden_method,
+        _class_given,
+        _service_for_request,
+    ),
     *(_misspelt, _wrong_callback, _class_kept, _not_begun, _calls_itself),
     _nothing_returned,
 )
@@ -278,6 +320,25 @@ def ends_before_spin(case: Case) -> Diagnosis | None:
             "ends_before_spin",
             msg("{what}: no timer and no callback is ever called.", what=what),
             msg("Move {name}() behind rclpy.spin(node), to the end of main().", name=name),
+            place=finding.place,
+        )
+    return None
+
+
+def spins_in_init(case: Case) -> Diagnosis | None:
+    """A spin in an `__init__`, which never gets to what comes after it."""
+    if any(end.used for end in case.observed.ends if end.kind == "publisher"):
+        return None
+    for finding in of_kind(case, "spins_in_init"):
+        return Diagnosis(
+            "stays_in_init",
+            msg(
+                "Your program never leaves __init__(): it stays at `{code}`{where}, and what comes "
+                "after is never reached: spin() returns only when the program ends.",
+                code=excerpt(finding.place.text),
+                where=line(finding.place),
+            ),
+            msg("Take it out there; main() makes the node and then calls rclpy.spin(node)."),
             place=finding.place,
         )
     return None

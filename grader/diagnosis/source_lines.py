@@ -69,6 +69,10 @@ def is_about_stopping(text: str) -> bool:
 
 def set_at(case: Case, text: str) -> SourceLine | None:
     """Return where the field of a message is set that a finding names first."""
+    if was_set := re.search(r"\b((?:linear|angular)\.[xyz]) was set", text):
+        for finding in of_kind(case, "sets"):
+            if finding.name == was_set[1]:
+                return finding.place
     if value := re.search(r"\b(linear\.x|angular\.z) (is|was) (-?[\d.]+)", text):
         given = [each for each in of_kind(case, "argument") if each.name == value[1]]
         meant = [e.place for e in given if number(e.near) == number(value[3].rstrip("."))]
@@ -83,11 +87,20 @@ def set_at(case: Case, text: str) -> SourceLine | None:
         off = [each for each in middles if not 5.4 < number(each.near) < 5.65]
         for finding in (*off, *one_axis, *middles):
             return finding.place
-    if "turn on the spot" in text:
+    if re.search(r"turn(?:ed)? on the spot", text):
         halts = {each.place.line for each in of_kind(case, "argument") if number(each.near) == 0}
         for finding in of_kind(case, "argument"):
             is_turning = finding.name == "angular.z" and number(finding.near) != 0
             if is_turning and finding.place.line in halts:
+                return finding.place
+    zeros = [e for e in of_kind(case, "argument") if e.name == "linear.x" and number(e.near) == 0]
+    if "never moved" in text:  # where what stays zero is passed on by its name
+        for finding in zeros:
+            if finding.near not in finding.place.text:
+                return finding.place
+    if "told to stop" in text:
+        for finding in zeros:
+            if "linear.x" in finding.place.text:
                 return finding.place
     found = [
         (at, finding.place)
@@ -95,7 +108,7 @@ def set_at(case: Case, text: str) -> SourceLine | None:
         if (at := text.find(finding.name)) >= 0
         and ("." in finding.name or f"`{finding.name}`" in text)
     ]
-    if is_about_stopping(text):
+    if is_about_stopping(text) and "drive on" not in text:
         at = min(text.find(word) for word in ABOUT_STOPPING if word in text)
         found += [(at, finding.place) for finding in of_kind(case, "at_wall")]
     return min(found, key=lambda each: each[0])[1] if found else None

@@ -52,6 +52,7 @@ LintKind = Literal[
     "swallows",
     "no_message",
     "message_for_timer",
+    "called_callback",
     "awaits",
     "ends_before_spin",
     "spins_once",
@@ -215,7 +216,8 @@ class LintFinding:
             `beside` - the module NAME that is not found lies beside, and its name is NEAR;
             `swallows` - an `except` in the callback NAME catches every error, and shows none;
             `no_message` - the callback NAME of a subscription takes none; `message_for_timer` -
-            that of a timer takes one; `awaits` - the callback NAME waits for an answer;
+            that of a timer takes one; `called_callback` - the callback NAME is called where NEAR is
+            to get it; `awaits` - the callback NAME waits for an answer;
             `ends_before_spin` - NAME (shutdown) stands before a spin; `spins_once` - a spin_once in
             no loop;
             `spins_in_init` - a spin in an __init__; `class_kept` - the class NAME is assigned where

@@ -10,6 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 from grader.recording.observations import LintKind
+from grader.submission.scopes import Function
 
 #: The window's side [m], as turtlesim draws it.
 SIZE_M = 11.09
@@ -176,7 +177,24 @@ def find(
     all_told = {wall for _, told, _ in conditions for wall in told}
     missing = ", ".join(wall for wall in WALLS if wall not in all_told)
     for node, _, wrong in conditions:
-        yield "at_wall", ast.unparse(node), wrong or missing, node.lineno
+        near = wrong or missing
+        line = node.lineno if near else _where_used(node, tree, parents)
+        yield "at_wall", ast.unparse(node), near, line
+
+
+def _where_used(node: ast.expr, tree: ast.Module, parents: dict[ast.AST, ast.AST]) -> int:
+    """Return the line that decides by a condition; that of the `if` which asks its function."""
+    outer: ast.AST | None = node
+    while outer is not None and not isinstance(outer, Function):
+        outer = parents.get(outer)
+    if outer is None or not any(isinstance(n, ast.Return) and n.value for n in ast.walk(outer)):
+        return node.lineno
+    for each in ast.walk(tree):
+        if isinstance(each, ast.If | ast.While):
+            asked = (last(n.func) for n in ast.walk(each.test) if isinstance(n, ast.Call))
+            if outer.name in asked:
+                return each.lineno
+    return node.lineno
 
 
 def _of_the_middle(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -89,7 +90,15 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
     if len(sources) * sum(len(source.parents) for source in sources.values()) > MOST_NODES:
         return
     whole = [*sources.values()]
-    for rule in (_callbacks, _around_spin, _brackets, _recursion, _idle, _bare_nodes):
+    for rule in (
+        _callbacks,
+        _called_callbacks,
+        _around_spin,
+        _brackets,
+        _recursion,
+        _idle,
+        _bare_nodes,
+    ):
         for file, source in sources.items():
             yield from ((file, found) for found in rule(source))
     for file, source in sources.items():
@@ -121,6 +130,16 @@ def _callbacks(source: Source) -> Iterator[Found]:
             node = _first_await(function)
             if node is not None:
                 yield "awaits", function.name, "", _inner_await(source, node).lineno
+
+
+def _called_callbacks(source: Source) -> Iterator[Found]:
+    """Functions of one's own that are called where they are to be passed."""
+    for name, (position, keyword) in CALLBACKS.items():
+        for call in source.calls(name):
+            given = call.args[position : position + 1]
+            for each in [*given, *(word.value for word in call.keywords if word.arg == keyword)]:
+                if isinstance(each, ast.Call) and last(each.func) in source.functions:
+                    yield "called_callback", last(each.func), name, each.lineno
 
 
 def _first_await(function: Function) -> ast.Await | None:
@@ -391,6 +410,10 @@ def _start_of(source: Source, call: ast.Call) -> int:
     return function.lineno if isinstance(function, Function) else call.lineno
 
 
+def _is_stored(node: ast.AST) -> TypeGuard[ast.Attribute]:
+    return isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
+
+
 def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
     """Attributes of self that are read and never set, with the start of the class."""
     classes = {n.name for each in whole for n in ast.walk(each.tree) if isinstance(n, ast.ClassDef)}
@@ -405,16 +428,13 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
             continue
         methods = [n for n in of.body if isinstance(n, Function)]
         inits = [n for n in methods if n.name == "__init__"]
-        own = {
-            node.attr
-            for node in ast.walk(of)
-            if isinstance(node, ast.Attribute)
-            and isinstance(node.ctx, ast.Store)
-            and not isinstance(source.parents[node], ast.AugAssign)
-        }
+        own = {n.attr for n in ast.walk(of) if _is_stored(n)}
+        begun = {n.attr for init in inits for n in ast.walk(init) if _is_stored(n)}
+        counts = Counter(n.attr for n in ast.walk(of) if isinstance(n, ast.Attribute))
         seen: set[str] = set()
         is_derived = any(last(base) in classes for base in of.bases)
-        known = {n.name for n in methods} | (stored if is_derived else own)
+        known = {n.name for n in methods} | (stored if is_derived else begun)
+        known |= {last(t) for n in of.body if isinstance(n, ast.Assign) for t in n.targets}
         variables = {name: line for n in methods for name, line in unread(n).items()}
         for node in ast.walk(of):
             match node:
@@ -429,8 +449,11 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
                         continue
                     seen.add(name)
                     is_few = len(seen) <= MOST_FOLLOWED
-                    if is_few and not get_close_matches(name, sorted(own)[:200], cutoff=0.8):
-                        yield "never_set", name, "", inits[0].lineno
+                    others = [] if name in own else sorted(own)[:200]
+                    if is_few and not get_close_matches(name, others, cutoff=0.8):
+                        # what stands once alone is a slip there, not a forgotten beginning
+                        line = node.lineno if counts[name] == 1 else inits[0].lineno
+                        yield "never_set", name, "", line
                 case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
                     if name not in read:
                         yield "never_read", name, "", node.lineno
