@@ -136,6 +136,33 @@ def test_a_slip_is_found_with_its_line(name):
     assert found == [wanted]
 
 
+#: What gives the line to change, once a run has shown that something is wrong.
+PLACED = {
+    "def tick():\n    pass\nnode.create_timer(1.0, tick())\n": ("called_callback", "tick", 3),
+    "def quadrant(x):\n    0 if x > 5 else 1\n": ("no_effect", "0 if x > 5 else 1", 2),
+    f"{HEAD}    def go(self):\n        if self.stopped:\n            pass\n": (
+        *("stays", "self.stopped", 5),
+    ),
+    f"{HEAD}    def go(self):\n        return self.speed\n": ("never_set", "speed", 5),
+    f"{HEAD}    def go(self):\n        self.n += 1\n": ("never_set", "n", 5),
+    f"{HEAD}    def go(self):\n        self.n = self.n + 1\n": ("never_set", "n", 2),
+    "pen(1, 2, 3)\npen(0, 0, 0)\npen(1, 2, 3)\n": ("same_colour", "(1, 2, 3)", 3),
+    "def send(x):\n    msg.linear.x = x\nspeed = 0.0\ndef go():\n    send(speed)\n": (
+        *("argument", "linear.x", 3),
+    ),
+    "node.create_timer(1.0, tick)\ndef tick():\n    paint()\ndef paint():\n"
+    "    pen.call(request)\n": ("waits", "paint", 5),
+    "from rclpy.executors import SingleThreadedExecutor\n"
+    f"{HEAD}{READ}    def go(self):\n        self.stoped = True\n": ("unread", "stoped", 7 + 1),
+}
+
+
+@pytest.mark.parametrize("source", PLACED)
+def test_what_is_wrong_only_where_a_run_shows_it_is_found_with_its_line(source):
+    found = [(s.kind, s.name, s.place.line) for s in lint.find({"a.py": source})]
+    assert PLACED[source] in found
+
+
 @pytest.mark.parametrize("name", NOTHING)
 def test_what_may_be_meant_is_no_slip(name):
     assert reported({"a.py": NOTHING[name]}) == []
