@@ -280,15 +280,17 @@ def _callback(_: str, text: str, place: SourceLine | None) -> Hint | None:
 def _arguments(_: str, text: str, place: SourceLine | None) -> Hint | None:
     """A function in C++ was given values of other types, or in another order."""
     line = place.text if place is not None else ""
-    if "incompatible function arguments" in text:
-        if found := _CREATES.search(line):
-            return Hint(
-                msg("Compare the order: {in_order}.", in_order=_IN_ORDER[found[1]]),
-                msg(
-                    "{function}() was given values of other types, or in another order",
-                    function=found[1],
-                ),
-            )
+    is_of_rclpy = "incompatible function arguments" in text
+    is_text_for_type = "'str' has no attribute '_TYPE_SUPPORT'" in text
+    if (is_of_rclpy or is_text_for_type) and (found := _CREATES.search(line)):
+        return Hint(
+            msg("Compare the order: {in_order}.", in_order=_IN_ORDER[found[1]]),
+            msg(
+                "{function}() was given values of other types, or in another order",
+                function=found[1],
+            ),
+        )
+    if is_of_rclpy:
         return Hint(
             msg("Compare the order and the types with ROS's documentation."),
             msg("a function of rclpy's was given values of other types, or in another order"),

@@ -189,6 +189,15 @@ CAUSES = {
         "create_publisher() was given values of other types, or in another order (drive.py, "
         "line 39). Compare the order: create_publisher(Twist,",
     ),
+    "a topic where the type belongs": (
+        raising(
+            "AttributeError",
+            "type object 'str' has no attribute '_TYPE_SUPPORT' This might be a ROS 1 message type",
+            replace(LINE, text="self.pen = self.create_client('/turtle1/set_pen', SetPen)"),
+        ),
+        "crashed",
+        "create_client() was given values of other types, or in another order",
+    ),
     "an indentation": (
         raising("TabError", "inconsistent use of tabs and spaces in indentation"),
         "unreadable",
