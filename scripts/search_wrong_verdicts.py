@@ -1,7 +1,7 @@
 """Search for controllers of the challenge that are judged wrongly.
 
     python scripts/search_wrong_verdicts.py [--count 200] [--seed 1] [--limit-s 600] [--show]
-        [--only right|wrong|stops|pens|mistakes]
+        [--only right|wrong|stops|pens|mistakes] [--quick]
 
 Random controllers of many styles drive the world without ROS: right ones, wrong ones with one or
 two faults, and ones whose stop or whose pens do not come from the pose. The injected faults are the
@@ -79,6 +79,8 @@ PALETTES = (
 #: The controllers that the mistakes are made in, and the processor time of a grading [s].
 RIGHT = ROOT / "tests" / "submissions" / "right"
 CPU_S = 200.0
+#: With --quick a run takes so long [simulated s]: a right one is over by then.
+SHORT_S = 65.0
 #: By what the words of a first line go.
 Words = Literal["own", "another's", "unnamed"]
 
@@ -475,9 +477,16 @@ def answered(drawn: Drawn, exercise: Exercise) -> Answer:
     return Answer(drawn, time.monotonic() - began, loses=loses, found=result.diagnosis)
 
 
-def search_mistakes(count: int, seed: int, until: float, show: bool) -> None:
+def short(exercise: Exercise) -> Exercise:
+    """Return an exercise whose runs are over after `SHORT_S`, and that has one varied run."""
+    limits = replace(exercise.limits, total_s=SHORT_S)
+    return replace(exercise, limits=limits, varied=replace(exercise.varied, count=1))
+
+
+def search_mistakes(count: int, seed: int, until: float, show: bool, is_quick: bool) -> None:
     """Print how often the first line has the place and the words of a mistake, and where not."""
     exercise = replace(load_exercise("turtlesim_challenge"), cpu_s=CPU_S)
+    exercise = short(exercise) if is_quick else exercise
     drawn = list(some_mistakes(count, random.Random(seed)))
 
     def answer(each: Drawn) -> Answer | None:
@@ -523,12 +532,15 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--limit-s", type=float, default=600, help="wall time at most")
     parser.add_argument("--show", action="store_true", help="print every controller")
+    parser.add_argument(
+        "--quick", action="store_true", help="of mistakes: short runs, one of them varied"
+    )
     kinds = ("right", "wrong", *KINDS, "mistakes")
     parser.add_argument("--only", choices=kinds, help="controllers of a kind")
     asked = parser.parse_args()
     if asked.only == "mistakes":
         until = time.monotonic() + asked.limit_s
-        search_mistakes(asked.count, asked.seed, until, asked.show)
+        search_mistakes(asked.count, asked.seed, until, asked.show, asked.quick)
         return
     exercise = load_exercise("turtlesim_challenge")
     chance = random.Random(asked.seed)
