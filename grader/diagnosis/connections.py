@@ -15,6 +15,7 @@ from grader.diagnosis import source_lines, standstill
 from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.source_lines import of_kind
 from grader.message import Message, msg
 from grader.recording.observations import End, EndKind
 from grader.recording.subject import Endpoint
@@ -127,9 +128,11 @@ def hears_nobody(case: Case) -> Diagnosis | None:
 
 def misses_what_it_hears(case: Case) -> Diagnosis | None:
     """The program crashed for want of a message: nobody sends it, or the program never spins."""
-    if not misses_message(case):
+    if not misses_message(case) or case.raised is None:
         return None
-    return hears_nobody(case) or standstill.is_deaf(case)
+    # an attribute that is not there may be set too late, in a program that spins afterwards
+    is_spinless = "NoneType" in case.raised.text or any(of_kind(case, "no_spin"))
+    return hears_nobody(case) or (standstill.is_deaf(case) if is_spinless else None)
 
 
 def is_of_another_type(case: Case) -> Diagnosis | None:

@@ -173,7 +173,10 @@ def _misspelt(case: Case, raised: Raised) -> Hint | None:
         if finding.name == found[1] and "__init__" in finding.place.text:
             return Hint(
                 msg("Write self.{name} = ... in __init__, or compare the name.", name=name),
-                msg("self.{name} has no value when that line runs: nothing sets it", name=name),
+                msg(
+                    "self.{name} has no value when that line runs: nothing has set it by then",
+                    name=name,
+                ),
                 finding.place,
             )
     return None

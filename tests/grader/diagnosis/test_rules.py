@@ -129,6 +129,16 @@ CAUSES = {
         "Your program never spins its node, so none of its subscriptions and timers is ever "
         "called (drive.py, line 39).",
     ),
+    "an attribute that is set too late, before a spin": (
+        raising(
+            "AttributeError",
+            "'Spiral' object has no attribute 'period'",
+            spun_s=None,
+            ends=(VELOCITY, replace(POSES, used=0, place=LINE)),
+        ),
+        "crashed",
+        "Your node crashed at 6.0 s: AttributeError: 'Spiral' object has no attribute 'period'",
+    ),
     "a callback with brackets": (
         raising("TypeError", "'NoneType' object is not callable"),
         "crashed",
