@@ -116,6 +116,10 @@ def wrong_value(case: Case) -> Diagnosis | None:
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     what, help_ = _wanted(found["field"], excerpt(found["what"]), place)
     place = source_lines.given_at(case, found["field"], _fitting(found["what"])) or place
+    for finding in source_lines.of_kind(case, "comma"):
+        if place is not None and re.search(rf"\b{finding.name}\b", place.text):
+            place = finding.place
+            help_ = msg("Leave out the comma at its end: it makes a tuple of the number.")
     if place is not None and re.search(r"\b(?:np|numpy)\.", place.text):
         help_ = msg("A number of numpy is none of Python: write float(...) or int(...) around it.")
     cause = msg(

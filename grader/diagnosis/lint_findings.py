@@ -225,6 +225,18 @@ def _called_callback(case: Case, raised: Raised) -> Hint | None:
     return None
 
 
+def _hidden_class(case: Case, raised: Raised) -> Hint | None:
+    for finding in of_kind(case, "hides_class"):
+        if f"'{finding.name}' object is not callable" in raised.text[:_LONGEST]:
+            name = excerpt(finding.name)
+            return Hint(
+                msg("Give what you make there another name, as message = {name}().", name=name),
+                msg("`{name}` is the class no more: that name was given to something", name=name),
+                finding.place,
+            )
+    return None
+
+
 def _class_kept(case: Case, raised: Raised) -> Hint | None:
     is_sent = raised.place is not None and re.search(
         r"\.(?:call|call_async|publish)\(", raised.place.text
@@ -302,7 +314,7 @@ _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
         _without_self,
         _hidden_method,
         _class_given,
-        _service_for_request,
+        *(_service_for_request, _hidden_class),
     ),
     *(_misspelt, _wrong_callback, _class_kept, _not_begun, _calls_itself),
     _nothing_returned,

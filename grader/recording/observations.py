@@ -58,6 +58,8 @@ LintKind = Literal[
     "spins_once",
     "spins_in_init",
     "class_kept",
+    "hides_class",
+    "comma",
     "calls_itself",
     "no_init",
     "no_spin",
@@ -221,10 +223,12 @@ class LintFinding:
             `ends_before_spin` - NAME (shutdown) stands before a spin; `spins_once` - a spin_once in
             no loop;
             `spins_in_init` - a spin in an __init__; `class_kept` - the class NAME is assigned where
-            a message is meant; `calls_itself` - the function NAME does; `no_init`, `no_spin` - a
-            node is made, and nothing calls rclpy.init or spins; `unused` - nothing uses the
-            function NAME, which may be meant for NEAR (create_timer); `never_set` - self.NAME is
-            read and never set, at the __init__; `never_read` - self.NAME is set and never read;
+            a message is meant; `hides_class` - NAME is a class, and assigned to; `comma` - NAME is
+            made a tuple by the comma at its end; `calls_itself` - the function NAME does;
+            `no_init`, `no_spin` - a node is made, and nothing calls rclpy.init or spins; `unused` -
+            nothing uses the function NAME, which may be meant for NEAR (create_timer); `never_set`
+            - self.NAME is read and never set, at the __init__; `never_read` - self.NAME is set and
+            never read;
             `constant` - the text NAME is assigned to something; `sets` - the field NAME of a
             message is set; `compared` - the comparison NAME is a statement; `always` - a condition
             is True; `adds_nothing` - NAME adds 0; `no_super` - the __init__ of the node NAME calls

@@ -181,10 +181,16 @@ def _around_spin(source: Source) -> Iterator[Found]:
 
 
 def _brackets(source: Source) -> Iterator[Found]:
-    """Message classes that are kept instead of a message."""
+    """Message classes that are kept instead of a message, or hidden by one; a stray comma."""
     imported = {alias.asname or alias.name for _, alias in source.imported()}
     for node in ast.walk(source.tree):
         match node:
+            case ast.Assign(targets=[ast.Name(id=name)]) if name in imported:
+                yield "hides_class", name, "", node.lineno
+            case ast.Assign(targets=[target], value=ast.Tuple(elts=[only])) if (
+                only.col_offset == node.value.col_offset
+            ):
+                yield "comma", last(target), "", node.lineno
             case ast.Assign(value=ast.Name(id=name)) if name in imported:
                 yield "class_kept", name, "", node.lineno
             case ast.Assign(value=ast.Attribute(value=ast.Name(id=name), attr="Request")) if (

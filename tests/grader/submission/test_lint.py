@@ -146,6 +146,8 @@ PLACED = {
     f"{HEAD}    def go(self):\n        return self.speed\n": ("never_set", "speed", 5),
     f"{HEAD}    def go(self):\n        self.n += 1\n": ("never_set", "n", 5),
     f"{HEAD}    def go(self):\n        self.n = self.n + 1\n": ("never_set", "n", 2),
+    "from geometry_msgs.msg import Twist\nTwist = Twist()\n": ("hides_class", "Twist", 2),
+    "class C:\n    def __init__(self):\n        self.v = 0.0,\n": ("comma", "v", 3),
     "pen(1, 2, 3)\npen(0, 0, 0)\npen(1, 2, 3)\n": ("same_colour", "(1, 2, 3)", 3),
     "def send(x):\n    msg.linear.x = x\nspeed = 0.0\ndef go():\n    send(speed)\n": (
         *("argument", "linear.x", 3),
