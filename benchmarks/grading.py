@@ -297,7 +297,7 @@ def main() -> None:
     print(measuring.machine())
     print("Medians (lowest-highest). CPU: user and system time of all processes.")
     few = max(2, options.repetitions - 2)  # of slow figures
-    with network.reserve_isolation() as number:
+    with network.reserve_domain() as number:
         discovery = {"ROS_DOMAIN_ID": str(number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         env = os.environ | discovery
         if "runs" in options.only:

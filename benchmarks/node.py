@@ -281,7 +281,7 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # the simulator is not left behind
     head("", "unit", "median (lowest-highest)", "the original")
     bare_world()
-    with network.reserve_isolation() as number:
+    with network.reserve_domain() as number:
         os.environ["ROS_DOMAIN_ID"] = str(number)
         os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         rclpy.init(args=[])
