@@ -101,7 +101,7 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
         sources = {file: "\n".join(text) for file, text in lines.items()}
         is_short = sum(map(len, sources.values())) <= MOST_SOURCE
         found = find(sources, lies)[:MOST] if is_short else []
-    except (OSError, RecursionError, MemoryError):
+    except (OSError, RecursionError, MemoryError, ValueError):
         return ()
     return tuple(
         replace(
@@ -127,6 +127,7 @@ def find(
 
     Raises:
         RecursionError, MemoryError: too deep for Python.
+        ValueError: it holds an integer that is too long for Python to write.
     """
     trees, names = {}, Names()
     for file, text in sources.items():

@@ -242,11 +242,12 @@ def _is_node(of: ast.AST) -> TypeGuard[ast.ClassDef]:
 
 def _number(node: ast.expr) -> float | None:
     """Return the number that is written there."""
-    try:
-        found = ast.literal_eval(node)
-    except ValueError:
-        return None
-    return found if isinstance(found, int | float) and not isinstance(found, bool) else None
+    match node:
+        case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
+            return value
+        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):
+            return -value
+    return None
 
 
 def _stays(source: Source, values: conditions.Values) -> Iterator[Found]:
@@ -308,17 +309,19 @@ def _colours(source: Source) -> Iterator[Found]:
     """Colours that are written twice: the second place of each."""
     first: dict[tuple[float, ...], int] = {}
     for node in ast.walk(source.tree):
-        parts = [*getattr(node, "elts", []), *getattr(node, "args", [])] if _has_parts(node) else []
-        words = {w.arg: w.value for w in getattr(node, "keywords", [])} if _has_parts(node) else {}
-        parts = parts or [words[each] for each in "rgb" if each in words]
+        match node:
+            case ast.Tuple(elts=parts) | ast.List(elts=parts):
+                pass
+            case ast.Call(args=parts, keywords=words):
+                given = {word.arg: word.value for word in words}
+                parts = parts or [given[each] for each in "rgb" if each in given]
+            case _:
+                continue
         numbers = [number for part in parts if (number := _number(part)) is not None]
-        color = tuple(numbers[-3:]) if len(numbers) in (3, 4) else ()
-        if len(color) == 3 and first.setdefault(color, id(node)) != id(node):
-            yield "same_colour", str(tuple(map(int, color))), "", node.lineno  # type: ignore[attr-defined]
-
-
-def _has_parts(node: ast.AST) -> bool:
-    return isinstance(node, ast.Tuple | ast.List | ast.Call)
+        color = tuple(numbers[-3:])  # what comes before may be a quadrant's number
+        is_one = len(numbers) in (3, 4) and all(0 <= each <= 255 for each in color)
+        if is_one and first.setdefault(color, id(node)) != id(node):
+            yield "same_colour", str(tuple(map(int, color))), "", node.lineno
 
 
 def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:

@@ -193,6 +193,25 @@ def test_what_a_package_shows_is_found_where_it_is_read(tmp_path):
         )
 
 
+LONG = f"0x{'f' * 6000}"  # Python reads it, and does not write it in decimals
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        *("draw({[5]: 1})\n", "pen.r = {[5]: 1}\n", "pen(1e999, 2, 3)\npen(1e999, 2, 3)\n"),
+        *(f"pen({LONG}, 0, 0)\npen({LONG}, 0, 0)\n", f"pen.r = {LONG}\n", f"speed == {LONG}\n"),
+        *(f"{LONG}\n", f"pen({LONG}).r = 1\n", f"pen({'9' * 400}, 0, 0)\n"),
+    ],
+    ids=lambda source: source[:12],
+)
+def test_a_value_that_python_refuses_or_does_not_write_is_no_failure_of_ours(tmp_path, source):
+    file = tmp_path / "draw.py"
+    file.write_text(source)
+    with open_submission(file) as submission:
+        assert submission.found
+
+
 def test_a_file_that_nobody_looks_through_is_started_all_the_same(tmp_path):
     deep = tmp_path / "draw.py"
     deep.write_text("main\n" * lint.MOST_SOURCE)
