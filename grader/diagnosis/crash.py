@@ -117,9 +117,10 @@ def wrong_value(case: Case) -> Diagnosis | None:
     what, help_ = _wanted(found["field"], excerpt(found["what"]), place)
     place = source_lines.given_at(case, found["field"], _fitting(found["what"])) or place
     for finding in source_lines.of_kind(case, "comma"):
-        if place is not None and re.search(rf"\b{finding.name}\b", place.text):
+        if place is not None and re.search(rf"\b{re.escape(finding.name)}\b", place.text):
             place = finding.place
             help_ = msg("Leave out the comma at its end: it makes a tuple of the number.")
+            break
     if place is not None and re.search(r"\b(?:np|numpy)\.", place.text):
         help_ = msg("A number of numpy is none of Python: write float(...) or int(...) around it.")
     cause = msg(

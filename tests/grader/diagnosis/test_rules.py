@@ -602,6 +602,15 @@ def test_an_except_that_hides_every_error_stands_behind_the_finding_that_it_may_
     assert found.place == place
 
 
+def test_a_name_of_the_source_is_no_pattern():
+    comma = LintFinding("comma", "a(", "", replace(LINE, line=3))
+    said_ = "The 'x' field must be of type 'float'"
+    place = replace(LINE, text="twist.linear.x = 2")
+    found = diagnose(Recordings(raising("AssertionError", said_, place, lint_findings=(comma,))))
+    assert found is not None
+    assert found.place == place
+
+
 def test_a_module_that_lies_beside_is_told_by_its_full_name():
     place = replace(LINE, text="from my_colors import COLORS")
     slip = LintFinding("beside", "my_colors", "my_package.my_colors", place)
