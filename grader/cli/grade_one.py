@@ -144,8 +144,7 @@ def _run_and_judge(
         known = judging.judge_nominal(nominal, exercise, submission=submission.name)
         if live is None:  # the others will take as long
             if known.diagnosis is not None:
-                text = tr("Seen so far: {cause}", cause=known.diagnosis.cause)
-                messages.print(Text(for_terminal(text)), soft_wrap=True)
+                _say(messages, msg("Seen so far: {cause}", cause=known.diagnosis.cause))
             return
         live.know_of_nominal(Report.of(known, out, Recordings(nominal)))
 

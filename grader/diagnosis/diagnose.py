@@ -161,7 +161,7 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
             return replace(found, help=sentences(found.help, unsent), place=end.place)
         unsent = msg("Your client{where} has sent no request.", where=line(end.place))
         cause = sentences(found.cause, unsent)
-        made = source_lines.unsent(case)
+        made = source_lines.first_of(case, "unsent")
         if made is None:
             return replace(found, cause=cause, place=end.place)
         help_ = msg("Send the request that you make: call_async(request).")

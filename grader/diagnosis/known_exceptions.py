@@ -18,11 +18,8 @@ from grader.recording.observations import Caught, Raised, SourceLine
 _LONGEST = 1000
 #: Properties of a Node that can only be read.
 _OF_A_NODE = frozenset(
-    (
-        *("publishers", "subscriptions", "clients", "services", "timers", "guards", "waitables"),
-        "handle",
-    )
-)
+    ("publishers", "subscriptions", "clients", "services", "timers", "guards", "waitables")
+) | {"handle"}
 _NODE_ATTRIBUTE = (
     r"'(?:_Node__\w{1,40}|_default_callback_group|_logger|_clock|_parameters|_context|_rate_group"
     r"|_parameter_overrides|_descriptors|_allow_undeclared_parameters)'"
@@ -173,15 +170,15 @@ def _without_init(name: str, text: str, _: SourceLine | None) -> Hint | None:
 def _read_only_name(_: str, text: str, __: SourceLine | None) -> Hint | None:
     """The program sets an attribute that can only be read."""
     found = re.search(r"property '(\w{1,60})' of .{1,80} object has no setter", text) or re.search(
-        r"can't set attribute '?(\w{1,60})|^(handle) cannot be modified", text
+        r"(?:can't set attribute '?|^(?=handle cannot be modified))(\w{1,60})", text
     )
     if found is None:
         return None
-    if found[found.lastindex or 1] in _OF_A_NODE:
+    if found[1] in _OF_A_NODE:
         return Hint(
             msg(
                 "A Node has a `{name}` of its own: choose another name, as self.my_{name}.",
-                name=excerpt(found[found.lastindex or 1]),
+                name=excerpt(found[1]),
             )
         )
     return Hint(

@@ -272,8 +272,8 @@ def _calls_itself(case: Case, raised: Raised) -> Hint | None:
     return None
 
 
-def _nothing_returned(case: Case, raised: Raised) -> Hint | None:
-    """None, where a function was to return what it calculates."""
+def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
+    """None: of a shutdown before, of a variable that another hides, of a missing return."""
     if "NoneType" not in raised.text or raised.place is None:
         return None
     for finding in of_kind(case, "ends_before_spin"):
@@ -308,16 +308,9 @@ def _nothing_returned(case: Case, raised: Raised) -> Hint | None:
 
 
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
-    *(
-        _called_callback,
-        _not_global,
-        _without_self,
-        _hidden_method,
-        _class_given,
-        *(_service_for_request, _hidden_class),
-    ),
-    *(_misspelt, _wrong_callback, _class_kept, _not_begun, _calls_itself),
-    _nothing_returned,
+    *(_called_callback, _not_global, _without_self, _hidden_method, _class_given),
+    *(_service_for_request, _hidden_class, _misspelt, _wrong_callback, _class_kept),
+    *(_not_begun, _calls_itself, _none_for_a_value),
 )
 
 

@@ -14,7 +14,7 @@ from grader.message import Message, msg
 from grader.recording.observations import LintFinding, LintKind, SourceLine
 
 #: Words of checks about a stop that did not come, or came at once.
-ABOUT_STOPPING = ("wall", "zeros")
+_ABOUT_STOPPING = ("wall", "zeros")
 
 
 def of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
@@ -62,9 +62,9 @@ def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> SourceLine 
     return next((each.place for each in wrong if each.name in names), None)
 
 
-def is_about_stopping(text: str) -> bool:
+def _is_about_stopping(text: str) -> bool:
     """Whether a check's words are about a stop that did not come, or came at once."""
-    return any(word in text for word in ABOUT_STOPPING)
+    return any(word in text for word in _ABOUT_STOPPING)
 
 
 def set_at(case: Case, text: str) -> SourceLine | None:
@@ -108,8 +108,8 @@ def set_at(case: Case, text: str) -> SourceLine | None:
         if (at := text.find(finding.name)) >= 0
         and ("." in finding.name or f"`{finding.name}`" in text)
     ]
-    if is_about_stopping(text) and "drive on" not in text:
-        at = min(text.find(word) for word in ABOUT_STOPPING if word in text)
+    if _is_about_stopping(text) and "drive on" not in text:
+        at = min(text.find(word) for word in _ABOUT_STOPPING if word in text)
         found += [(at, finding.place) for finding in of_kind(case, "at_wall")]
     return min(found, key=lambda each: each[0])[1] if found else None
 
@@ -154,7 +154,7 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
 def _beside_condition(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the condition that may be its cause."""
     spoken = f"{found.cause!s} {found.help!s}"
-    walls = [*of_kind(case, "at_wall")] if is_about_stopping(spoken) else []
+    walls = [*of_kind(case, "at_wall")] if _is_about_stopping(spoken) else []
     for finding in walls:
         if (wrong := _wrong_condition(finding, spoken)) is not None:
             text, help_ = wrong
@@ -283,8 +283,3 @@ def _cause_and_help(finding: LintFinding) -> tuple[Message, Message]:
         ),
         msg("Write {name}().", name=name),
     )
-
-
-def unsent(case: Case) -> SourceLine | None:
-    """Return where a request is made that is never sent."""
-    return next((finding.place for finding in of_kind(case, "unsent")), None)

@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 from grader.recording.observations import LintKind
-from grader.submission.scopes import Function
+from grader.submission.scopes import Function, Parents, around, last
 
 #: The window's side [m], as turtlesim draws it.
 SIZE_M = 11.09
@@ -151,16 +151,8 @@ class Values:
         raise Unknown
 
 
-def last(called: ast.AST) -> str:
-    """'drive' of bot.drive; '' for what has no name."""
-    match called:
-        case ast.Attribute(attr=name) | ast.Name(id=name):
-            return name
-    return ""
-
-
 def find(
-    tree: ast.Module, parents: dict[ast.AST, ast.AST], values: Values
+    tree: ast.Module, parents: Parents, values: Values
 ) -> Iterator[tuple[LintKind, str, str, int]]:
     """Yield where the pose is compared with the middle of the window, or tells that a wall is near.
 
@@ -182,12 +174,12 @@ def find(
         yield "at_wall", ast.unparse(node), near, line
 
 
-def _where_used(node: ast.expr, tree: ast.Module, parents: dict[ast.AST, ast.AST]) -> int:
+def _where_used(node: ast.expr, tree: ast.Module, parents: Parents) -> int:
     """Return the line that decides by a condition; that of the `if` which asks its function."""
-    outer: ast.AST | None = node
-    while outer is not None and not isinstance(outer, Function):
-        outer = parents.get(outer)
-    if outer is None or not any(isinstance(n, ast.Return) and n.value for n in ast.walk(outer)):
+    outer = around(node, parents, ast.FunctionDef, ast.AsyncFunctionDef)
+    if not isinstance(outer, Function) or not any(
+        isinstance(n, ast.Return) and n.value for n in ast.walk(outer)
+    ):
         return node.lineno
     for each in ast.walk(tree):
         if isinstance(each, ast.If | ast.While):
@@ -198,7 +190,7 @@ def _where_used(node: ast.expr, tree: ast.Module, parents: dict[ast.AST, ast.AST
 
 
 def _of_the_middle(
-    node: ast.Compare, parents: dict[ast.AST, ast.AST], values: Values
+    node: ast.Compare, parents: Parents, values: Values
 ) -> Iterator[tuple[LintKind, str, str, int]]:
     parts = [node.left, *node.comparators]
     axes = [last(each) for each in parts if last(each) in ("x", "y")]
@@ -208,20 +200,18 @@ def _of_the_middle(
         except Unknown:
             continue
         if 4 < limit < 7 or (limit == 0 and len(parts) == 2):
-            beside = _comparisons_beside(node, parents)
-            is_one_axis = len(beside) > 1 and len({axis for axis, _ in beside}) == 1
+            beside = _axes_beside(node, parents)
+            is_one_axis = len(beside) > 1 and len({*beside}) == 1
             yield "at_middle", "one axis" if is_one_axis else axes[0], str(limit), node.lineno
 
 
-def _comparisons_beside(
-    node: ast.Compare, parents: dict[ast.AST, ast.AST]
-) -> list[tuple[str, int]]:
-    """Return the axes that an expression compares, with the positions."""
+def _axes_beside(node: ast.Compare, parents: Parents) -> list[str]:
+    """Return the axes that the expression around a comparison compares, one for each time."""
     outer: ast.AST = node
     while isinstance(parents.get(outer), ast.expr):
         outer = parents[outer]
     return [
-        (last(part), part.col_offset)
+        last(part)
         for each in ast.walk(outer)
         if isinstance(each, ast.Compare) and len(each.ops) == 1
         for part in (each.left, *each.comparators)
@@ -229,7 +219,7 @@ def _comparisons_beside(
     ]
 
 
-def _is_part(node: ast.expr, parents: dict[ast.AST, ast.AST], values: Values) -> bool:
+def _is_part(node: ast.expr, parents: Parents, values: Values) -> bool:
     """Whether a larger condition is judged as a whole."""
     outer = parents.get(node)
     while isinstance(outer, ast.BoolOp) or (

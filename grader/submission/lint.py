@@ -15,10 +15,9 @@ from pathlib import Path
 
 from grader.recording.observations import LintFinding, LintKind, SourceLine
 from grader.submission import ros_mistakes, scopes
-from grader.submission.conditions import last
 from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
-from grader.submission.scopes import Function
+from grader.submission.scopes import Function, last
 from grader.text import misspelt
 
 #: So many findings are kept, and so much of a name or a line [characters].

@@ -16,8 +16,7 @@ from typing import TypeGuard
 
 from grader.recording.observations import LintKind
 from grader.submission import conditions
-from grader.submission.conditions import last
-from grader.submission.scopes import Function, unread
+from grader.submission.scopes import Function, around, last, unread
 
 #: Kind, name, near, line; see `LintFinding`.
 Found = tuple[LintKind, str, str, int]
@@ -62,10 +61,7 @@ class Source:
 
     def around(self, node: ast.AST, *kinds: type[ast.AST]) -> ast.AST | None:
         """Return the nearest of these kinds that a node is in."""
-        found = self.parents.get(node)
-        while found is not None and not isinstance(found, kinds):
-            found = self.parents.get(found)
-        return found
+        return around(node, self.parents, *kinds)
 
     def imported(self) -> Iterator[tuple[ast.ImportFrom, ast.alias]]:
         """Yield the imports of messages and services."""
@@ -73,15 +69,18 @@ class Source:
             if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv")):
                 yield from ((node, alias) for alias in node.names)
 
-    def callbacks(self) -> Iterator[tuple[str, Function]]:
-        """Yield the functions that ROS is to call, and by which call it gets them."""
+    def given(self) -> Iterator[tuple[str, ast.expr]]:
+        """Yield what stands where ROS is to get a callback, and by which call."""
         for name, (position, keyword) in CALLBACKS.items():
             for call in self.calls(name):
-                given = call.args[position : position + 1]
-                given += [word.value for word in call.keywords if word.arg == keyword]
-                for each in given:
-                    if (function := self.functions.get(last(each))) is not None:
-                        yield name, function
+                yield from ((name, each) for each in call.args[position : position + 1])
+                yield from ((name, word.value) for word in call.keywords if word.arg == keyword)
+
+    def callbacks(self) -> Iterator[tuple[str, Function]]:
+        """Yield the functions that ROS is to call, and by which call it gets them."""
+        for name, each in self.given():
+            if (function := self.functions.get(last(each))) is not None:
+                yield name, function
 
 
 def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
@@ -134,12 +133,9 @@ def _callbacks(source: Source) -> Iterator[Found]:
 
 def _called_callbacks(source: Source) -> Iterator[Found]:
     """Functions of one's own that are called where they are to be passed."""
-    for name, (position, keyword) in CALLBACKS.items():
-        for call in source.calls(name):
-            given = call.args[position : position + 1]
-            for each in [*given, *(word.value for word in call.keywords if word.arg == keyword)]:
-                if isinstance(each, ast.Call) and last(each.func) in source.functions:
-                    yield "called_callback", last(each.func), name, each.lineno
+    for name, each in source.given():
+        if isinstance(each, ast.Call) and last(each.func) in source.functions:
+            yield "called_callback", last(each.func), name, each.lineno
 
 
 def _first_await(function: Function) -> ast.Await | None:
@@ -188,7 +184,7 @@ def _brackets(source: Source) -> Iterator[Found]:
             case ast.Assign(targets=[ast.Name(id=name)]) if name in imported:
                 yield "hides_class", name, "", node.lineno
             case ast.Assign(targets=[target], value=ast.Tuple(elts=[only])) if (
-                only.col_offset == node.value.col_offset
+                last(target) and only.col_offset == node.value.col_offset
             ):
                 yield "comma", last(target), "", node.lineno
             case ast.Assign(value=ast.Name(id=name)) if name in imported:

@@ -1,14 +1,32 @@
-"""Finds variables that a function sets as its own, where an outer one was meant."""
+"""Names and scopes of a syntax tree: variables that are a function's own by mistake."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
 from grader.recording.observations import LintKind
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+#: A node -> the one that it is part of.
+Parents = Mapping[ast.AST, ast.AST]
+
+
+def last(called: ast.AST) -> str:
+    """'drive' of bot.drive; '' for what has no name."""
+    match called:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
+def around(node: ast.AST, parents: Parents, *kinds: type[ast.AST]) -> ast.AST | None:
+    """Return the nearest of these kinds that a node is in."""
+    found = parents.get(node)
+    while found is not None and not isinstance(found, kinds):
+        found = parents.get(found)
+    return found
 
 
 def not_declared(

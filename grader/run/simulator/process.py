@@ -15,11 +15,12 @@ import signal
 import socket
 import time
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from typing import Any, Final, Self
 
 from grader import linux
-from grader.recording.scene_at_work import overdue
-from grader.run.limits import SIMULATOR_BYTES
+from grader.recording.scene_at_work import overdue, scene_at_work
+from grader.run.limits import SCENE_S, SIMULATOR_BYTES
 
 #: So much may wait to be received [bytes]; then the run waits so long for that, in all [s].
 MOST_BYTES: Final = 8_000_000
@@ -37,6 +38,11 @@ def protect_process() -> None:
     # Ctrl-C in a terminal reaches the whole group; the grader decides what happens then.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGALRM, overdue)
+
+
+def scene_in_time(scene: str) -> AbstractContextManager[None]:
+    """Raise a `SceneFailure` also for a scene's code that takes longer than `SCENE_S`."""
+    return scene_at_work(scene, within_s=SCENE_S)
 
 
 def send_message(control: socket.socket, what: str, **more: Any) -> None:

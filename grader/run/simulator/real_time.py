@@ -24,11 +24,14 @@ from rclpy.signals import SignalHandlerOptions
 
 from grader.errors import SceneFailure
 from grader.message import Message, msg
-from grader.recording.scene_at_work import scene_at_work
 from grader.run import handover
 from grader.run.handover import Plan
-from grader.run.limits import SCENE_S
-from grader.run.simulator.process import FeedWriter, protect_process, send_message
+from grader.run.simulator.process import (
+    FeedWriter,
+    protect_process,
+    scene_in_time,
+    send_message,
+)
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
 from turtlesim_py.ros import program
@@ -79,7 +82,7 @@ class GradedSimulator:
         self._scene = load_scene(plan.scene)
         self._feed = FeedWriter.of(shown, STEP_NS)
         hooks = Hooks(send_news=None if self._feed is None else self._feed.write)
-        with scene_at_work(plan.scene, within_s=SCENE_S):
+        with scene_in_time(plan.scene):
             self._simulation = self._scene.simulate(
                 plan.limits, plan.start, hooks, plan.interfaces, plan.setting
             )
@@ -102,7 +105,7 @@ class GradedSimulator:
             self._receive()
             if not self._running and self._may_start():
                 self._start()
-            with scene_at_work(self._scene.name, within_s=SCENE_S):
+            with scene_in_time(self._scene.name):
                 reason = self._simulation.tick()
             expect_reason(self._scene.name, reason)
             if self._running:
@@ -114,7 +117,7 @@ class GradedSimulator:
         if self._feed is not None:
             self._feed.close()
         self._topics.update()
-        with scene_at_work(self._scene.name, within_s=SCENE_S):
+        with scene_in_time(self._scene.name):
             handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
             flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
         self._send("done", reason=reason, flags=flags)

@@ -28,17 +28,21 @@ from rclpy.signals import SignalHandlerOptions
 
 from grader.errors import SceneFailure
 from grader.message import msg
-from grader.recording.scene_at_work import scene_at_work
 from grader.run import handover
 from grader.run.handover import Plan
-from grader.run.limits import SCENE_S, Patience
+from grader.run.limits import Patience
 from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import EPOCH_NS, TICK_NS, Advance, Interests, Reply, State
 from grader.run.processes import cores
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import Foresight
 from grader.run.simulator.link import Refused, StudentLink
-from grader.run.simulator.process import FeedWriter, protect_process, send_message
+from grader.run.simulator.process import (
+    FeedWriter,
+    protect_process,
+    scene_in_time,
+    send_message,
+)
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
 
@@ -81,7 +85,7 @@ class Lockstep:
         self._feed = FeedWriter.of(shown, TICK_NS)
         send = None if self._feed is None else self._feed.write
         hooks = Hooks(has_unread=self._registry.has_unread, send_news=send)
-        with scene_at_work(plan.scene, within_s=SCENE_S):
+        with scene_in_time(plan.scene):
             self._simulation = self._scene.simulate(
                 plan.limits, plan.start, hooks, plan.interfaces, plan.setting
             )
@@ -142,7 +146,7 @@ class Lockstep:
 
     def save(self, file: Path) -> None:
         """Write the recording where the grader finds it."""
-        with scene_at_work(self._scene.name, within_s=SCENE_S):
+        with scene_in_time(self._scene.name):
             trace = self._simulation.trace()
             handover.leave(file, self._scene, trace, self._registry.published)
 
@@ -168,7 +172,7 @@ class Lockstep:
         """Make the forecast ticks that the student's side has used."""
         while self._tick < min(reached, self._foresight.end) and not self._reason:
             self._count_tick()
-            with scene_at_work(self._scene.name, within_s=SCENE_S):
+            with scene_in_time(self._scene.name):
                 reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
             self._reason = expect_reason(self._scene.name, reason)
         self._clocks.set_now(self.now_ns)
@@ -184,7 +188,7 @@ class Lockstep:
     def _make_tick(self) -> None:
         self._count_tick()
         self._clocks.set_now(self.now_ns)
-        with scene_at_work(self._scene.name, within_s=SCENE_S):
+        with scene_in_time(self._scene.name):
             reason = self._simulation.tick(EPOCH_NS + self.now_ns)
         self._reason = expect_reason(self._scene.name, reason)
 
@@ -202,7 +206,7 @@ class Lockstep:
         if self._registry.changed:
             self._link.send(self._registry.pop_table())
         elif state == State.RUNNING:
-            with scene_at_work(self._scene.name, within_s=SCENE_S):
+            with scene_in_time(self._scene.name):
                 self._foresight.foresee(self._tick, request)
             parcels += self._foresight.parcels
         self._link.send(Reply(self._tick, state, max(self._tick, self._foresight.end), parcels))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
@@ -68,13 +68,11 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
                 msg("No launch file puts the robot into Gazebo."),
                 msg("Start create of ros_gz_sim with -topic robot_description and -name."),
             )
-        ended = (starts_nothing(facts, each) for each in facts.launches if each.problem)
-        if (stopped := next((each for each in ended if each is not None), None)) is not None:
+        if stopped := _stopped(facts, [each for each in facts.launches if each.problem]):
             return stopped  # it may be the one that was to
         return Finding(1, msg("No launch file puts the robot into Gazebo, and none need."))
-    for launch in (*(each for each, _ in found), *included):
-        if (stopped := starts_nothing(facts, launch)) is not None:
-            return stopped
+    if stopped := _stopped(facts, [*(each for each, _ in found), *included]):
+        return stopped
     for launch, node in found:
         fault = next(_faults(facts, launch, node), "")
         if fault:
@@ -90,6 +88,12 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
             )
     launches = [launch for launch, _ in found] or included
     return Finding(1, msg("{file} puts the robot into Gazebo.", file=launches[0].file))
+
+
+def _stopped(facts: PackageFacts, launches: Sequence[LaunchFile]) -> Finding | None:
+    """The first of some launch files with which `ros2 launch` ends with an error."""
+    found = (starts_nothing(facts, each) for each in launches)
+    return next((each for each in found if each is not None), None)
 
 
 def includes_spawner(launch: LaunchFile) -> bool:
