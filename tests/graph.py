@@ -121,7 +121,7 @@ class Graph:
 
     def action(self, kind: Any, name: str) -> ActionClient:
         """Return an action client that has found its server."""
-        client = ActionClient(self.node, kind, name)
+        client = ActionClient(self.node, kind, name, feedback_sub_qos_profile=DEEP)
         self._actions.append(client)
         self.until(client.server_is_ready, f"the action {name}")
         return client

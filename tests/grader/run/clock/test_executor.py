@@ -13,6 +13,12 @@ def test_an_unknown_rclpy_keeps_its_own_function(monkeypatch: pytest.MonkeyPatch
 
 def test_the_installed_rclpy_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     original = rclpy.executors.Executor._wait_for_ready_callbacks
-    monkeypatch.setattr(rclpy.executors.Executor, "_wait_for_ready_callbacks", original)
+    tracker = rclpy.executors._WorkTracker
+    for kind, name in (  # as they are, afterwards too
+        (rclpy.executors.Executor, "_wait_for_ready_callbacks"),
+        (tracker, "__enter__"),
+        (tracker, "__exit__"),
+    ):
+        monkeypatch.setattr(kind, name, getattr(kind, name))
     executor.install()
     assert rclpy.executors.Executor._wait_for_ready_callbacks is not original
