@@ -149,24 +149,19 @@ def _text(found: Diagnosis) -> str:
 
 def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add the publisher or client that a finding names, where it was never used."""
-    if case.observed.spun_s is None:
+    end = source_lines.unused(found, case)
+    if end is None:
         return None
-    there = {(each.name, each.type) for each in case.scene_has}
-    for end in case.observed.ends:
-        is_meant = (end.name, end.type) in there and end.name in _text(found)
-        if not is_meant or end.used or end.kind not in ("publisher", "client"):
-            continue
-        if end.kind == "publisher":
-            unsent = msg("Your publisher{where} has sent no message.", where=line(end.place))
-            return replace(found, help=sentences(found.help, unsent), place=end.place)
-        unsent = msg("Your client{where} has sent no request.", where=line(end.place))
-        cause = sentences(found.cause, unsent)
-        made = source_lines.first_of(case, "unsent")
-        if made is None:
-            return replace(found, cause=cause, place=end.place)
-        help_ = msg("Send the request that you make: call_async(request).")
-        return replace(found, cause=cause, help=help_, place=made)
-    return None
+    if end.kind == "publisher":
+        unsent = msg("Your publisher{where} has sent no message.", where=line(end.place))
+        return replace(found, help=sentences(found.help, unsent), place=end.place)
+    unsent = msg("Your client{where} has sent no request.", where=line(end.place))
+    cause = sentences(found.cause, unsent)
+    made = source_lines.first_of(case, "unsent")
+    if made is None:
+        return replace(found, cause=cause, place=end.place)
+    help_ = msg("Send the request that you make: call_async(request).")
+    return replace(found, cause=cause, help=help_, place=made)
 
 
 def _with_place(found: Diagnosis, case: Case) -> Diagnosis:

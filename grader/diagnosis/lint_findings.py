@@ -391,10 +391,13 @@ def awaits(case: Case) -> Diagnosis | None:
 
 def called_at_once(case: Case) -> Diagnosis | None:
     """A function that was to run in a thread runs in the main program, which gets no further."""
+    sends = any(end.used for end in case.observed.ends if end.kind == "publisher")
     for finding in of_kind(case, "called"):
-        if never_spins(case) is None and case.observed.spun_s is not None:
-            continue
         name = excerpt(finding.name)
+        is_spin = name.rpartition(".")[2] == "spin"
+        goes_on = sends if is_spin else never_spins(case) is None
+        if goes_on and case.observed.spun_s is not None:
+            continue
         return Diagnosis(
             "called_at_once",
             msg(
@@ -406,7 +409,7 @@ def called_at_once(case: Case) -> Diagnosis | None:
             ),
             msg(
                 "Pass it by its name, without parentheses: {handed}.",
-                handed=f"{excerpt(finding.near)}{name})",
+                handed=f"{excerpt(finding.near)}{name}{', args=(node,)' * is_spin})",
             ),
             place=finding.place,
         )

@@ -10,9 +10,11 @@ from dataclasses import replace
 from grader.diagnosis.case import Case, excerpt, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.unnoticed import NOT_CAUGHT
-from grader.message import Message, msg
-from grader.recording.observations import LintFinding, LintKind, SourceLine
+from grader.message import NOTHING, Message, msg
+from grader.recording.observations import End, LintFinding, LintKind, SourceLine
 
+#: Kinds that say more of a condition than whether it was ever true.
+_SAY_MORE = ("at_wall", "uncalled", "stays", "always", "local", "unread")
 #: Words of checks about a stop that did not come, or came at once.
 _ABOUT_STOPPING = ("wall", "zeros")
 
@@ -102,6 +104,8 @@ def set_at(case: Case, text: str) -> SourceLine | None:
         for finding in zeros:
             if "linear.x" in finding.place.text:
                 return finding.place
+        if not zeros and (cancels := first_of(case, "cancels")) is not None:
+            return cancels
     found = [
         (at, finding.place)
         for finding in of_kind(case, "sets")
@@ -116,8 +120,12 @@ def set_at(case: Case, text: str) -> SourceLine | None:
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the lint finding that may be its cause."""
-    if (without := _lacks(case)) is not None:
+    if (without := _lacks(case) or _unspun(case)) is not None:
         return replace(without, run=found.run)
+    if (missed := _hidden(found, case) or _missed(found, case)) is not None:
+        return missed
+    if (meant := _misunderstood(found, case)) is not None:
+        return meant
     for finding in of_kind(case, "compared", "always", "adds_nothing", "no_effect"):
         if finding.kind == "always" and "driving" not in str(found.help):
             continue
@@ -151,6 +159,144 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
     return _beside_condition(found, case)
 
 
+def _hidden(found: Diagnosis, case: Case) -> Diagnosis | None:
+    """Add the error that an `except` hides which catches all of them."""
+    for catches in of_kind(case, "swallows"):
+        for finding in of_kind(case, "raises"):
+            if finding.place.file == catches.place.file:
+                cause = msg(
+                    "`{code}`{where} ends in an error, {error}, which `{catches}`{there} hides.",
+                    code=excerpt(finding.place.text),
+                    where=line(finding.place),
+                    error=excerpt(finding.name),
+                    catches=excerpt(catches.place.text),
+                    there=line(catches.place),
+                )
+                help_ = sentences(msg("Correct that line."), NOT_CAUGHT)
+                cause = sentences(cause, found.cause)
+                return replace(found, cause=cause, help=help_, place=finding.place)
+    return None
+
+
+def unused(found: Diagnosis, case: Case) -> End | None:
+    """Return the publisher or client that a finding is about, where it was never used."""
+    there = {(each.name, each.type) for each in case.scene_has}
+    for end in case.observed.ends if case.observed.spun_s is not None else ():
+        is_meant = (end.name, end.type) in there and end.name in f"{found.cause!s} {found.help!s}"
+        if is_meant and not end.used and end.kind in ("publisher", "client"):
+            return end
+    return None
+
+
+def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
+    """Add why a run has not reached what would have earned the points."""
+    end, spoken = unused(found, case), f"{found.cause!s} {found.help!s}"
+    if end is not None:
+        goals = ["publish"] if end.kind == "publisher" else ["call", "call_async"]
+    elif "look at its conditions" in spoken:
+        goals = ["branch"]
+    elif _is_about_stopping(spoken):
+        goals = ["publish"]
+    else:
+        return None
+    known = {each.place for each in case.observed.lint_findings if each.kind in _SAY_MORE}
+    for finding in of_kind(case, "unreached"):
+        goal, how, *values = finding.near.split(" ", 2)
+        is_start = "__name__" in finding.name
+        if goal not in goals or finding.place in known or is_start:
+            continue
+        words = {"code": excerpt(finding.name), "where": line(finding.place)}
+        seen = msg(" ({values})", values=excerpt(values[0])) if values else NOTHING
+        match how:
+            case "true":
+                cause = msg("`{code}`{where} is never true{seen}.", seen=seen, **words)
+                help_ = msg("Look at that condition, and at what sets its names before.")
+            case "false":
+                cause = msg("`{code}`{where} is always true{seen}.", seen=seen, **words)
+                help_ = msg("Look at that condition, and at what sets its names before.")
+            case "called":
+                cause = msg("Nothing calls {code}(){where}.", **words)
+                help_ = msg("Call it where it is needed, or let a timer or a subscription do so.")
+            case _:
+                cause = msg(
+                    "`{code}`{where} never comes to its end, and what stands after it is not"
+                    " reached.",
+                    **words,
+                )
+                help_ = msg("What is to happen meanwhile belongs in a callback.")
+        if goal == "branch":
+            help_ = found.help
+        return replace(found, cause=sentences(cause, found.cause), help=help_, place=finding.place)
+    return None
+
+
+def _misunderstood(found: Diagnosis, case: Case) -> Diagnosis | None:
+    """Add what Python takes otherwise than it was meant, where that may cost the points."""
+    spoken = f"{found.cause!s} {found.help!s}"
+    kinds: list[LintKind] = ["default"]
+    if "look at its conditions" in spoken:
+        kinds += ["late", "degrees", "overrules"]
+    if "grew by" in spoken:
+        kinds += ["grows"]
+    for finding in of_kind(case, *kinds):
+        name, near = excerpt(finding.name), excerpt(finding.near)
+        words = {"name": name, "where": line(finding.place)}
+        match finding.kind:
+            case "late":
+                cause = msg(
+                    "`{name}` in the lambda{where} is looked up when that is called: then the loop"
+                    " is over, and it is the last one.",
+                    **words,
+                )
+                help_ = msg("Write lambda {name}={name}: there, which keeps each.", name=name)
+            case "degrees":
+                cause = msg("`{name}`{where}: the angle is in radians, not in degrees.", **words)
+                help_ = msg("A full turn is 2 * math.pi; or use math.degrees(...).")
+            case "overrules":
+                cause = msg(
+                    "This `if`{where} begins anew, and its else sets {name} again, whatever the if "
+                    "above has set.",
+                    **words,
+                )
+                help_ = msg("Write elif for if.")
+            case "grows":
+                cause = msg(
+                    "`{code}`{where} is done with each message, in {near}(): many times a second.",
+                    code=excerpt(finding.place.text),
+                    near=near,
+                    where=line(finding.place),
+                )
+                help_ = msg("Move it to where you publish.")
+            case _:
+                cause = msg(
+                    "`{name}`{where} is worked out once, when Python reads the function, and stays"
+                    " the same.",
+                    **words,
+                )
+                help_ = msg("Ask for the time in the function, not in its arguments.")
+        cause = sentences(cause, found.cause)
+        return replace(found, cause=cause, help=help_, place=finding.place)
+    return None
+
+
+def _unspun(case: Case) -> Diagnosis | None:
+    """A node that is made, and that nothing spins."""
+    deaf = [e for e in case.observed.ends if e.kind == "subscription" and not e.used]
+    for finding in of_kind(case, "unspun") if deaf or not case.observed.ends else ():
+        words = {"name": excerpt(finding.name), "kind": excerpt(finding.near)}
+        return Diagnosis(
+            "unspun",
+            msg(
+                "Nothing spins `{name}`{where}: no timer and no callback of {kind} is ever called.",
+                where=line(finding.place),
+                **words,
+            ),
+            msg("Give it to what spins: executor.add_node({name}).", **words),
+            place=finding.place,
+        )
+    return None
+
+
 def _beside_condition(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the condition that may be its cause."""
     spoken = f"{found.cause!s} {found.help!s}"
@@ -179,12 +325,12 @@ def _wrong_condition(finding: LintFinding, spoken: str) -> tuple[Message, Messag
     match finding.near:
         case "never":
             return (
-                msg("`{code}`{where} is never true.", **words),
+                msg("`{code}`{where} is never true{seen}.", seen=NOTHING, **words),
                 msg("Look at `and` and `or`, at < and >: x and y go from 0 to 11.09."),
             )
         case "always":
             return (
-                msg("`{code}`{where} is always true.", **words),
+                msg("`{code}`{where} is always true{seen}.", seen=NOTHING, **words),
                 msg("Look at `and` and `or`, and at < and >."),
             )
         case "middle":
@@ -197,9 +343,12 @@ def _wrong_condition(finding: LintFinding, spoken: str) -> tuple[Message, Messag
                 msg("`{code}`{where} is true in a corner only.", **words),
                 msg("Join the walls by `or`: one of them is enough."),
             )
+    help_ = None
+    if finding.name.startswith("not ") and " and " in finding.name:
+        help_ = msg("`not` belongs to the comparison beside it only: write not (... and ...).")
     for wall in finding.near.split(", ") if finding.near else ():
         if f"{wall} wall" in spoken:
-            return msg("`{code}`{where} does not watch that wall.", **words), None
+            return msg("`{code}`{where} does not watch that wall.", **words), help_
     return None
 
 

@@ -45,6 +45,11 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
         "Do not wait in a callback: send the request by call_async(request), "
         "and go on without waiting for the answer."
     )
+    if "Lock" in stop.call:
+        help_ = msg(
+            "The thread that has a lock cannot take it again: call what takes it outside of your "
+            "`with`, or use threading.RLock()."
+        )
     if "sleep" in stop.call:
         help_ = msg("Do not sleep in a callback: return, and let create_timer() call you later.")
     return Diagnosis("stuck_in_callback", cause, help_, time_s=stop.time_s, place=stop.place)

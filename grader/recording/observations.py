@@ -80,6 +80,16 @@ LintKind = Literal[
     "same_colour",
     "argument",
     "imports",
+    "step",
+    "unreached",
+    "raises",
+    "unspun",
+    "late",
+    "cancels",
+    "overrules",
+    "default",
+    "degrees",
+    "grows",
 ]
 
 
@@ -239,13 +249,44 @@ class LintFinding:
             tells; `stays` - NAME is tested, and is NEAR for ever; `waits` - the callback NAME calls
             NEAR, which waits for another; `same_colour` - the colour NAME stands elsewhere, too;
             `argument` - the field NAME gets the number NEAR from this line; `imports` - NAME comes
-            from NEAR.
+            from NEAR; `step` - see `grader.submission.paths`; `unreached` - NEAR's first word was
+            not reached, since NAME was not `true`, `false`, `called` or left behind (`past`), its
+            second; the rest is what the condition's names stood for; `raises` - the exception NAME
+            came to this line; `unspun` - nothing uses the node NAME, a NEAR; `late` - a lambda in a
+            loop uses its variable NAME; `cancels` - NAME is a call that cancels something;
+            `overrules` - the else of this `if` sets NAME again; `default` - NAME is an argument
+            whose default is a time; `degrees` - NAME divides radians by degrees, or compares them;
+            `grows` - the callback NEAR of a subscription adds to NAME.
     """
 
     kind: LintKind
     name: str
     near: str
     place: SourceLine
+
+
+@dataclass(frozen=True)
+class LineText:
+    """A text about a line."""
+
+    line: Count
+    text: str
+
+
+@dataclass(frozen=True)
+class RanFile:
+    """What has run of a file.
+
+    Attributes:
+        lines: that have run at least once.
+        asked: of lines with a condition, what its names stood for: 'self.state = 0'.
+        raised: of lines that an exception came to, its type and text.
+    """
+
+    file: File
+    lines: Annotated[tuple[Count, ...], STRANGERS._replace(entries=20_000)]
+    asked: tuple[LineText, ...]
+    raised: tuple[LineText, ...]
 
 
 @dataclass(frozen=True)

@@ -15,12 +15,22 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
+from itertools import islice
 from typing import Any
 
 from grader import linux, strict_json
-from grader.recording.observations import STRANGERS, Caught, Observations, Raised, SourceLine
+from grader.recording.observations import (
+    STRANGERS,
+    Caught,
+    LintFinding,
+    Observations,
+    Raised,
+    RanFile,
+    SourceLine,
+)
 from grader.run.observe import account, stuck
 from grader.run.observe.files import Frame, SubmissionFiles
+from grader.submission import paths
 from grader.submission.start import Submission
 
 #: How long a process may take to dump where it is [s]; it has nothing else to do.
@@ -38,6 +48,8 @@ SIGNALS = {
     "Floating point exception": "SIGFPE",
     "Illegal instruction": "SIGILL",
 }
+#: So many calls that were not reached are kept.
+MOST_UNREACHED = 20
 _FATAL = re.compile(r"Fatal Python error: ([\w\- ]{1,40})")
 _THREAD = re.compile(
     r"(?:Current thread|Thread) 0x[0-9a-f]{1,16}.{0,40}\(most recent call first\):"
@@ -46,7 +58,7 @@ _FRAME = re.compile(r'  File "([^"]{1,500})", line (\d{1,9}) in (.{1,500})')
 #: The account of a process that has left none, but a dump.
 _NOTHING: dict[str, Any] = {
     **{"is_blind": False, "ends": [], "waits": [], "slow": [], "timers": [], "caught": []},
-    **{"spun_s": None, "stop": None, "raised": None, "returned_s": None},
+    **{"ran": [], "spun_s": None, "stop": None, "raised": None, "returned_s": None},
 }
 
 
@@ -60,11 +72,12 @@ class EvidencePage:
     def __init__(self) -> None:
         self.page = account.make()
         self._account = self._dump = b""
+        self._is_last = False
 
     def close(self) -> None:
         """Read the account and the dump as they are now, and close the page."""
         if self.page >= 0:
-            self._account, _ = account.read(self.page)
+            self._account, self._is_last = account.read(self.page)
             self._dump = account.dumped(self.page)
             os.close(self.page)
             self.page = -1
@@ -96,7 +109,8 @@ class EvidencePage:
         """
         self.close()
         try:
-            return _observations(self._account, self._dump, submission, ended_s, computes)
+            read = self._account, self._is_last, self._dump
+            return _observations(*read, submission, ended_s, computes)
         except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
             return Observations()
 
@@ -120,7 +134,12 @@ def _awaited(pid: int, has_come: Callable[[], bool], patience_s: float) -> bool:
 
 
 def _observations(
-    data: bytes, dumped: bytes, submission: Submission, ended_s: float, computes: bool
+    data: bytes,
+    is_last: bool,
+    dumped: bytes,
+    submission: Submission,
+    ended_s: float,
+    computes: bool,
 ) -> Observations:
     """Decode an account; raise ValueError and its like where our own code did not write it."""
     files = SubmissionFiles(str(submission.root))
@@ -132,8 +151,19 @@ def _observations(
         raise ValueError("our own code does not know this rclpy")
     if all(summary[key] is None for key in ("stop", "raised", "returned_s")):
         summary |= _ending(signal, threads, files, ended_s, computes=computes)
-    found = [strict_json.to_json(each) for each in submission.lint_findings]
-    observations = Observations.from_json(summary | {"is_known": True, "lint_findings": found})
+    ran = [strict_json.from_json(RanFile, each, STRANGERS) for each in summary.pop("ran")]
+    found = [each for each in submission.lint_findings if each.kind != "step"]
+    for file in ran:
+        for at in file.raised:
+            text = files.row(str(submission.root / file.file), at.line)["text"]
+            place = SourceLine(file.file, at.line, "", text)
+            found.append(LintFinding("raises", at.text, "", place))
+    if is_last:  # else more may have run
+        steps = (each for each in submission.lint_findings if each.kind == "step")
+        found += islice(paths.unreached(steps, ran), MOST_UNREACHED)
+    observations = Observations.from_json(
+        summary | {"is_known": True, "lint_findings": list(map(strict_json.to_json, found))}
+    )
     shown: Observations = _as_submitted(observations, submission)
     return shown
 

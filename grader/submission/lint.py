@@ -10,14 +10,16 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from pathlib import Path
 
 from grader.recording.observations import LintFinding, LintKind, SourceLine
-from grader.submission import ros_mistakes, scopes
+from grader.submission import paths, ros_mistakes, scopes
 from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
-from grader.submission.scopes import Function, last
+from grader.submission.scopes import Function, Source, last
 from grader.text import misspelt
 
 #: So many findings are kept, and so much of a name or a line [characters].
@@ -99,7 +101,10 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
             lines[file.relative_to(root).as_posix()] = text.splitlines()
         sources = {file: "\n".join(text) for file, text in lines.items()}
         is_short = sum(map(len, sources.values())) <= MOST_SOURCE
-        found = find(sources, lies)[:MOST] if is_short else []
+        trees = _parse(sources) if is_short else {}
+        found = _find(trees, sources, lies)[:MOST]
+        steps = ((file, step) for file in trees for step in paths.find(Source(trees[file])))
+        found += [_finding(*step[:3], file, step[3]) for file, step in islice(steps, paths.MOST)]
     except (OSError, RecursionError, MemoryError, ValueError):
         return ()
     return tuple(
@@ -128,13 +133,23 @@ def find(
         RecursionError, MemoryError: too deep for Python.
         ValueError: it holds an integer that is too long for Python to write.
     """
-    trees, names = {}, Names()
+    return _find(_parse(sources), sources, lies)
+
+
+def _parse(sources: Mapping[str, str]) -> dict[str, ast.Module]:
+    trees = {}
     for file, text in sources.items():
-        try:
+        with suppress(SyntaxError):
             trees[file] = parse(text.encode("utf-8", "replace"), file)
-        except SyntaxError:
-            continue
-        names.add(trees[file])
+    return trees
+
+
+def _find(
+    trees: Mapping[str, ast.Module], sources: Mapping[str, str], lies: Callable[[str], bool]
+) -> list[LintFinding]:
+    names = Names()
+    for tree in trees.values():
+        names.add(tree)
     by_name = re.compile(rf"\b({'|'.join(BY_NAME)})\b")
     words = any(by_name.search(text) for text in sources.values())
     found: list[LintFinding] = []
@@ -302,7 +317,8 @@ def _passed(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
                 inner = word.value
                 if word.arg not in ("target", "function") or not isinstance(inner, ast.Call):
                     continue
-                if _returns_nothing(names.functions.get(last(inner.func))):
+                called = last(inner.func)
+                if called in SPINS or _returns_nothing(names.functions.get(called)):
                     name = ast.unparse(inner.func)
                     yield _finding("called", name, f"{to}({word.arg}=", file, inner.lineno)
         if to in SPINS:

@@ -10,77 +10,23 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TypeGuard
 
-from grader.recording.observations import LintKind
-from grader.submission import conditions
-from grader.submission.scopes import Function, around, last, unread
+from grader.submission import conditions, python_mistakes
+from grader.submission.python_mistakes import Found
+from grader.submission.scopes import Function, Source, last, unread
 
-#: Kind, name, near, line; see `LintFinding`.
-Found = tuple[LintKind, str, str, int]
 #: Of larger sources, in the nodes of their syntax trees times their files, nothing is looked for.
 MOST_NODES = 60_000
 #: So many fields of messages are followed to their numbers, and so many names to what is meant.
 MOST_FOLLOWED = 30
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
-#: Calls that take a callback -> its position, and that of a keyword of this name.
-CALLBACKS = {
-    "create_subscription": (2, "callback"),
-    "create_timer": (1, "callback"),
-    "add_done_callback": (0, "fn"),
-}
 CREATES = ("create_publisher", "create_client", "create_timer", "create_subscription")
 #: Of a topic or a service.
 _NAME = re.compile(r"[\w/~]{2,80}")
 #: Fields of messages that beginners set wrongly.
 FIELDS = ("linear", "angular", "r", "g", "b", "width", "off")
-
-
-@dataclass
-class Source:
-    """One file, with what is asked of it again and again."""
-
-    tree: ast.Module
-    functions: dict[str, Function] = field(default_factory=dict)
-    parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for node in ast.walk(self.tree):
-            for child in ast.iter_child_nodes(node):
-                self.parents[child] = node
-            if isinstance(node, Function):
-                self.functions[node.name] = node
-
-    def calls(self, *names: str) -> Iterator[ast.Call]:
-        """Yield the calls of functions of these names, of whatever object."""
-        for node in ast.walk(self.tree):
-            if isinstance(node, ast.Call) and last(node.func) in names:
-                yield node
-
-    def around(self, node: ast.AST, *kinds: type[ast.AST]) -> ast.AST | None:
-        """Return the nearest of these kinds that a node is in."""
-        return around(node, self.parents, *kinds)
-
-    def imported(self) -> Iterator[tuple[ast.ImportFrom, ast.alias]]:
-        """Yield the imports of messages and services."""
-        for node in ast.walk(self.tree):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv")):
-                yield from ((node, alias) for alias in node.names)
-
-    def given(self) -> Iterator[tuple[str, ast.expr]]:
-        """Yield what stands where ROS is to get a callback, and by which call."""
-        for name, (position, keyword) in CALLBACKS.items():
-            for call in self.calls(name):
-                yield from ((name, each) for each in call.args[position : position + 1])
-                yield from ((name, word.value) for word in call.keywords if word.arg == keyword)
-
-    def callbacks(self) -> Iterator[tuple[str, Function]]:
-        """Yield the functions that ROS is to call, and by which call it gets them."""
-        for name, each in self.given():
-            if (function := self.functions.get(last(each))) is not None:
-                yield name, function
 
 
 def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
@@ -94,9 +40,10 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
         _called_callbacks,
         _around_spin,
         _brackets,
-        _recursion,
-        _idle,
         _bare_nodes,
+        _unspun,
+        _cancels,
+        _grows,
     ):
         for file, source in sources.items():
             yield from ((file, found) for found in rule(source))
@@ -105,6 +52,7 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
         yield from ((file, found) for found in _attributes(source, whole))
     values = conditions.Values([*trees.values()])
     for file, source in sources.items():
+        yield from ((file, found) for found in python_mistakes.find(source, values))
         places = conditions.find(source.tree, source.parents, values)
         yield from ((file, found) for found in places)
         yield from ((file, found) for found in _stays(source, values))
@@ -195,32 +143,6 @@ def _brackets(source: Source) -> Iterator[Found]:
                 yield "class_kept", f"{name}.Request", "", node.lineno
 
 
-def _recursion(source: Source) -> Iterator[Found]:
-    for name, function in source.functions.items():
-        for node in ast.walk(function):
-            if isinstance(node, ast.Call) and last(node.func) == name:
-                owner = node.func.value if isinstance(node.func, ast.Attribute) else None
-                if owner is None or (isinstance(owner, ast.Name) and owner.id == "self"):
-                    yield "calls_itself", name, "", node.lineno
-
-
-def _idle(source: Source) -> Iterator[Found]:
-    """Statements and conditions that have no effect."""
-    for node in ast.walk(source.tree):
-        match node:
-            case ast.Expr(value=ast.Compare() as test):
-                yield "compared", ast.unparse(test), "", node.lineno
-            case ast.Expr(value=ast.IfExp() | ast.BinOp() | ast.BoolOp() | ast.UnaryOp() as value):
-                yield "no_effect", ast.unparse(value), "", node.lineno
-            case ast.Expr(value=ast.Constant(value=int() | float() as value)):
-                yield "no_effect", str(value), "", node.lineno
-            case ast.If(test=ast.Constant(value=True)):
-                yield "always", "if True", "", node.lineno
-            case ast.AugAssign(op=ast.Add(), value=ast.Constant(value=int() | float() as value)):
-                if not value:
-                    yield "adds_nothing", ast.unparse(node), "", node.lineno
-
-
 def _bare_nodes(source: Source) -> Iterator[Found]:
     """Classes of nodes whose `__init__` does not call that of Node."""
     for of in ast.walk(source.tree):
@@ -234,6 +156,33 @@ def _bare_nodes(source: Source) -> Iterator[Found]:
 
 def _is_node(of: ast.AST) -> TypeGuard[ast.ClassDef]:
     return isinstance(of, ast.ClassDef) and any("Node" in last(base) for base in of.bases)
+
+
+def _unspun(source: Source) -> Iterator[Found]:
+    """Nodes that are made, and that nothing is given."""
+    nodes = {of.name for of in ast.walk(source.tree) if _is_node(of)}
+    names = Counter(n.id for n in ast.walk(source.tree) if isinstance(n, ast.Name))
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id=of))):
+                ends = source.calls("destroy_node", "shutdown")
+                used = sum(name == ast.unparse(getattr(c.func, "value", c.func)) for c in ends)
+                if of in nodes and names[name] - used == 1:
+                    yield "unspun", name, of, node.lineno
+
+
+def _grows(source: Source) -> Iterator[Found]:
+    """Attributes that a subscription's callback lets grow: with each message."""
+    for by, function in source.callbacks():
+        for node in ast.walk(function) if by == "create_subscription" else ():
+            match node:
+                case ast.AugAssign(target=ast.Attribute() as target, op=ast.Add()):
+                    yield "grows", ast.unparse(target), function.name, node.lineno
+
+
+def _cancels(source: Source) -> Iterator[Found]:
+    for call in source.calls("cancel"):
+        yield "cancels", ast.unparse(call), "", call.lineno
 
 
 def _number(node: ast.expr) -> float | None:

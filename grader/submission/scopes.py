@@ -1,9 +1,10 @@
-"""Names and scopes of a syntax tree: variables that are a function's own by mistake."""
+"""A file's syntax tree, its names and scopes; variables that are a function's own by mistake."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 from grader.recording.observations import LintKind
@@ -27,6 +28,59 @@ def around(node: ast.AST, parents: Parents, *kinds: type[ast.AST]) -> ast.AST | 
     while found is not None and not isinstance(found, kinds):
         found = parents.get(found)
     return found
+
+
+#: Calls that take a callback -> its position, and that of a keyword of this name.
+CALLBACKS = {
+    "create_subscription": (2, "callback"),
+    "create_timer": (1, "callback"),
+    "add_done_callback": (0, "fn"),
+}
+
+
+@dataclass
+class Source:
+    """One file, with what is asked of it again and again."""
+
+    tree: ast.Module
+    functions: dict[str, Function] = field(default_factory=dict)
+    parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for node in ast.walk(self.tree):
+            for child in ast.iter_child_nodes(node):
+                self.parents[child] = node
+            if isinstance(node, Function):
+                self.functions[node.name] = node
+
+    def calls(self, *names: str) -> Iterator[ast.Call]:
+        """Yield the calls of functions of these names, of whatever object."""
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Call) and last(node.func) in names:
+                yield node
+
+    def around(self, node: ast.AST, *kinds: type[ast.AST]) -> ast.AST | None:
+        """Return the nearest of these kinds that a node is in."""
+        return around(node, self.parents, *kinds)
+
+    def imported(self) -> Iterator[tuple[ast.ImportFrom, ast.alias]]:
+        """Yield the imports of messages and services."""
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv")):
+                yield from ((node, alias) for alias in node.names)
+
+    def given(self) -> Iterator[tuple[str, ast.expr]]:
+        """Yield what stands where ROS is to get a callback, and by which call."""
+        for name, (position, keyword) in CALLBACKS.items():
+            for call in self.calls(name):
+                yield from ((name, each) for each in call.args[position : position + 1])
+                yield from ((name, word.value) for word in call.keywords if word.arg == keyword)
+
+    def callbacks(self) -> Iterator[tuple[str, Function]]:
+        """Yield the functions that ROS is to call, and by which call it gets them."""
+        for name, each in self.given():
+            if (function := self.functions.get(last(each))) is not None:
+                yield name, function
 
 
 def not_declared(

@@ -5,6 +5,7 @@
 | `account` | writes the summary into a page that the grader has as well |
 | `witness` | that summary: what the program uses, waits for and lets fail, and how it ended |
 | `hooks` | has rclpy's objects call the witness |
+| `lines` | which lines have run |
 | `files` | the submission's files, and their lines in a stack or a traceback |
 | `stuck` | where a program is stuck: a deadlock, a loop, an `__init__` |
 

@@ -31,7 +31,7 @@ MOST_BYTES = HALF_BYTES - _HEAD.size
 HALVES, DUMP = (PROGRESS_BYTES, PROGRESS_BYTES + HALF_BYTES), PROGRESS_BYTES + 2 * HALF_BYTES
 _SEALS = fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_SEAL
 #: Where there is no room these are left out, in this order; the ends come last.
-CUT = ("slow", "timers", "caught", "waits")
+CUT = ("ran", "slow", "timers", "caught", "waits")
 #: At this signal a process dumps where its threads are: one that no program uses, and that needs
 #: no handler in Python. It works also where a program computes without end, or waits in C.
 DUMP_SIGNAL = signal.SIGRTMIN + 9

@@ -78,6 +78,7 @@ def start(
             }
         ),
     )
+    witness.lines.begin()
     code = loading.call(root, target, function, witness.ending.raised)
     return code
 

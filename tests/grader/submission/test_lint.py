@@ -66,6 +66,31 @@ FOUND = {
         "class C(Node):\n    pass\nrclpy.spin(C)\n",
         ("class", "C", "rclpy.spin", 3),
     ),
+    "a lambda in a loop that uses the loop's variable": (
+        "for colour in colours:\n    calls[colour] = lambda: send(colour)\n",
+        ("late", "colour", "", 2),
+    ),
+    "an else that overrules the if before": (
+        "if a:\n    q = 1\nif b:\n    q = 2\nelse:\n    q = 3\n",
+        ("overrules", "q", "", 3),
+    ),
+    "a time as a default": (
+        "def speed(now=time.time()):\n    return now\n",
+        ("default", "now=time.time()", "", 1),
+    ),
+    "radians that are taken for degrees": (
+        "turn = math.atan2(y, x)\nsector = turn // 90\n",
+        ("degrees", "turn // 90", "", 2),
+    ),
+    "a node that nothing spins": (
+        "class Paint(Node):\n    pass\nrclpy.init()\npainter = Paint()\n"
+        "rclpy.spin(Drive())\npainter.destroy_node()\n",
+        ("unspun", "painter", "Paint", 4),
+    ),
+    "a thread whose target spins at once": (
+        "Thread(target=rclpy.spin(node)).start()\n",
+        ("called", "rclpy.spin", "Thread(target=", 1),
+    ),
     "a request that nobody sends": (
         "request = SetPen.Request(r=1)\n",
         ("unsent", "SetPen", "", 1),
@@ -122,6 +147,8 @@ PLACES = {
     "stays",
     "waits",
     "same_colour",
+    "cancels",
+    "grows",
 }
 
 
@@ -154,6 +181,11 @@ PLACED = {
     ),
     "node.create_timer(1.0, tick)\ndef tick():\n    paint()\ndef paint():\n"
     "    pen.call(request)\n": ("waits", "paint", 5),
+    f"{HEAD}        self.create_subscription(Pose, 'pose', self.on_pose, 1)\n"
+    "    def on_pose(self, pose):\n        self.speed += 0.1\n        self.timer.cancel()\n": (
+        *("grows", "self.speed", 6),
+    ),
+    "def on_pose(pose):\n    timer.cancel()\n": ("cancels", "timer.cancel()", 2),
     "from rclpy.executors import SingleThreadedExecutor\n"
     f"{HEAD}{READ}    def go(self):\n        self.stoped = True\n": ("unread", "stoped", 7 + 1),
 }

@@ -1,0 +1,119 @@
+"""Finds in a source what beginners in Python write and do not mean.
+
+Like all of `lint`: nothing found here is an error by itself.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from itertools import pairwise
+
+from grader.recording.observations import LintKind
+from grader.submission.conditions import Values
+from grader.submission.scopes import Source, last
+
+#: Kind, name, near, line; see `LintFinding`.
+Found = tuple[LintKind, str, str, int]
+#: Numbers of degrees.
+_DEGREES = (45, 90, 180, 270, 360)
+_LEAVES = (ast.Return, ast.Raise, ast.Break, ast.Continue)
+
+
+def find(source: Source, values: Values) -> Iterator[Found]:
+    """Yield findings in a file."""
+    for rule in (_recursion, _idle, _late, _overrules, _defaults):
+        yield from rule(source)
+    yield from _degrees(source, values)
+
+
+def _recursion(source: Source) -> Iterator[Found]:
+    for name, function in source.functions.items():
+        for node in ast.walk(function):
+            if isinstance(node, ast.Call) and last(node.func) == name:
+                owner = node.func.value if isinstance(node.func, ast.Attribute) else None
+                if owner is None or (isinstance(owner, ast.Name) and owner.id == "self"):
+                    yield "calls_itself", name, "", node.lineno
+
+
+def _idle(source: Source) -> Iterator[Found]:
+    """Statements and conditions that have no effect."""
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Expr(value=ast.Compare() as test):
+                yield "compared", ast.unparse(test), "", node.lineno
+            case ast.Expr(value=ast.IfExp() | ast.BinOp() | ast.BoolOp() | ast.UnaryOp() as value):
+                yield "no_effect", ast.unparse(value), "", node.lineno
+            case ast.Expr(value=ast.Constant(value=int() | float() as value)):
+                yield "no_effect", str(value), "", node.lineno
+            case ast.If(test=ast.Constant(value=True)):
+                yield "always", "if True", "", node.lineno
+            case ast.AugAssign(op=ast.Add(), value=ast.Constant(value=int() | float() as value)):
+                if not value:
+                    yield "adds_nothing", ast.unparse(node), "", node.lineno
+
+
+def _late(source: Source) -> Iterator[Found]:
+    """Lambdas in a loop that use its variable: it has another value when they are called."""
+    for loop in ast.walk(source.tree):
+        targets = ast.walk(loop.target) if isinstance(loop, ast.For) else ()
+        names = {each.id for each in targets if isinstance(each, ast.Name)}
+        for inner in ast.walk(loop) if names else ():
+            if isinstance(inner, ast.Lambda):
+                own = {each.arg for each in ast.walk(inner.args) if isinstance(each, ast.arg)}
+                for each in ast.walk(inner.body):
+                    if isinstance(each, ast.Name) and each.id in names - own:
+                        yield "late", each.id, "", inner.lineno
+
+
+def _overrules(source: Source) -> Iterator[Found]:
+    """An `if` whose `else` sets again what the `if` before it has set."""
+    for node in ast.walk(source.tree):
+        for block in (getattr(node, "body", None), getattr(node, "orelse", None)):
+            for first, second in pairwise(block if isinstance(block, list) else []):
+                match first, second:
+                    case ast.If(orelse=[]), ast.If(orelse=[_, *_]):
+                        leaves = isinstance(first.body[-1], _LEAVES)
+                        both = _set(first.body) & _set(_else(second))
+                        if both and not leaves:
+                            yield "overrules", min(both), "", second.lineno
+
+
+def _else(node: ast.If) -> list[ast.stmt]:
+    """Return the block of an `if` that comes when no condition of its is true."""
+    while len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If):
+        node = node.orelse[0]
+    return node.orelse
+
+
+def _set(block: list[ast.stmt]) -> set[str]:
+    """Return what a block assigns to in any case."""
+    targets = (target for each in block if isinstance(each, ast.Assign) for target in each.targets)
+    return {ast.unparse(target) for target in targets}
+
+
+def _defaults(source: Source) -> Iterator[Found]:
+    """Arguments whose default is the time when Python read the function."""
+    for function in source.functions.values():
+        arguments = function.args.args[len(function.args.args) - len(function.args.defaults) :]
+        for argument, value in zip(arguments, function.args.defaults, strict=True):
+            if isinstance(value, ast.Call) and last(value.func) in ("time", "monotonic", "now"):
+                yield "default", f"{argument.arg}={ast.unparse(value)}", "", value.lineno
+
+
+def _degrees(source: Source, values: Values) -> Iterator[Found]:
+    """Angles in radians that are divided by or compared with degrees."""
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.BinOp(left=left, op=ast.Div() | ast.FloorDiv() | ast.Mod(), right=right):
+                angle, others = left, [right]
+            case ast.Compare(left=left, comparators=others):
+                angle = left
+            case _:
+                continue
+        if any(isinstance(each, ast.Constant) and each.value in _DEGREES for each in others):
+            kept = values.assigned(last(angle)) if last(angle) else []
+            made = [angle, *(each for each in kept if each is not None)]
+            is_turn = any(isinstance(e, ast.Call) and last(e.func) == "atan2" for e in made)
+            if is_turn or last(angle) == "theta":
+                yield "degrees", ast.unparse(node), "", node.lineno
