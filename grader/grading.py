@@ -18,7 +18,7 @@ from itertools import product
 from pathlib import Path
 from typing import Protocol
 
-from grader import content, versions
+from grader import content, system
 from grader.errors import ExerciseError, GraderFailure, UsageError
 from grader.exercise import DEFAULT, places
 from grader.exercise.exercise import Exercise
@@ -254,10 +254,10 @@ def provenance(
     copy = submission.copy
     return Provenance(
         date=now(),
-        grader=versions.grader(),
-        python=versions.python(),
-        rclpy=versions.rclpy(),
-        ros_distro=versions.ros_distro(),
+        grader=system.grader_version(),
+        python=system.python_version(),
+        rclpy=system.rclpy_version(),
+        ros_distro=system.ros_distro(),
         submission=submission.name,
         submission_sha256="" if copy is None else content.of_folder(copy.folder),
         exercise=exercise.name,

@@ -39,7 +39,7 @@ def below(package: str, *names: str) -> set[str]:
 GROUND = below(
     "grader",
     *("message", "translations", "errors", "text", "files", "scratch", "removal", "system"),
-    *("linux", "requirements", "strict_json", "limited", "versions", "content", "extensions"),
+    *("linux", "requirements", "strict_json", "limited", "content", "extensions"),
 )
 #: What the rooms above a run may import of those below it.
 RECORDED = below("grader", "recording", "exercise", "result")
@@ -184,7 +184,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # ... and so is the page that plays
     "grader.cli.view": GROUND
     | below("grader", "recording", "result", "reports")
-    | below("grader.cli", "place", "options")
+    | below("grader.cli", "check", "options")
     | {"turtlesim_py.browser"},
     "grader.__main__": {"grader.cli"},
 }

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
-from grader import content, files, versions
+from grader import content, files, system
 from grader.errors import NotOffered, UsageError
 from grader.exercise.exercise import Exercise
 from grader.message import Message, Text, msg
@@ -77,8 +77,8 @@ class ClassFile:
     ) -> Self:
         """Return the class file of a call on this machine."""
         seed_file = content.of_bytes(f"class {secret}".encode())[:12] if secret else ""
-        ros = f"rclpy {versions.rclpy()} {versions.ros_distro()}".strip()
-        made_by = (versions.grader(), ros, versions.python())
+        ros = f"rclpy {system.rclpy_version()} {system.ros_distro()}".strip()
+        made_by = (system.grader_version(), ros, system.python_version())
         return cls(
             *(exercise.name, exercise.sha256, time, seed, *made_by),
             isolation=isolation,

@@ -21,7 +21,7 @@ from contextlib import contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 
-from grader import content, files, versions
+from grader import content, files, system
 from grader.batch.class_file import CLASS
 from grader.batch.entry import ENTRY, SUBMISSIONS
 from grader.batch.page.thumb import THUMB
@@ -197,10 +197,10 @@ def _link(source: str, target: str) -> str:
 def installed_versions() -> dict[str, str]:
     """Return the versions that a run depends on; the same on all machines of one class."""
     return {
-        "grader": versions.grader(),
-        "python": versions.python(),
-        "rclpy": versions.rclpy(),
-        "ros_distro": versions.ros_distro(),
+        "grader": system.grader_version(),
+        "python": system.python_version(),
+        "rclpy": system.rclpy_version(),
+        "ros_distro": system.ros_distro(),
     }
 
 

@@ -165,10 +165,11 @@ def _parser(words: Sequence[str]) -> options.Parser:
 
 def _versions() -> str:
     """Return the version of the grader, and those that belong into the report of a fault."""
-    from grader import versions
+    from grader import system
 
-    ros = f", ROS 2 {distro}" if (distro := versions.ros_distro()) else ""
-    return f"grader {versions.grader()} (Python {versions.python()}, rclpy {versions.rclpy()}{ros})"
+    ros = f", ROS 2 {distro}" if (distro := system.ros_distro()) else ""
+    on = f"Python {system.python_version()}, rclpy {system.rclpy_version()}{ros}"
+    return f"grader {system.grader_version()} ({on})"
 
 
 def _misused(error: options.Misuse, args: Namespace) -> int:

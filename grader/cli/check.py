@@ -5,12 +5,11 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader import files, judging
 from grader.cli import options
-from grader.cli.place import RecordingPlace, find
 from grader.cli.run import points
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
@@ -22,7 +21,7 @@ from grader.recording.folder import WINDOW_PICTURE
 from grader.recording.reading import load_all
 from grader.recording.recording import Provenance, Recordings
 from grader.reports import Report
-from grader.result.result import FAMILY, PAGE, RESULT, Result
+from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
 from grader.text import for_terminal
 from grader.translations import tr
 
@@ -58,7 +57,7 @@ def main(args: argparse.Namespace) -> int:
     asked, args.exercise = args.exercise, args.exercise or DEFAULT
     if args.json:
         files.check_writable(args.json, FAMILY, options.inputs(args))
-    place = find(args.recording)
+    place = find_recording(args.recording)
     recordings = load_all(place.recording)
     exercise = _exercise(asked, place, recordings)
     origin = recordings.nominal.provenance
@@ -170,3 +169,47 @@ def _rewrite(place: RecordingPlace, result: Result, recordings: Recordings) -> P
 def _report_left(why: Message) -> None:
     left = tr("Left as they were: {files}: {why}", files=f"{RESULT}, {PAGE}", why=why)
     print(for_terminal(left), file=sys.stderr)
+
+
+# The recording that a path means ---------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class RecordingPlace:
+    """The place of a recording.
+
+    Attributes:
+        recording: its folder.
+        older: the result beside it; None where there is none.
+    """
+
+    recording: Path
+    older: Result | None
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the older result."""
+        return self.recording.parent
+
+    @property
+    def name(self) -> str:
+        """The name of the folder that contains the result, or else the recording."""
+        at = Path(os.path.abspath(self.recording))  # noqa: PTH100  a link keeps its own name
+        return at.parent.name if at.name == ARTIFACTS["recording"] else at.name
+
+
+def find_recording(given: Path) -> RecordingPlace:
+    """Find a recording by its folder, that of its result, or a file in one of them."""
+    folder = given if given.is_dir() else given.parent
+    if (folder / ARTIFACTS["recording"]).is_dir():
+        folder /= ARTIFACTS["recording"]
+    elif not given.exists():
+        return RecordingPlace(given, None)
+    beside = folder.parent / RESULT
+    try:
+        older = Result.read(beside) if beside.is_file() else None
+    except UsageError:  # another program's, or damaged
+        older = None
+    if older is not None and older.artifacts.get("recording") != folder.name:
+        older = None
+    return RecordingPlace(folder, older)

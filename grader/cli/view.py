@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grader import files
 from grader.cli import options
-from grader.cli.place import RecordingPlace, find
+from grader.cli.check import RecordingPlace, find_recording
 from grader.errors import RecordingError, UsageError
 from grader.message import Message, msg
 from grader.recording.playback import Playback
@@ -59,7 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Write the page, and show it; see `grader.cli` for the exit codes."""
     seen = options.view_of(args)
-    place = find(args.recording)
+    place = find_recording(args.recording)
     if args.out is not None:
         files.check_writable(args.out)
         _check_is_no_part(args.out, args)
@@ -85,7 +85,7 @@ def main(args: argparse.Namespace) -> int:
 def _check_is_no_part(out: Path, args: argparse.Namespace) -> None:
     """Refuse to overwrite a file that the page is made of."""
     for given in options.inputs(args):
-        place = find(given)
+        place = find_recording(given)
         beside = (place.folder / name for name in (RESULT, PAGE, *ARTIFACTS.values()))
         files.check_is_no_input(out, [given, *beside, *place.recording.rglob("*")])
 
@@ -106,7 +106,7 @@ def _not_played(place: RecordingPlace, recordings: Recordings) -> Message:
 
 
 def _other(given: Path, recordings: Recordings, seen: View) -> Playback:
-    place = find(given)
+    place = find_recording(given)
     other = load_all(place.recording)
     if other.nominal.scene != recordings.nominal.scene:
         raise UsageError(

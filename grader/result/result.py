@@ -12,7 +12,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, Self
 
-from grader import files, versions
+from grader import files, system
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.exercise import Exercise
 from grader.exercise.policies import Late, LatePolicy
@@ -120,7 +120,7 @@ class ResultProvenance:
     @classmethod
     def of(cls, recordings: Recordings, exercise: Exercise) -> Self:
         """Make the provenance of recordings that are being judged."""
-        judged = Judging(now(), versions.grader(), exercise.sha256)
+        judged = Judging(now(), system.grader_version(), exercise.sha256)
         return cls(judged, recordings.nominal.provenance)
 
 

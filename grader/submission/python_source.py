@@ -1,20 +1,29 @@
-"""Reads from the syntax tree of a Python file what it defines; nothing is imported or run."""
+"""Reads what a Python file defines, and why Python refuses it; nothing is imported or run.
+
+`python3 FILE` refuses what is not in the encoding that the file declares, UTF-8 where it declares
+none. An import of the same file is laxer in older Pythons: it passes over such bytes in comments.
+"""
 
 from __future__ import annotations
 
 import ast
+import codecs
+import io
 import re
+import tokenize
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from grader.submission import encoding
-from grader.submission.folder import read_bounded
+from grader.message import NOTHING, Message, joined, msg
+from grader.submission.folder import read_bounded, shown
 
 _NAMES_UNSEEN: Final = {"exec", "globals", "locals", "setattr", "vars"}  # may define any name
 _UNPARSED_MAIN: Final = re.compile(rb"^(async\s+)?def\s+main\b", re.MULTILINE)
+_SAVE: Final = msg("save it as UTF-8")
+_UTF_16: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass(frozen=True)
@@ -67,7 +76,7 @@ def read_source(path: Path) -> PythonSource:
             has_guard=any(map(_begins_guard, data.splitlines())),
             has_main=bool(_UNPARSED_MAIN.search(data)),
         )
-    return replace(_seen(tree), is_refused=bool(encoding.fault(data)))
+    return replace(_seen(tree), is_refused=bool(byte_fault(data)))
 
 
 def _begins_guard(line: bytes) -> bool:
@@ -126,3 +135,63 @@ def _names_in(node: ast.AST) -> set[str]:
 def _is_guard(test: ast.expr) -> bool:
     texts = {inner.value for inner in ast.walk(test) if isinstance(inner, ast.Constant)}
     return "__name__" in _names_in(test) and "__main__" in texts
+
+
+# Bytes -------------------------------------------------------------------------------------------
+
+
+def byte_fault(data: bytes) -> Message:
+    """Say why Python refuses a file with these bytes, as what follows its name; '' if it does not.
+
+    "is saved as UTF-16, and Python reads UTF-8: save it as UTF-8"
+    """
+    if data.startswith(_UTF_16):
+        return msg("is saved as UTF-16, and Python reads UTF-8: {save}", save=_SAVE)
+    if b"\0" in data:
+        return msg(
+            "has a null byte in line {line}, as no text has: {save}",
+            line=_line(data, data.index(0)),
+            save=_SAVE,
+        )
+    try:
+        encoding = _declared(data)
+        data.decode(encoding)
+    except UnicodeDecodeError as error:
+        return msg(
+            "has a byte (0x{byte:02x}) in line {line} that is no {encoding}, so that"
+            " `python3` refuses it: {save}",
+            byte=error.object[error.start],
+            line=_line(data, error.start),
+            encoding=shown(encoding.removesuffix("-sig").upper()),
+            save=_SAVE,
+        )
+    except (SyntaxError, LookupError, ValueError):
+        pass  # of the declaration: Python's own words are clear
+    return NOTHING
+
+
+def byte_faults(files: Iterable[Path], root: Path) -> list[Message]:
+    """A sentence on each of some files below a folder that Python refuses for its bytes."""
+    found: list[Message] = []
+    for file in files:
+        try:
+            why = byte_fault(read_bounded(file) or b"")
+        except OSError:
+            continue
+        found += [joined([shown(file.relative_to(root)), why], " ")] if why else []
+    return found
+
+
+def _declared(data: bytes) -> str:
+    """The encoding by the first two lines; their own bytes are not judged here.
+
+    Raises:
+        SyntaxError: there is no such encoding, or it contradicts the mark at the beginning.
+    """
+    mark = codecs.BOM_UTF8 if data.startswith(codecs.BOM_UTF8) else b""
+    plain = data[len(mark) :].decode("ascii", "replace").encode("ascii", "replace")
+    return tokenize.detect_encoding(io.BytesIO(mark + plain).readline)[0]
+
+
+def _line(data: bytes, at: int) -> int:
+    return data.count(b"\n", 0, at) + 1

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from grader import limited, strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
-from grader.submission import encoding, folder, unpacking, whole
+from grader.submission import folder, python_source, unpacking, whole
 from grader.submission.finding import find, find_inspected, may_be_node
 from grader.submission.folder import USUAL_NAME, is_source, shown
 from grader.submission.imports import read_imports
@@ -290,7 +290,7 @@ def _with_its_source(found: Submission, path: Path) -> Submission:
     only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
     assert not isinstance(found.start, Whole)
     imports = read_imports(found.root, found.start, only)
-    refused = encoding.faults(imports.files, found.root)
+    refused = python_source.byte_faults(imports.files, found.root)
     notes, shows = (*refused, *found.notes), lint(found.root, imports.files)
     return replace(found, imports=imports, notes=notes, lint_findings=shows)
 

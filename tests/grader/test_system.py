@@ -1,6 +1,9 @@
-"""Where the system refuses something, it is noticed, and a run goes on without it."""
+"""Where the system refuses something, a run goes on without it; and its versions."""
 
+import sys
+from importlib import metadata
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -22,3 +25,28 @@ def test_namespaces_that_libc_does_not_know_are_refused(monkeypatch, libc) -> No
         linux.unshare(linux.CLONE_NEWNET)
     with pytest.raises(OSError, match=r"unshare \(net\)"):
         network._as_root()
+
+
+def test_ours_is_that_of_the_installed_package():
+    assert system.grader_version() == metadata.version("turtlesim_py")
+
+
+def test_rclpy_s_is_in_its_package_xml_where_pip_knows_nothing_of_it(tmp_path, monkeypatch):
+    def unknown(name):
+        raise metadata.PackageNotFoundError(name)
+
+    module = tmp_path / "lib" / "python3.12" / "site-packages" / "rclpy" / "__init__.py"
+    manifest = tmp_path / "share" / "rclpy" / "package.xml"
+    manifest.parent.mkdir(parents=True)
+    manifest.write_text("<package><version>7.1.9</version></package>")
+    monkeypatch.setattr(metadata, "version", unknown)
+    find = lambda name: SimpleNamespace(origin=str(module))  # noqa: E731
+    monkeypatch.setattr("importlib.util.find_spec", find)
+    assert system.rclpy_version() == "7.1.9"
+    assert system.grader_version() == "?"
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert system.rclpy_version() == "?"
+
+
+def test_python_s_is_this_one_s():
+    assert sys.version.startswith(system.python_version())

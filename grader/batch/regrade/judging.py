@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from grader import files, scratch, versions
+from grader import files, scratch, system
 from grader.batch import batch, pool
 from grader.batch.class_file import CLASS, ClassFile
 from grader.batch.entry import ENTRY, SUBMISSIONS, Entry, entries
@@ -202,13 +202,13 @@ def _notes(
             total=len(results),
             sentence=sentence,
         )
-    others = {origin.judged.grader for origin in origins} - {versions.grader()}
+    others = {origin.judged.grader for origin in origins} - {system.grader_version()}
     if others:
         yield msg(
             "They were judged by version {then} of the grader, and are now by {now}: what changes "
             "may come from that, too.",
             then=chained(sorted(others)),
-            now=versions.grader(),
+            now=system.grader_version(),
         )
 
 

@@ -18,7 +18,7 @@ import jinja2
 from jinja2.bccache import Bucket, FileSystemBytecodeCache
 from markupsafe import Markup
 
-from grader import text, versions
+from grader import system, text
 from grader.translations import current, number, tr, tr_many, translate
 
 #: The style of all pages.
@@ -67,7 +67,7 @@ class BesideTheTemplates(FileSystemBytecodeCache):
     """
 
     def __init__(self, folder: Path) -> None:
-        made_by = f"{version('jinja2')}-{versions.grader()}"
+        made_by = f"{version('jinja2')}-{system.grader_version()}"
         cache = cache_from_source(str(folder / f"template_%s_{made_by}.py"))
         super().__init__(*os.path.split(cache))
 

@@ -22,7 +22,7 @@ from functools import partial
 from itertools import chain
 from typing import Any, NamedTuple
 
-from grader import versions
+from grader import system
 from grader.message import NOTHING, Message, msg
 
 #: Stands for rclpy's extension module, whatever it is called.
@@ -55,7 +55,7 @@ def broken(*groups: Iterable[Assumption]) -> Message:
         if fault:
             return msg(
                 "virtual time does not fit rclpy {version}: {fault}",
-                version=versions.rclpy(),
+                version=system.rclpy_version(),
                 fault=fault,
             )
     return NOTHING

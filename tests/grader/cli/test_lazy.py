@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from grader import cli, versions
+from grader import cli, system
 from grader.cli import run
 from grader.grading import RUNNERS
 from tests.grader.reports import samples
@@ -55,7 +55,9 @@ def test_the_versions_are_told(capsys):
         cli.main(["--version"])
     assert end.value.code == 0
     said = capsys.readouterr().out
-    assert said.startswith(f"grader {versions.grader()} (Python {versions.python()}, rclpy ")
+    assert said.startswith(
+        f"grader {system.grader_version()} (Python {system.python_version()}, rclpy "
+    )
 
 
 def test_a_run_imports_the_types_of_no_release_and_validates_nothing_of_its_own(tmp_path):

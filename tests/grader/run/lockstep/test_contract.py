@@ -12,7 +12,7 @@ import rclpy.executors
 import rclpy.task
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader import versions
+from grader import system
 from grader.message import NOTHING, msg
 from grader.run.lockstep import contract
 
@@ -58,7 +58,7 @@ def test_one_line_says_what_does_not_hold(
     else:
         monkeypatch.setattr(owner, name, value)
     found = contract.broken(*GROUPS)
-    assert str(found) == f"virtual time does not fit rclpy {versions.rclpy()}: {line}"
+    assert str(found) == f"virtual time does not fit rclpy {system.rclpy_version()}: {line}"
 
 
 def test_what_constructors_get_beyond_the_known_is_no_breach(
@@ -125,6 +125,6 @@ def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time
     with open_submission(submissions / "misbehaving/exits.py") as submission:
         plan = Plan(Limits(1, 0.2, 5))
         found = virtual_time._try(submission, plan, virtual_time.PATIENCE, {}, None)
-    fault = {"version": versions.rclpy(), "fault": "ClockType has no STEADY_TIME"}
+    fault = {"version": system.rclpy_version(), "fault": "ClockType has no STEADY_TIME"}
     why = msg("virtual time does not fit rclpy {version}: {fault}", **fault)
     assert found == (None, why)

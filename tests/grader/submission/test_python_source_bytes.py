@@ -9,7 +9,7 @@ import pytest
 
 from grader.run.opening import open_submission
 from grader.run.student import loading
-from grader.submission.encoding import fault
+from grader.submission.python_source import byte_fault
 from grader.submission.start import EntryPoint, Script
 from tests.grader.submission.copies import in_place
 
@@ -36,7 +36,7 @@ def test_a_file_is_read_or_refused_as_python_does(
     file = tmp_path / "node.py"
     file.write_bytes(data.replace(b"import rclpy\n", b""))
     run = subprocess.run([sys.executable, file], capture_output=True, check=False)
-    assert (run.returncode == 0) == (not fault(file.read_bytes())) == is_read
+    assert (run.returncode == 0) == (not byte_fault(file.read_bytes())) == is_read
 
 
 @pytest.mark.parametrize("data", REFUSED.values(), ids=REFUSED.keys())
@@ -45,7 +45,7 @@ def test_the_run_of_a_file_that_python_refuses_ends_with_its_line(
 ) -> None:
     file = tmp_path / "node.py"
     file.write_bytes(data)
-    assert fault(data)
+    assert byte_fault(data)
     with pytest.raises(SyntaxError, match="save the file as UTF-8") as error:
         loading.run(str(tmp_path), str(file), None)
     assert (error.value.filename, error.value.lineno) == (str(file), told_line(data))
@@ -59,7 +59,7 @@ def told_line(data: bytes) -> int:
 def test_what_python_reads_is_not_refused(tmp_path: Path, data: bytes) -> None:
     file = tmp_path / "node.py"
     file.write_bytes(data)
-    assert not fault(data)
+    assert not byte_fault(data)
     loading.must_be_text(str(file))
 
 
@@ -91,4 +91,4 @@ def test_a_module_that_only_an_import_passes_over_is_imported_and_noted(tmp_path
 
 def test_an_absurd_declaration_is_left_to_python(tmp_path: Path) -> None:
     for declaration in (b"# coding: klingon\n", b"# coding: hex\n", b"\xef\xbb\xbf# coding: ascii"):
-        assert not fault(declaration + os.linesep.encode())
+        assert not byte_fault(declaration + os.linesep.encode())
