@@ -16,7 +16,6 @@ from collections.abc import Callable
 from typing import Any
 
 from grader.run.lockstep import faults
-from grader.run.observe import lines
 from grader.run.observe.account import quietly
 from grader.run.observe.witness import UsedEnd, Witness
 
@@ -105,7 +104,7 @@ def _install(witness: Witness) -> None:
     )
     _around_callbacks(witness, rclpy.task.Task)
     _before_done_callbacks(witness, future)
-    _around_executor(witness, rclpy.executors)
+    _around_executor(witness, executor)
     _after_single_messages(witness, rclpy.wait_for_message)
 
 
@@ -176,9 +175,9 @@ def _around_callbacks(witness: Witness, task: Any) -> None:
     @functools.wraps(run)
     def call(self: Any) -> Any:
         if not witness.begin_callback():
-            return witness.lines.within(run, self)
+            return run(self)
         try:
-            return witness.lines.within(run, self)
+            return run(self)
         finally:
             quietly(witness.end_callback, getattr(self, "_exception", None))
 
@@ -196,9 +195,8 @@ def _before_done_callbacks(witness: Witness, future: Any) -> None:
     future.add_done_callback = added
 
 
-def _around_executor(witness: Witness, module: Any) -> None:
+def _around_executor(witness: Witness, executor: Any) -> None:
     """Report to the witness what subscriptions receive, and when an executor first spins."""
-    executor = module.Executor
     receive, wait = executor._take_subscription, executor.wait_for_ready_callbacks
 
     @functools.wraps(receive)
@@ -216,22 +214,6 @@ def _around_executor(witness: Witness, module: Any) -> None:
 
     executor._take_subscription = received
     executor.wait_for_ready_callbacks = first_wait
-    for kind, name in (
-        (executor, "spin"),
-        (module.SingleThreadedExecutor, "_spin_once_impl"),
-        (module.MultiThreadedExecutor, "_spin_once_impl"),
-    ):
-        setattr(kind, name, _unfollowed(getattr(kind, name)))
-
-
-def _unfollowed(spin: Callable[..., Any]) -> Callable[..., Any]:
-    """Have a function that spins not followed; its callbacks are."""
-
-    @functools.wraps(spin)
-    def spinning(*args: Any, **kwargs: Any) -> Any:
-        return lines.unfollowed(functools.partial(spin, *args, **kwargs))
-
-    return spinning
 
 
 def _after_single_messages(witness: Witness, module: Any) -> None:
@@ -268,7 +250,6 @@ def install_in_events_executor(witness: Witness, module: Any) -> None:
 
     def events_executor(*args: Any, **kwargs: Any) -> Any:
         quietly(witness.spins)
-        witness.lines.discard()
         return make(*args, **kwargs)
 
     module.EventsExecutor = events_executor

@@ -1,151 +1,217 @@
 """Notes which lines of a submission have run, and what its conditions were asked about.
 
-Python calls a trace function at each call and each line of a thread, which costs more than the line
-itself. So it is off while an executor spins, apart from callbacks; a function whose lines have all
-run is followed no more; and after so many lines nothing is.
+A submission's files are compiled with a mark before each statement, which costs next to nothing
+beside a trace function. The line numbers, and all that the program can see of itself but its
+bytecode, are as without.
 """
 
 from __future__ import annotations
 
-import re
+import ast
+import runpy
 import sys
-import threading
-from collections.abc import Callable
+import warnings
 from contextlib import suppress
 from enum import Enum
+from importlib.machinery import SourceFileLoader
 from types import CodeType, FrameType, MemberDescriptorType
 from typing import Any
 
 from grader.run.observe.files import Row, SubmissionFiles
 
-#: So many lines are followed, conditions asked for values, exceptions kept.
-MOST_LINES, MOST_ASKED, MOST_RAISED = 300_000, 60, 10
-#: The longest value, and all of a condition [characters].
-LONGEST_VALUE, LONGEST = 40, 120
-_CONDITION = re.compile(r"\s*(?:(?:el)?if|while)\b(.*)")
-_NAME = re.compile(r"(?<![\w.'\"])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)?(?![\w.(])")
+#: Larger files get no marks [bytes]; so many conditions are asked for values, exceptions kept.
+MOST_BYTES, MOST_ASKED, MOST_RAISED = 200_000, 60, 10
+#: The names of a condition that are asked for; the longest value, and all of a line [characters].
+MOST_NAMES, LONGEST_VALUE, LONGEST = 4, 40, 120
 _PLAIN = (bool, int, float, str, type(None))
+#: Stand in the syntax tree for what the marks use; see `_filled`.
+_RAN, _ASK, _RAISED = "\0ran", "\0ask", "\0raised"
 
-Trace = Callable[[FrameType, str, Any], Any]
+
+class _Ran(dict[int, bool]):
+    """The lines that have run. A constant of code objects, and these are hashed."""
+
+    __hash__ = object.__hash__  # type: ignore[assignment]
 
 
-class LineTrace:
-    """Follows the lines of a submission's files in the threads that ask for it."""
+class LineMarks:
+    """Has the files of a submission note which of their lines run."""
 
     def __init__(self, files: SubmissionFiles) -> None:
         self._files = files
-        #: lines of each function that have not run yet, and all that it has
-        self._left: dict[CodeType, set[int]] = {}
-        self._all: dict[CodeType, set[int]] = {}
-        self._conditions: dict[tuple[CodeType, int], tuple[str, ...]] = {}
+        self._ran: dict[str, _Ran] = {}
+        #: the values of a condition's names by its line; an exception by the line it came to
         self._asked: dict[tuple[str, int], str] = {}
-        self._times: dict[tuple[CodeType, int], int] = {}
-        #: the first exception that came to each line
         self._raised: dict[tuple[str, int], str] = {}
-        self._count = 0
-        self._follow: Trace = self._line
+        self._times: dict[tuple[str, int], int] = {}
 
-    def begin(self) -> None:
-        """Follow this thread, and those that it starts."""
-        threading.settrace(self._call)
-        sys.settrace(self._call)
+    def install(self) -> None:
+        """Have all that is imported or run from now on compiled with marks."""
+        plain, keep = SourceFileLoader.source_to_code, SourceFileLoader._cache_bytecode  # type: ignore[attr-defined]
 
-    def within(self, call: Callable[..., Any], *args: Any) -> Any:
-        """Call a callback, followed."""
-        return _with(self._call if self._count < MOST_LINES else None, call, *args)
+        def source_to_code(loader: Any, data: Any, path: Any, **options: Any) -> CodeType:
+            code: CodeType = plain(loader, data, path, **options)
+            return self.marked(code, data, str(path))
 
-    def discard(self) -> None:
-        """Note that some lines are not followed, so that none of them counts."""
-        self._count = MOST_LINES
+        def cache_bytecode(loader: Any, path: str, *others: Any) -> None:
+            if not self._files.has(path):  # what has marks is for this process alone
+                keep(loader, path, *others)
+
+        def compile_program(source: Any, file: str, mode: str) -> CodeType:
+            code: CodeType = compile(source, file, mode)
+            return self.marked(code, source, file)
+
+        SourceFileLoader.source_to_code = source_to_code  # type: ignore[assignment]
+        SourceFileLoader._cache_bytecode = cache_bytecode  # type: ignore[attr-defined]
+        runpy.compile = compile_program  # type: ignore[attr-defined]
+
+    def marked(self, code: CodeType, source: bytes | str, file: str) -> CodeType:
+        """Return the code of a file with marks; as it is where it is not the submission's."""
+        name = self._files.name(file)
+        if not name or len(source) > MOST_BYTES:
+            return code
+        try:
+            with warnings.catch_warnings():  # Python has warned already
+                warnings.simplefilter("ignore")
+                tree = ast.parse(source, file)
+                for node in [*ast.walk(tree)]:
+                    _mark(node)
+                made = compile(tree, file, "exec", dont_inherit=True)
+        except Exception:  # too deep, say: it runs without
+            return code
+        ran = self._ran.setdefault(name, _Ran())
+
+        def ask(line: int, *names: str) -> None:
+            self._ask(sys._getframe(1), name, line, names)
+
+        def raised() -> None:
+            self._note(name, file)
+
+        return _filled(made, {_RAN: ran, _ASK: ask, _RAISED: raised})
 
     def rows(self) -> list[Row]:
-        """Return the entry of each file in the account; [] where some lines were not followed."""
-        if self._count >= MOST_LINES:
-            return []
-        ran: dict[str, set[int]] = {}
-        for code, lines in list(self._all.items()):
-            if lines:
-                ran.setdefault(self._files.name(code.co_filename), set()).update(
-                    lines - self._left[code]
-                )
+        """Return the entry of each file in the account."""
         return [
             {
                 "file": file,
-                "lines": sorted(lines),
+                "lines": sorted(ran),
                 "asked": _of(file, self._asked),
                 "raised": _of(file, self._raised),
             }
-            for file, lines in ran.items()
+            for file, ran in [*self._ran.items()]
         ]
 
-    def _call(self, frame: FrameType, event: str, argument: object) -> Trace | None:
-        code = frame.f_code
-        left = self._left.get(code)
-        if left is None:
-            left = self._begin(code)
-        return self._follow if left else None
-
-    def _line(self, frame: FrameType, event: str, argument: object) -> Trace | None:
-        if event == "line":
-            self._count += 1
-            if self._count >= MOST_LINES:
-                sys.settrace(None)
-                return None
-            code, line = frame.f_code, frame.f_lineno
-            self._left[code].discard(line)
-            if (code, line) in self._conditions:
-                self._ask(frame, code, line)
-        elif event == "exception" and isinstance(argument, tuple):
-            self._note(frame, argument[0], argument[1])
-        return self._follow
-
-    def _begin(self, code: CodeType) -> set[int]:
-        lines = set[int]()
-        if self._files.has(code.co_filename):
-            lines = {line for *_, line in code.co_lines() if line}
-            texts = self._files.lines(code.co_filename)
-            for line in lines:
-                found = _CONDITION.match(texts[line - 1]) if line <= len(texts) else None
-                if found and (names := tuple(dict.fromkeys(_NAME.findall(found[1])))):
-                    self._conditions[code, line] = names[:4]
-        self._all[code], self._left[code] = lines, set(lines)
-        return self._left[code]
-
-    def _ask(self, frame: FrameType, code: CodeType, line: int) -> None:
+    def _ask(self, frame: FrameType, file: str, line: int, names: tuple[str, ...]) -> None:
         """Keep the values of a condition's names: of its first time, its second, its fourth."""
-        times = self._times[code, line] = self._times.get((code, line), 0) + 1
-        key = self._files.name(code.co_filename), line
+        key = file, line
+        times = self._times[key] = self._times.get(key, 0) + 1
         if times & (times - 1) or (key not in self._asked and len(self._asked) >= MOST_ASKED):
             return
-        values = ((name, _value(frame, name)) for name in self._conditions[code, line])
+        values = ((name, _value(frame, name)) for name in names)
         found = ", ".join(f"{name} = {value}" for name, value in values if value)
         self._asked[key] = found[:LONGEST]
 
-    def _note(self, frame: FrameType, kind: type, error: object) -> None:
+    def _note(self, name: str, file: str) -> None:
         """Keep an exception of Python's own: another's text may be the submission's code."""
-        key = self._files.name(frame.f_code.co_filename), frame.f_lineno
-        is_known = kind.__module__ == "builtins" and kind.__name__.endswith("Error")
-        if is_known and key not in self._raised and len(self._raised) < MOST_RAISED:
-            with suppress(Exception):
-                self._raised[key] = f"{kind.__name__}: {error}"[:LONGEST]
+        error = sys.exc_info()[1]
+        kind = type(error)
+        if kind.__module__ != "builtins" or len(self._raised) >= MOST_RAISED:
+            return
+        with suppress(Exception):
+            at = error.__traceback__ if error is not None else None
+            line = 0
+            while at is not None:  # the innermost of this file's
+                line = at.tb_lineno if at.tb_frame.f_code.co_filename == file else line
+                at = at.tb_next
+            if line:
+                self._raised.setdefault((name, line), f"{kind.__name__}: {error}"[:LONGEST])
 
 
 def _of(file: str, texts: dict[tuple[str, int], str]) -> list[Row]:
     return [{"line": line, "text": text} for (name, line), text in [*texts.items()] if name == file]
 
 
-def unfollowed(call: Callable[..., Any], *args: Any) -> Any:
-    """Call a function that spins."""
-    return _with(None, call, *args)
+# Marks ----------------------------------------------------------------------------------------
 
 
-def _with(trace: Trace | None, call: Callable[..., Any], *args: Any) -> Any:
-    before = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        return call(*args)
-    finally:
-        sys.settrace(before)
+def _mark(node: ast.AST) -> None:
+    """Put a mark before each statement of a node's blocks."""
+    for name in ("body", "orelse", "finalbody"):
+        block = getattr(node, name, None)
+        if not isinstance(block, list) or not block or not isinstance(block[0], ast.stmt):
+            continue
+        first = _first(node, block) if name == "body" else 0
+        marked = block[:first]
+        if isinstance(node, ast.ExceptHandler):
+            marked.append(_at(block[0], ast.Expr(ast.Call(ast.Constant(_RAISED), [], []))))
+        for statement in block[first:]:
+            marked += [_at(statement, each) for each in _marks(statement)]
+            marked.append(statement)
+        setattr(node, name, marked)
+
+
+def _first(node: ast.AST, block: list[ast.stmt]) -> int:
+    """Return where the first mark may stand: after the docstring, and what must be on top."""
+    first = 0
+    if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+        match block[0]:
+            case ast.Expr(value=ast.Constant(value=str())):
+                first = 1
+    while first < len(block):
+        match block[first]:
+            case ast.ImportFrom(module="__future__"):
+                first += 1
+            case _:
+                break
+    return first
+
+
+def _marks(statement: ast.stmt) -> list[ast.stmt]:
+    line = ast.Constant(statement.lineno)
+    place = ast.Subscript(ast.Constant(_RAN), line, ast.Store())
+    found: list[ast.stmt] = [ast.Assign([place], ast.Constant(True))]
+    if isinstance(statement, ast.If | ast.While):
+        asked = [ast.Constant(name) for name in _names(statement.test)[:MOST_NAMES]]
+        if asked:
+            found.append(ast.Expr(ast.Call(ast.Constant(_ASK), [line, *asked], [])))
+    return found
+
+
+def _names(test: ast.expr) -> list[str]:
+    """Return the names in a condition, and their attributes: 'self.state'."""
+    found: list[str] = []
+    inner: set[ast.AST] = set()
+    for node in ast.walk(test):
+        match node:
+            case ast.Call(func=called):
+                inner.add(called)
+            case ast.Attribute(value=ast.Name(id=name) as owner, attr=attribute):
+                inner.add(owner)
+                if node not in inner:
+                    found.append(f"{name}.{attribute}")
+            case ast.Name(id=name) if node not in inner:
+                found.append(name)
+    return [*dict.fromkeys(found)]
+
+
+def _at(statement: ast.stmt, mark: ast.stmt) -> ast.stmt:
+    """Give a mark the place of its statement, so that no line number changes."""
+    for node in ast.walk(mark):
+        ast.copy_location(node, statement)
+        if isinstance(node, ast.expr | ast.stmt):
+            node.end_lineno, node.end_col_offset = statement.lineno, statement.col_offset
+    return mark
+
+
+def _filled(code: CodeType, marks: dict[str, object]) -> CodeType:
+    """Replace what stands for the marks' own objects, in a code object and those in it."""
+
+    def filled(constant: object) -> object:
+        if isinstance(constant, CodeType):
+            return _filled(constant, marks)
+        return marks.get(constant, constant) if isinstance(constant, str) else constant
+
+    return code.replace(co_consts=tuple(map(filled, code.co_consts)))
 
 
 def _value(frame: FrameType, name: str) -> str:

@@ -18,7 +18,7 @@ from grader.run.observe import stuck
 from grader.run.observe.account import ProcessAccount, quietly
 from grader.run.observe.ending import EndWitness, error_row
 from grader.run.observe.files import LONGEST, Row, SubmissionFiles
-from grader.run.observe.lines import LineTrace
+from grader.run.observe.lines import LineMarks
 
 #: The most entries of a kind, as `grader.recording.observations` accepts them.
 MOST = 100
@@ -123,7 +123,7 @@ class Witness:
 
     Attributes:
         ending: observes how it ends.
-        lines: follows its lines.
+        lines: notes which of them run.
     """
 
     def __init__(
@@ -142,7 +142,7 @@ class Witness:
             is_met: makes `UsedEnd.ask` from a kind of end and rclpy's object for it.
         """
         self._files = SubmissionFiles(root)
-        self.lines = LineTrace(self._files)
+        self.lines = LineMarks(self._files)
         self._now_s = now_s
         self._is_met = is_met
         self._is_blind = False

@@ -78,7 +78,7 @@ def start(
             }
         ),
     )
-    witness.lines.begin()
+    witness.lines.install()
     code = loading.call(root, target, function, witness.ending.raised)
     return code
 

@@ -86,7 +86,7 @@ def main() -> None:
 
     unsupported_calls.refuse_processes(refuse)
     loading.hide_the_grader(root, target)
-    witness.lines.begin()
+    witness.lines.install()
     code = loading.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
     connect()
