@@ -40,6 +40,7 @@ _NOT_PYTHON = (
         msg("A bracket is not closed: count those of that line, and add the one that is missing."),
     ),
 )
+_COLOURS = ("r", "g", "b")
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 #: For people who do not know the kernel's words.
 _SIGNALS = {
@@ -114,8 +115,10 @@ def wrong_value(case: Case) -> Diagnosis | None:
     if found is None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
-    what, help_ = _wanted(found["field"], excerpt(found["what"]), place)
-    place = source_lines.given_at(case, found["field"], _fitting(found["what"])) or place
+    given = source_lines.given_at(case, found["field"], _fitting(found["what"]))
+    place = given.place if given is not None else place
+    number = given.near if given is not None else ""
+    what, help_ = _wanted(found["field"], excerpt(found["what"]), place, number)
     for finding in source_lines.of_kind(case, "comma"):
         if place is not None and re.search(rf"\b{re.escape(finding.name)}\b", place.text):
             place = finding.place
@@ -145,11 +148,13 @@ def _fitting(what: str) -> Callable[[str], bool]:
     return lambda _: True
 
 
-def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, Message]:
-    """Return what a field must be, and how to write it."""
+def _wanted(
+    field: str, what: str, place: SourceLine | None, number: str
+) -> tuple[Message, Message]:
+    """Return what a field must be, and how to write it; `number`: that it was given, or ''."""
     text = place.text if place is not None else ""
     literal = re.search(rf"\b{field}\s*=\s*([-+]?\d{{1,20}}(?:\.\d{{0,20}})?)(?![\w.])", text)
-    number = literal[1] if literal else ""
+    number = literal[1] if literal else excerpt(number)
     if limits := _RANGE.search(what):
         low, high = limits.groups()
         return (
@@ -175,6 +180,12 @@ def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, M
         )
     if "'int'" in what:
         number = number or "255.0"
+        if field in _COLOURS and 0 < source_lines.number(number) < 1:
+            return msg("an int"), msg(
+                "Colours are whole numbers from 0 to 255: write {whole} instead of {number}.",
+                whole=round(255 * source_lines.number(number)),
+                number=number,
+            )
         return msg("an int"), msg(
             "Write {whole} instead of {number}, and int(...) around what is calculated.",
             whole=number.partition(".")[0],

@@ -7,6 +7,7 @@ import sys
 
 from grader.diagnosis.case import Case, excerpt, line
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.source_lines import of_kind
 from grader.message import Message, msg
 from grader.recording.observations import Raised
 
@@ -40,7 +41,7 @@ def not_importable(case: Case) -> Diagnosis | None:
     raised = case.raised
     if raised is None or raised.type not in ("ModuleNotFoundError", "ImportError"):
         return None
-    hidden = _hides_package(raised) or _lies_beside(case, raised)
+    hidden = _hides_package(raised) or _lies_beside(case, raised) or _circular(case, raised)
     if hidden is not None:
         return hidden
     text = _PATH.sub("", excerpt(raised.text))
@@ -61,7 +62,7 @@ def not_importable(case: Case) -> Diagnosis | None:
             "your node was graded: take std_msgs, std_srvs or geometry_msgs "
             "instead, or ask whoever runs the grader to install it."
         )
-    elif (advice := _better(text)) is not None:
+    elif (advice := _of_own_module(case, raised) or _better(text)) is not None:
         help_ = advice
     return Diagnosis("not_importable", cause, help_, place=raised.place)
 
@@ -87,6 +88,39 @@ def _better(text: str) -> Message | None:
             "own has to be in what you hand in. Compare the name.",
             name=excerpt(found[1]),
         )
+    return None
+
+
+def _of_own_module(case: Case, raised: Raised) -> Message | None:
+    """Return what a module of the submission's has instead of the name that is imported."""
+    found = _OTHER_MODULE.search(raised.text)
+    for finding in of_kind(case, "not_defined") if found is not None else ():
+        if found is not None and finding.name == found[1]:
+            words = {"name": excerpt(finding.name), "near": excerpt(finding.near)}
+            words["module"] = excerpt(found[2])
+            if "," in finding.near:
+                return msg("Your module {module} has no {name}; it has: {near}.", **words)
+            return msg("Your module {module} has {near}, not {name}: write that.", **words)
+    return None
+
+
+def _circular(case: Case, raised: Raised) -> Diagnosis | None:
+    """Two modules of the submission's import each other."""
+    if "partially initialized module" not in raised.text:
+        return None
+    found = sorted(of_kind(case, "circular"), key=lambda each: each.near, reverse=True)
+    for finding in found:  # first one that nothing uses
+        here, there = excerpt(finding.place.file), excerpt(finding.name)
+        help_ = msg("Move what both of them need into a third file, and import that in both.")
+        if finding.near:
+            help_ = msg("Take that import out: {file} uses nothing of it.", file=here)
+        words = {"here": here, "there": there, "where": line(finding.place)}
+        cause = msg(
+            "Your program cannot import what it needs: {there} imports {here}, and {here} imports "
+            "{there}{where}.",
+            **words,
+        )
+        return Diagnosis("not_importable", cause, help_, place=finding.place)
     return None
 
 

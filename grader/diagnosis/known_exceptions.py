@@ -53,7 +53,12 @@ _MEANING = {
     "IndexError": msg(
         "That line asks for an element beyond the end of a list, or of an empty one."
     ),
-    "ZeroDivisionError": msg("That line divides by what can be 0: look at it before dividing."),
+    "ZeroDivisionError": msg(
+        "What stands behind / or % in that line is 0 there: look where it gets that value."
+    ),
+    "StopIteration": msg(
+        "next() finds nothing more there: let what it asks go on, or start it anew."
+    ),
     "UnboundLocalError": msg(
         "On the way that was taken the variable was given no value before that line: give it one "
         "at the start of the function, or write self. before it where it is the node's."

@@ -13,7 +13,7 @@ from grader.diagnosis import known_exceptions
 from grader.diagnosis.case import Case, excerpt, function, line
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import Hint
-from grader.diagnosis.source_lines import of_kind
+from grader.diagnosis.source_lines import in_other_order, of_kind
 from grader.diagnosis.standstill import hears_once, never_spins
 from grader.message import Message, as_message, msg
 from grader.recording.observations import LintKind, Raised
@@ -30,6 +30,9 @@ _BEGINNINGS: dict[Message, tuple[LintKind, ...]] = {
     known_exceptions.NO_INIT: ("no_init",),
     known_exceptions.NO_NODE: ("no_super",),
 }
+#: What is asked for an entry, and for which.
+_ASKED = re.compile(r"\b([A-Za-z_][\w.]{0,60})\[([^\[\]]{1,60})\]")
+_PRINTED = re.compile(r"print\(([\w.]{1,60})\)$")
 _NO_INSTANCE = "Service classes can not be instantiated"
 
 
@@ -85,6 +88,101 @@ def _without_self(case: Case, raised: Raised) -> Hint | None:
                 place=finding.place,
             )
     return None
+
+
+def _in_other_order(case: Case, raised: Raised) -> Hint | None:
+    """An exception in a function that is given two arguments each in the other's place."""
+    for finding in of_kind(case, "swapped"):
+        if function(raised.place) == f"{finding.name}()":
+            what, help_ = in_other_order(finding)
+            return Hint(help_, what, finding.place)
+    return None
+
+
+def _misplaced(case: Case, raised: Raised) -> Hint | None:
+    """A method whose def is indented too far, or not far enough."""
+    found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
+    for finding in of_kind(case, "misplaced") if found is not None else ():
+        if found is None or finding.name != found[1]:
+            continue
+        how = msg("too little: it is outside of the class")
+        if finding.near:
+            how = msg("too far: it is inside {outer}()", outer=excerpt(finding.near))
+        return Hint(
+            msg("Begin it in the column of the other defs of the class, and move all its lines."),
+            msg("`def {name}` is indented {how}", name=excerpt(finding.name), how=how),
+            finding.place,
+        )
+    return None
+
+
+def _lacks_entry(case: Case, raised: Raised) -> Hint | None:
+    """A dict or a list that lacks what it is asked for, where the source shows what it has."""
+    found = _ASKED.findall(raised.place.text) if raised.place is not None else []
+    asked = {of.rpartition(".")[2]: index for of, index in found}
+    is_index = raised.type == "IndexError" and "index out of range" in raised.text
+    for finding in of_kind(case, "holds") if is_index or raised.type == "KeyError" else ():
+        if (index := asked.get(finding.name.rpartition(".")[2])) is None:
+            continue
+        words = {"name": excerpt(finding.name), "has": excerpt(finding.near)}
+        words |= {"index": excerpt(index), "key": excerpt(raised.text)}
+        if is_index:
+            return Hint(
+                msg("Indexes begin at 0: if you count from 1, write {name}[{index} - 1].", **words),
+                msg("{name} has the indexes {has}, and `{index}` is another", **words),
+            )
+        if f"'{raised.text}'" in finding.near.split(", "):
+            return Hint(
+                msg("Write {key}: instead of '{key}': there, and so on.", **words),
+                msg("{name} has the text '{key}', and is asked for the number {key}", **words),
+                finding.place,
+            )
+        return Hint(
+            msg(
+                "Ask for one of these, with quotes or without as there, or add {key}{where}.",
+                where=line(finding.place),
+                **words,
+            ),
+            msg("{name} has no entry {key}; it has: {has}", **words),
+        )
+    return None
+
+
+def _is_zero(case: Case, raised: Raised) -> Hint | None:
+    """A division by what begins with 0."""
+    place = raised.place
+    for finding in of_kind(case, "zero") if raised.type == "ZeroDivisionError" else ():
+        if place is not None and re.search(rf"[/%] *{re.escape(finding.name)}\b", place.text):
+            name, number = excerpt(finding.name), excerpt(finding.near)
+            other = "0.1" if "." in number else "1"
+            text = msg(
+                "line {line} divides by {name}, which begins with {number}",
+                line=place.line,
+                name=name,
+                number=number,
+            )
+            help_ = msg(
+                "Let it begin with another number: {name} = {other}.", name=name, other=other
+            )
+            return Hint(help_, text, finding.place)
+    return None
+
+
+def _ends(case: Case, raised: Raised) -> Hint | None:
+    """A next() of a generator that has given all."""
+    found = [*of_kind(case, "ends")] if raised.type == "StopIteration" else []
+    if len(found) != 1 or raised.place is None:
+        return None
+    name = excerpt(found[0].name)
+    return Hint(
+        msg("Let {name}() go on: while True:, a longer range(), itertools.count().", name=name),
+        msg(
+            "next() in line {line} finds nothing more: {name}() has come to its end",
+            line=raised.place.line,
+            name=name,
+        ),
+        found[0].place,
+    )
 
 
 def _hidden_method(case: Case, raised: Raised) -> Hint | None:
@@ -200,6 +298,14 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
                     finding.place,
                 )
     missing = known_exceptions.MISSING.search(text)
+    for finding in of_kind(case, "entry") if missing is not None and missing[1] == "main" else ():
+        takes = excerpt(finding.near)
+        with_none = ", ".join(f"{each}=None" for each in takes.split(", "))
+        return Hint(
+            msg("Write `def main({takes}):` there.", takes=with_none),
+            msg("main() is called with nothing, and takes ({takes})", takes=takes),
+            finding.place,
+        )
     for finding in of_kind(case, "message_for_timer") if missing else ():
         if missing is not None and missing[1] == finding.name:
             name = excerpt(finding.name)
@@ -263,12 +369,16 @@ def _not_begun(case: Case, raised: Raised) -> Hint | None:
 
 def _calls_itself(case: Case, raised: Raised) -> Hint | None:
     for finding in of_kind(case, "calls_itself") if raised.type == "RecursionError" else ():
-        name = excerpt(finding.name)
-        return Hint(
-            msg("Leave that call out: ROS calls {name}() again and again by itself.", name=name),
-            msg("{name}() calls itself without end", name=name),
-            finding.place,
-        )
+        name, again = excerpt(finding.name), excerpt(finding.near)
+        help_ = msg("Leave that call out, and let a timer call {name}().", name=name)
+        if again:
+            help_ = msg("Write {again} instead: its timer then calls you again.", again=again)
+        if again == "ros":
+            help_ = msg(
+                "Leave that call out: ROS calls {name}() again and again by itself.", name=name
+            )
+        text = msg("{name}() calls itself without end", name=name)
+        return Hint(help_, text, finding.place)
     return None
 
 
@@ -295,6 +405,17 @@ def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
                 ),
                 finding.place,
             )
+    for finding in of_kind(case, "no_return"):
+        names = rf"\b(?:{re.escape(finding.name)}|{re.escape(finding.near)})\b"
+        if re.search(names, raised.place.text):
+            name = excerpt(finding.near)
+            printed = _PRINTED.match(finding.place.text)
+            text = msg("{name}() returns nothing, that is None", name=name)
+            help_ = msg("End {name}() with `return` and its result.", name=name)
+            if printed is not None:
+                text = msg("{name}() prints its result and returns None", name=name)
+                help_ = msg("Write `return {result}` there.", result=excerpt(printed[1]))
+            return Hint(help_, text, finding.place)
     for finding in of_kind(case, "no_effect"):
         return Hint(
             msg("Write return before it, if that is what you mean."),
@@ -309,8 +430,9 @@ def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
 
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
     *(_called_callback, _not_global, _without_self, _hidden_method, _class_given),
-    *(_service_for_request, _hidden_class, _misspelt, _wrong_callback, _class_kept),
-    *(_not_begun, _calls_itself, _none_for_a_value),
+    *(_service_for_request, _hidden_class, _misplaced, _misspelt, _wrong_callback, _class_kept),
+    *(_not_begun, _calls_itself, _none_for_a_value, _lacks_entry, _is_zero, _ends),
+    _in_other_order,
 )
 
 

@@ -57,11 +57,20 @@ def imported_at(case: Case, end_type: str, wanted: str) -> SourceLine | None:
     return None
 
 
-def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> SourceLine | None:
-    """Return the line that gives a field of a message a number that does not fit."""
+def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> LintFinding | None:
+    """Return what gives a field of a message a number that does not fit."""
     wrong = (each for each in of_kind(case, "argument") if not fits(each.near))
     names = (field, f"linear.{field}", f"angular.{field}", "colour")
-    return next((each.place for each in wrong if each.name in names), None)
+    return next((each for each in wrong if each.name in names), None)
+
+
+def in_other_order(finding: LintFinding) -> tuple[Message, Message]:
+    """Say that a function is given its arguments in another order, and what to do."""
+    name, takes = excerpt(finding.name), excerpt(finding.near)
+    return (
+        msg("{name}() takes ({takes}), and is given them in another order", name=name, takes=takes),
+        msg("Give them in the order of `def {name}`: ({takes}).", name=name, takes=takes),
+    )
 
 
 def _is_about_stopping(text: str) -> bool:
@@ -126,6 +135,11 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
         return missed
     if (meant := _misunderstood(found, case)) is not None:
         return meant
+    for finding in of_kind(case, "swapped"):
+        what, help_ = in_other_order(finding)
+        text = msg("{what}{where}.", what=what, where=line(finding.place))
+        cause = sentences(text, found.cause)
+        return replace(found, cause=cause, help=help_, place=finding.place)
     for finding in of_kind(case, "compared", "always", "adds_nothing", "no_effect"):
         if finding.kind == "always" and "driving" not in str(found.help):
             continue

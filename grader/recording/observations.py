@@ -90,6 +90,15 @@ LintKind = Literal[
     "default",
     "degrees",
     "grows",
+    "holds",
+    "zero",
+    "ends",
+    "misplaced",
+    "no_return",
+    "swapped",
+    "entry",
+    "not_defined",
+    "circular",
 ]
 
 
@@ -234,8 +243,9 @@ class LintFinding:
             no loop;
             `spins_in_init` - a spin in an __init__; `class_kept` - the class NAME is assigned where
             a message is meant; `hides_class` - NAME is a class, and assigned to; `comma` - NAME is
-            made a tuple by the comma at its end; `calls_itself` - the function NAME does;
-            `no_init`, `no_spin` - a node is made, and nothing calls rclpy.init or spins; `unused` -
+            made a tuple by the comma at its end; `calls_itself` - the function NAME does, and ROS
+            calls it (`ros`), would after NEAR, or never (''); `no_init`, `no_spin` - a node is
+            made, and nothing calls rclpy.init or spins; `unused` -
             nothing uses the function NAME, which may be meant for NEAR (create_timer); `never_set`
             - self.NAME is read and never set, at the __init__; `never_read` - self.NAME is set and
             never read;
@@ -256,7 +266,15 @@ class LintFinding:
             loop uses its variable NAME; `cancels` - NAME is a call that cancels something;
             `overrules` - the else of this `if` sets NAME again; `default` - NAME is an argument
             whose default is a time; `degrees` - NAME divides radians by degrees, or compares them;
-            `grows` - the callback NEAR of a subscription adds to NAME.
+            `grows` - the callback NEAR of a subscription adds to NAME; `holds` - NAME is once for
+            all a dict with the keys NEAR, or a list with the indexes NEAR; `zero` - NAME is set to
+            NEAR, and something is divided by it; `ends` - the generator NAME does; `misplaced` -
+            the method NAME is defined in the function NEAR, or outside of all classes; `no_return`
+            - what the function NEAR gives is used as NAME, and it returns nothing; `swapped` - the
+            function NAME takes NEAR, and gets it in another order; `entry` - main() needs the
+            arguments NEAR; `not_defined` - NAME is imported from a module of the submission's that
+            defines only NEAR; `circular` - the file NAME imports this one, too, which uses it or
+            not (`unused`).
     """
 
     kind: LintKind

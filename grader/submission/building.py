@@ -13,8 +13,10 @@ from pathlib import Path, PurePosixPath
 
 from grader.message import Message, msg
 from grader.submission.folder import SubmissionFolder, listed, shown
+from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.set_ups import ConsoleScript, PackageFolder
+from grader.submission.start import EntryPoint
 
 
 def shortcomings(
@@ -96,20 +98,27 @@ def _of_setup(
                 names=listed(absent),
             )
         )
-    if script is None:
+    if script is None or packages is None:
         return
-    parent = script.module.rpartition(".")[0]
-    if parent and packages is not None and parent not in packages:
-        words = {"file": called, "parent": shown(parent)}
-        yield _not_started(
-            msg(
-                "{file} lists the packages {names}, and so does not install {parent}",
-                names=listed(packages),
-                **words,
-            )
+    top, _, _ = script.module.partition(".")
+    root = next((r for r in package.roots(top) if (r / top).is_dir()), package.folder.resolve())
+    loaded = read_imports(root, EntryPoint(script.module, script.function)).files
+    folders = [file.parent.relative_to(root) for file in loaded]
+    parents = dict.fromkeys(
+        (script.module.rpartition(".")[0], *(".".join(f.parts) for f in folders))
+    )
+    if lacking := [parent for parent in parents if parent and parent not in packages]:
+        bare = [root.joinpath(*each.split("."), "__init__.py") for each in lacking]
+        missing = [submitted.called(each) for each in bare if not each.exists()]
+        words = {"file": called, "parent": listed(lacking), "names": listed(packages)}
+        why = (
+            msg("{file} lists the packages {names}, and so does not install {parent}", **words)
             if packages
             else msg("{file} lists no packages, and so does not install {parent}", **words)
         )
+        if missing:
+            why = msg("{why}: there is no {missing}", why=why, missing=listed(missing))
+        yield _not_started(why)
 
 
 def _of_place(submitted: SubmissionFolder, package: PackageFolder, name: str) -> Iterator[Message]:
@@ -129,6 +138,17 @@ def _of_place(submitted: SubmissionFolder, package: PackageFolder, name: str) ->
         else:
             why = _no("setup.cfg", submitted, package.folder)
             yield _not_found(msg("{none} with {lacking}", none=why, lacking=lacking))
+    elif declared.scripts_folder.rstrip("/") == f"lib/{declared.name}" != f"lib/{name}":
+        yield _not_found(
+            msg(
+                "{manifest} calls the package {name}, and {setup} and setup.py call it {other}: "
+                "expected <name>{other}</name>",
+                manifest=submitted.called(package.folder / FILE),
+                name=name,
+                setup=submitted.called(setup_cfg),
+                other=shown(declared.name),
+            )
+        )
     elif declared.scripts_folder.rstrip("/") != f"lib/{name}":
         yield msg(
             "ros2 run {name} would find nothing: {setup} installs programs in {place}, and "

@@ -1,4 +1,7 @@
-"""Finds out where in the window a condition on the pose is true, without running anything."""
+"""Finds out what names stand for, and where in the window a condition on the pose is true.
+
+Nothing is run for that.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 from grader.recording.observations import LintKind
-from grader.submission.scopes import Function, Parents, around, last
+from grader.submission.scopes import Function, Parents, around, last, scope_nodes
 
 #: The window's side [m], as turtlesim draws it.
 SIZE_M = 11.09
@@ -52,6 +55,10 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "hypot": math.hypot,
     "sqrt": math.sqrt,
 }
+
+
+#: Methods that change what a list or a dict holds.
+_CHANGES = ("append", "extend", "insert", "pop", "remove", "clear", "update", "setdefault")
 
 
 class Unknown(Exception):
@@ -149,6 +156,44 @@ class Values:
             case ast.List(elts=parts) | ast.Tuple(elts=parts):
                 return [*map(value, parts)]
         raise Unknown
+
+
+def held(tree: ast.Module, values: Values) -> Iterator[tuple[LintKind, str, str, int]]:
+    """Yield what the names in a file hold, where that may end a program."""
+    changed, divisors, seen = set(), set(), set()
+    for node in ast.walk(tree):
+        match node:
+            case ast.Subscript(value=of, ctx=ast.Store() | ast.Del()):
+                changed.add(last(of))
+            case ast.Call(func=ast.Attribute(value=of, attr=name)) if name in _CHANGES:
+                changed.add(last(of))
+            case ast.BinOp(op=ast.Div() | ast.FloorDiv() | ast.Mod(), right=right) if last(right):
+                divisors.add(ast.unparse(right))
+    for node in ast.walk(tree):
+        match node:
+            case ast.Assign(targets=[target], value=value) if last(target):
+                name = ast.unparse(target)
+                if name in seen:
+                    continue
+                seen.add(name)
+                given = values.assigned(name)
+                numbers = (ast.Constant, ast.UnaryOp, type(None))  # None: a sum that grows
+                is_number = all(isinstance(each, numbers) for each in given)
+                if name in divisors and is_number and getattr(value, "value", None) == 0:
+                    yield "zero", name, ast.unparse(value), node.lineno
+                if last(target) in changed or len(given) > 1:
+                    continue
+                match value:
+                    case ast.Dict(keys=[ast.Constant() as first, *_] as keys) if None not in keys:
+                        written = ", ".join(ast.unparse(key) for key in keys if key)
+                        yield "holds", name, written, first.lineno
+                    case ast.List(elts=parts) | ast.Tuple(elts=parts) if parts:
+                        yield "holds", name, f"0 to {len(parts) - 1}", node.lineno
+            case ast.FunctionDef():
+                inside = [*scope_nodes(node)]
+                if any(isinstance(each, ast.Yield | ast.YieldFrom) for each in inside):
+                    loops = (each.lineno for each in inside if isinstance(each, ast.For))
+                    yield "ends", node.name, "", min(loops, default=node.lineno)
 
 
 def find(

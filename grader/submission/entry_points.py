@@ -196,6 +196,16 @@ def _no_module(
     nodes = (file for file in found if file.name not in ("setup.py", "__init__.py"))
     others = [submitted.called(file) for file in nodes]
     meant = list(dict.fromkeys(near(wanted, others) + same_name))
+    as_text = expected.with_name(f"{expected.name}.txt")
+    if as_text.is_file():
+        return SubmissionError(
+            "{starts}, but there is no file {wanted}. There is {found}: rename it to {name}, "
+            "without .txt.",
+            starts=_starts(submitted, script),
+            wanted=wanted,
+            found=submitted.called(as_text),
+            name=expected.name,
+        )
     there = (
         msg("Near: {names}.", names=listed(meant))
         if meant

@@ -19,6 +19,7 @@ What these do not settle is a SubmissionError that lists the candidates.
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from sys import stdlib_module_names
@@ -44,6 +45,8 @@ from grader.submission.folder import (
     files_below,
     is_junk,
     listed,
+    near,
+    read_bounded,
     shown,
     top_of,
 )
@@ -339,6 +342,15 @@ def _no_script(
     if len(likely) == 1:
         module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)
     called = submitted.called(package.folder / "setup.py")
+    text = (read_bounded(package.folder / "setup.py") or b"").decode("utf-8", "replace")
+    words = {*re.findall(r"['\"](\w*script\w*)['\"]", text)} - {"console_scripts"}
+    if meant := near("console_scripts", sorted(words)):
+        return msg(
+            "{file} names no console script, so that `ros2 run` finds nothing to start. Expected "
+            "in its entry_points: 'console_scripts' instead of '{found}'",
+            file=called,
+            found=shown(meant[0]),
+        )
     return msg(
         "{file} names no console script, so that `ros2 run` finds nothing to "
         "start. Expected in its entry_points: {example}",

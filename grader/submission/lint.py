@@ -17,8 +17,8 @@ from pathlib import Path
 
 from grader.recording.observations import LintFinding, LintKind, SourceLine
 from grader.submission import paths, ros_mistakes, scopes
-from grader.submission.folder import read_bounded
-from grader.submission.python_source import parse
+from grader.submission.folder import near, read_bounded
+from grader.submission.python_source import parse, seen
 from grader.submission.scopes import Function, Source, last
 from grader.text import misspelt
 
@@ -170,6 +170,7 @@ def _find(
     if not names.read & {"call_async", "call"} and not words:
         found += [finding for file, tree in trees.items() for finding in _unsent(tree, file)]
     found += [finding for file, tree in trees.items() for finding in _beside(tree, file, lies)]
+    found += _own_modules(trees)
     callbacks = names.callbacks()
     found += [
         finding for file, tree in trees.items() for finding in _swallows(tree, callbacks, file)
@@ -197,6 +198,38 @@ def _beside(tree: ast.AST, file: str, lies: Callable[[str], bool]) -> Iterator[L
             if folder and not lies(name) and lies(f"{folder}/{name}"):
                 near = ".".join((*folder.split("/"), name))
                 yield _finding("beside", name, near, file, node.lineno)
+
+
+def _own_modules(trees: Mapping[str, ast.Module]) -> Iterator[LintFinding]:
+    """Yield imports from a module of the submission's that lacks the name, or imports this one."""
+    imports = [
+        (file, node, other)
+        for file, tree in trees.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and (other := _imported_file(file, node, trees))
+    ][:MOST]
+    pairs = {(file, other) for file, _, other in imports}
+    sources = {other: seen(trees[other]) for other in {other for _, other in pairs}}
+    used = {
+        file: {node.id for node in ast.walk(trees[file]) if isinstance(node, ast.Name)}
+        for file in {file for file, other in pairs if (other, file) in pairs}
+    }
+    for file, node, other in imports:
+        source = sources[other]
+        for name in (alias.name for alias in node.names[:MOST]):
+            if name != "*" and source.defined and source.surely_lacks(name):
+                has = ", ".join(near(name, source.defined)[:1] or source.defined)
+                yield _finding("not_defined", name, has, file, node.lineno)
+        if (other, file) in pairs:
+            is_used = used[file] & {alias.asname or alias.name for alias in node.names}
+            yield _finding("circular", other, "" if is_used else "unused", file, node.lineno)
+
+
+def _imported_file(file: str, node: ast.ImportFrom, files: Iterable[str]) -> str | None:
+    """Return the file of the submission that `from ... import` reads; None for any other."""
+    folders = file.split("/")[: -node.level] if node.level else []
+    path = "/".join([*folders, *(node.module or "").split(".")])
+    return next((each for each in (f"{path}.py", f"{path}/__init__.py") if each in files), None)
 
 
 # Attributes and methods ---------------------------------------------------------------------------
@@ -317,21 +350,15 @@ def _passed(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
                 inner = word.value
                 if word.arg not in ("target", "function") or not isinstance(inner, ast.Call):
                     continue
-                called = last(inner.func)
-                if called in SPINS or _returns_nothing(names.functions.get(called)):
+                function = names.functions.get(last(inner.func))
+                is_idle = function is not None and scopes.returns_nothing(function)
+                if is_idle or last(inner.func) in SPINS:
                     name = ast.unparse(inner.func)
                     yield _finding("called", name, f"{to}({word.arg}=", file, inner.lineno)
         if to in SPINS:
             for each in node.args:
                 if isinstance(each, ast.Name) and each.id in names.classes - names.bound:
                     yield _finding("class", each.id, ast.unparse(node.func), file, node.lineno)
-
-
-def _returns_nothing(function: Function | None) -> bool:
-    return function is not None and not any(
-        isinstance(node, ast.Return) and node.value is not None
-        for node in scopes.scope_nodes(function)
-    )
 
 
 def _called_in(node: ast.AST) -> set[str]:

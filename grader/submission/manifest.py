@@ -125,6 +125,10 @@ def parse_xml(data: bytes) -> Element | Message | None:
         return None
     except ElementTree.ParseError as error:
         line, _ = error.position
+        if (tag := _left_open(data)) is not None:
+            return msg(
+                "does not parse: <{tag}> of line {line} is not closed", tag=tag[0], line=tag[1]
+            )
         return msg(
             "does not parse, line {line}: {found}",
             line=line,
@@ -132,6 +136,22 @@ def parse_xml(data: bytes) -> Element | Message | None:
         )
     except (ValueError, LookupError) as error:  # its encoding
         return msg("does not parse: {found}", found=shown(str(error)))
+
+
+def _left_open(data: bytes) -> tuple[str, int] | None:
+    """Return the tag that is open where a text without DOCTYPE ends to be XML, and its line."""
+    from xml.parsers import expat
+
+    parser, tags = expat.ParserCreate(), list[tuple[str, int]]()
+    parser.StartElementHandler = lambda tag, _: tags.append((shown(tag), parser.CurrentLineNumber))
+    parser.EndElementHandler = lambda _: tags.pop()
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        codes = ("XML_ERROR_TAG_MISMATCH", "XML_ERROR_NO_ELEMENTS")
+        is_open = error.code in [expat.errors.codes[getattr(expat.errors, each)] for each in codes]
+        return tags[-1] if tags and is_open else None
+    return None
 
 
 def _fault(root: Element, name: str) -> Message:

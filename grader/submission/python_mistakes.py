@@ -6,10 +6,11 @@ Like all of `lint`: nothing found here is an error by itself.
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from grader.recording.observations import LintKind
+from grader.submission import scopes
 from grader.submission.conditions import Values
 from grader.submission.scopes import Source, last
 
@@ -28,12 +29,20 @@ def find(source: Source, values: Values) -> Iterator[Found]:
 
 
 def _recursion(source: Source) -> Iterator[Found]:
+    callers = {*source.called_back()}
+    called = {function.name for function in callers}
+    stops = [
+        ast.unparse(call.func).removesuffix("cancel")
+        for call in source.calls("cancel")
+        if source.parents.get(source.parents[call]) in callers
+    ]
+    again = f"{stops[0]}reset()" if stops else "ros"
     for name, function in source.functions.items():
         for node in ast.walk(function):
             if isinstance(node, ast.Call) and last(node.func) == name:
                 owner = node.func.value if isinstance(node.func, ast.Attribute) else None
                 if owner is None or (isinstance(owner, ast.Name) and owner.id == "self"):
-                    yield "calls_itself", name, "", node.lineno
+                    yield "calls_itself", name, again if name in called else "", node.lineno
 
 
 def _idle(source: Source) -> Iterator[Found]:
@@ -64,6 +73,28 @@ def _late(source: Source) -> Iterator[Found]:
                 for each in ast.walk(inner.body):
                     if isinstance(each, ast.Name) and each.id in names - own:
                         yield "late", each.id, "", inner.lineno
+
+
+def own_calls(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
+    """Calls of functions of one's own: for a result that they lack, in another order."""
+    homes = {name: file for file, source in sources.items() for name in source.functions}
+    functions = {name: sources[file].functions[name] for name, file in homes.items()}
+    ends = {
+        name: scopes.last_print(function)
+        for name, function in functions.items()
+        if scopes.returns_nothing(function)
+    }
+    for file, source in sources.items():
+        for call in (node for node in ast.walk(source.tree) if isinstance(node, ast.Call)):
+            if found := scopes.in_other_order(call, functions):
+                yield file, found
+            name, user, owner = last(call.func), source.parents[call], call.func
+            if isinstance(owner, ast.Attribute):
+                owner = owner.value
+            unused = (ast.Expr, ast.Lambda, ast.Return, ast.Await)
+            if name in ends and isinstance(owner, ast.Name) and not isinstance(user, unused):
+                kept = last(user.targets[0]) if isinstance(user, ast.Assign) else ""
+                yield homes[name], ("no_return", kept or name, name, ends[name])
 
 
 def _overrules(source: Source) -> Iterator[Found]:

@@ -12,13 +12,14 @@ import io
 import re
 import tokenize
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 from grader.message import NOTHING, Message, joined, msg
 from grader.submission.folder import read_bounded, shown
+from grader.submission.scopes import scope_nodes
 
 _NAMES_UNSEEN: Final = {"exec", "globals", "locals", "setattr", "vars"}  # may define any name
 _UNPARSED_MAIN: Final = re.compile(rb"^(async\s+)?def\s+main\b", re.MULTILINE)
@@ -76,7 +77,7 @@ def read_source(path: Path) -> PythonSource:
             has_guard=any(map(_begins_guard, data.splitlines())),
             has_main=bool(_UNPARSED_MAIN.search(data)),
         )
-    return replace(_seen(tree), is_refused=bool(byte_fault(data)))
+    return replace(seen(tree), is_refused=bool(byte_fault(data)))
 
 
 def _begins_guard(line: bytes) -> bool:
@@ -90,8 +91,9 @@ def _begins_guard(line: bytes) -> bool:
     return bool(name) and re.search(rb"""['"]__main__['"]""", rest) is not None
 
 
-def _seen(tree: ast.Module) -> PythonSource:
-    top = sorted(_module_level(tree), key=lambda node: getattr(node, "lineno", 0))
+def seen(tree: ast.Module) -> PythonSource:
+    """Return what the syntax tree of a file shows."""
+    top = sorted(scope_nodes(tree), key=lambda node: getattr(node, "lineno", 0))
     defined: dict[str, None] = {}
     imported: set[str] = set()
     has_guard = has_main = calls_main = False
@@ -116,16 +118,6 @@ def _seen(tree: ast.Module) -> PythonSource:
     names = frozenset(defined) | imported | made_global
     open_ended = bool(used & _NAMES_UNSEEN or names & {"*", "__getattr__"})
     return PythonSource(True, has_guard, has_main, calls_main, tuple(defined), names, open_ended)
-
-
-def _module_level(tree: ast.Module) -> Iterator[ast.AST]:
-    """Yield the nodes whose names are the module's: not those inside functions and classes."""
-    pending: list[ast.AST] = list(tree.body)
-    while pending:
-        node = pending.pop()
-        yield node
-        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)):
-            pending += ast.iter_child_nodes(node)
 
 
 def _names_in(node: ast.AST) -> set[str]:

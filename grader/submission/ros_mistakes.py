@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from typing import TypeGuard
 
-from grader.submission import conditions, python_mistakes
+from grader.submission import conditions, python_mistakes, scopes
 from grader.submission.python_mistakes import Found
 from grader.submission.scopes import Function, Source, last, unread
 
@@ -40,6 +40,7 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
         _called_callbacks,
         _around_spin,
         _brackets,
+        _entry,
         _bare_nodes,
         _unspun,
         _cancels,
@@ -50,11 +51,14 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
     for file, source in sources.items():
         yield from ((file, found) for found in _forgotten(source, whole))
         yield from ((file, found) for found in _attributes(source, whole))
+        yield from ((file, found) for found in scopes.misplaced(source.tree, source.parents))
+    yield from python_mistakes.own_calls(sources)
     values = conditions.Values([*trees.values()])
     for file, source in sources.items():
         yield from ((file, found) for found in python_mistakes.find(source, values))
         places = conditions.find(source.tree, source.parents, values)
         yield from ((file, found) for found in places)
+        yield from ((file, found) for found in conditions.held(source.tree, values))
         yield from ((file, found) for found in _stays(source, values))
         yield from ((file, found) for found in _waits(source))
         yield from ((file, found) for found in _numbers(source, values))
@@ -141,6 +145,15 @@ def _brackets(source: Source) -> Iterator[Found]:
                 name in imported
             ):
                 yield "class_kept", f"{name}.Request", "", node.lineno
+
+
+def _entry(source: Source) -> Iterator[Found]:
+    """A main() that cannot be called with nothing, as an entry point calls it."""
+    for node in source.tree.body:
+        if isinstance(node, Function) and node.name == "main":
+            takes = [each.arg for each in node.args.args]
+            if takes := takes[: len(takes) - len(node.args.defaults)]:
+                yield "entry", node.name, ", ".join(takes), node.lineno
 
 
 def _bare_nodes(source: Source) -> Iterator[Found]:
@@ -234,20 +247,12 @@ def _is_plain(value: ast.expr | None) -> bool:
 
 def _waits(source: Source) -> Iterator[Found]:
     """Calls in callbacks, and in what these call, that wait for another callback."""
-    waiting = [function for _, function in source.callbacks()]
-    seen: set[str] = set()
-    while waiting:
-        function = waiting.pop()
-        if function.name in seen:
-            continue
-        seen.add(function.name)
+    for function in source.called_back():
         for node in ast.walk(function):
             if isinstance(node, ast.Call):
                 name = last(node.func)
                 if name in SPINS or (name == "call" and isinstance(node.func, ast.Attribute)):
                     yield "waits", function.name, ast.unparse(node.func), node.lineno
-                if name in source.functions:
-                    waiting.append(source.functions[name])
 
 
 def _colours(source: Source) -> Iterator[Found]:
@@ -310,9 +315,12 @@ def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
                 yield "argument", known, ast.unparse(literal), each.lineno
     for node in ast.walk(source.tree):
         if isinstance(node, ast.Tuple | ast.Call):
-            for each in getattr(node, "elts", None) or getattr(node, "args", []):
+            parts = getattr(node, "elts", None) or getattr(node, "args", [])
+            numbers = [number for each in parts if (number := _number(each)) is not None]
+            for each in parts:
                 number = _number(each)
-                if number is not None and not 0 <= number <= 255:
+                is_part = len(numbers) > 2 and isinstance(number, float)
+                if number is not None and (is_part or not 0 <= number <= 255):
                     yield "argument", "colour", ast.unparse(each), each.lineno
 
 

@@ -1,4 +1,4 @@
-"""A file's syntax tree, its names and scopes; variables that are a function's own by mistake."""
+"""A file's syntax tree, its names and scopes; what is another's by mistake."""
 
 from __future__ import annotations
 
@@ -81,6 +81,19 @@ class Source:
         for name, each in self.given():
             if (function := self.functions.get(last(each))) is not None:
                 yield name, function
+
+    def called_back(self) -> Iterator[Function]:
+        """Yield the callbacks, and what these call."""
+        waiting = [function for _, function in self.callbacks()]
+        seen: set[str] = set()
+        while waiting:
+            function = waiting.pop()
+            if function.name in seen:
+                continue
+            seen.add(function.name)
+            yield function
+            calls = (last(node.func) for node in ast.walk(function) if isinstance(node, ast.Call))
+            waiting += [self.functions[name] for name in calls if name in self.functions]
 
 
 def not_declared(
@@ -186,3 +199,55 @@ def _is_read_first(function: Function, name: str) -> bool:
         for n in scope_nodes(function)
     )
     return adds or bool(reads and sets and min(reads) <= min(sets))
+
+
+# Functions ----------------------------------------------------------------------------------------
+
+
+def misplaced(tree: ast.Module, parents: Parents) -> Iterator[tuple[LintKind, str, str, int]]:
+    """Yield what looks like a method, and is defined in a function or outside of all classes."""
+    for node in ast.walk(tree):
+        outer = parents.get(node)
+        if not isinstance(node, Function) or not isinstance(outer, Function | ast.Module):
+            continue
+        if [each.arg for each in node.args.args[:1]] == ["self"]:
+            yield "misplaced", node.name, getattr(outer, "name", ""), node.lineno
+
+
+def returns_nothing(function: Function) -> bool:
+    """Whether a function gives None whatever happens."""
+    gives = (ast.Return, ast.Yield, ast.YieldFrom, ast.Raise)
+    return isinstance(function, ast.FunctionDef) and not any(
+        isinstance(node, gives) and getattr(node, "value", node) is not None
+        for node in scope_nodes(function)
+    )
+
+
+def last_print(function: Function) -> int:
+    """Return the line of a function's last print(), or that of its def."""
+    calls = (node for node in scope_nodes(function) if isinstance(node, ast.Call))
+    prints = (each.lineno for each in calls if last(each.func) == "print")
+    return max(prints, default=function.lineno)
+
+
+def in_other_order(
+    call: ast.Call, functions: Mapping[str, Function]
+) -> tuple[LintKind, str, str, int] | None:
+    """Return a call that gives two arguments each in the other's place; None for any other."""
+    called, given = call.func, [*call.args]
+    if last(called) == "partial" and given:
+        called, given = given[0], given[1:]
+    function = functions.get(last(called))
+    takes = [each.arg for each in function.args.args] if function and len(given) > 1 else []
+    if function is None or any(isinstance(each, ast.Starred) for each in given):
+        return None
+    takes = takes[1:] if takes[:1] == ["self"] else takes
+    places = {name: at for at, name in enumerate(map(last, given)) if name}
+    is_wrong = any(
+        name in places and places[name] != at and last(given[at]) in takes[places[name] :][:1]
+        for at, name in enumerate(takes[: len(given)])
+    )
+    values = {n: getattr(each, "value", None) for n, each in zip(takes, given, strict=False)}
+    if values.get("width") in (0, 1) and isinstance(off := values.get("off"), int) and off > 1:
+        is_wrong = True  # the pen's two, which nobody tells apart in a row of numbers
+    return ("swapped", function.name, ", ".join(takes), call.lineno) if is_wrong else None

@@ -70,6 +70,8 @@ class EndWitness:
 
     def raised(self, error: BaseException) -> None:
         """Note an exception that has ended the program, with our frames still in its traceback."""
+        if isinstance(error.__cause__, StopIteration):  # it has left rclpy's coroutine
+            error = error.__cause__
         if not isinstance(error, SystemExit) or error.code:
             self._end("raised", error_row(error, self._place(error), self._now_s()))
 

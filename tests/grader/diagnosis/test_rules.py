@@ -572,6 +572,17 @@ def test_a_request_that_is_made_and_never_sent_is_told_with_its_line():
     )
 
 
+def test_arguments_in_another_order_stand_before_the_finding_that_they_may_explain():
+    swapped = LintFinding("swapped", "set_pen", "off, width", LINE)
+    found = of_check("The pen is off.", lint_findings=(swapped,))
+    assert str(found.cause) == (
+        "set_pen() takes (off, width), and is given them in another order (drive.py, line 39). "
+        "The pen is off."
+    )
+    assert str(found.help) == "Give them in the order of `def set_pen`: (off, width)."
+    assert found.place == LINE
+
+
 def test_the_finding_of_a_check_has_the_line_that_sends_what_it_speaks_of():
     sends = replace(LINE, line=50)
     ends = (replace(VELOCITY, used_at=LINE), POSES, replace(PEN, used_at=sends))
@@ -609,6 +620,34 @@ def test_a_name_of_the_source_is_no_pattern():
     found = diagnose(Recordings(raising("AssertionError", said_, place, lint_findings=(comma,))))
     assert found is not None
     assert found.place == place
+
+
+def of_import(text, *findings):
+    recording = raising("ImportError", text, LINE, lint_findings=findings)
+    found = diagnose(Recordings(recording))
+    assert found is not None
+    return found
+
+
+def test_a_name_that_an_own_module_lacks_is_told_with_what_it_has():
+    text = "cannot import name 'COLORS' from 'pens.colours'"
+    near, all_ = (LintFinding("not_defined", "COLORS", e, LINE) for e in ("COLOURS", "RED, red"))
+    assert str(of_import(text, near).help) == (
+        "Your module pens.colours has COLOURS, not COLORS: write that."
+    )
+    assert "has no COLORS; it has: RED, red." in str(of_import(text, all_).help)
+
+
+def test_two_modules_that_import_each_other_are_told_with_the_import_that_nothing_uses():
+    text = "cannot import name 'Node' from partially initialized module 'pens.node'"
+    place = replace(LINE, file="pens/colours.py", line=1)
+    used = LintFinding("circular", "pens/colours.py", "", replace(LINE, file="pens/node.py"))
+    unused = LintFinding("circular", "pens/node.py", "unused", place)
+    found = of_import(text, used, unused)
+    assert "pens/node.py imports pens/colours.py, and pens/colours.py imports" in str(found.cause)
+    assert found.place == place
+    assert str(found.help) == "Take that import out: pens/colours.py uses nothing of it."
+    assert "a third file" in str(of_import(text, used).help)
 
 
 def test_a_module_that_lies_beside_is_told_by_its_full_name():

@@ -80,8 +80,18 @@ def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
         ),
         (
             changed("package.xml", "</license>", "</licence>"),
-            "ros2 run would not find this: package.xml does not parse, line 7: mismatched tag, so "
-            "that colcon takes it for no ROS package",
+            "ros2 run would not find this: package.xml does not parse: <license> of line 7 is not "
+            "closed, so that colcon takes it for no ROS package",
+        ),
+        (
+            changed("package.xml", "A</maintainer>", "A<maintainer>"),
+            "ros2 run would not find this: package.xml does not parse: <maintainer> of line 6 is "
+            "not closed, so that colcon takes it for no ROS package",
+        ),
+        (
+            changed("package.xml", "<license>BSD</license>", "<license>B&D</license>"),
+            "ros2 run would not find this: package.xml does not parse, line 7: not well-formed "
+            "(invalid token), so that colcon takes it for no ROS package",
         ),
         (
             changed("package.xml", "<license>BSD</license>", ""),
@@ -105,8 +115,22 @@ def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
         ),
         (
             changed("package.xml", "<name>spiral", "<name>circle"),
-            "ros2 run circle would find nothing: setup.cfg installs programs in $base/lib/spiral, "
-            "and package.xml calls the package circle: expected install_scripts=$base/lib/circle",
+            "ros2 run would not find this: package.xml calls the package circle, and setup.cfg and "
+            "setup.py call it spiral: expected <name>spiral</name>",
+        ),
+        (
+            changed("setup.cfg", "install_scripts=$base/lib/spiral", "install_scripts=$base/lib/s"),
+            "ros2 run spiral would find nothing: setup.cfg installs programs in $base/lib/s, "
+            "and package.xml calls the package spiral: expected install_scripts=$base/lib/spiral",
+        ),
+        (
+            {
+                "spiral/utils/__init__.py": "",
+                "spiral/utils/walls.py": "",
+                "spiral/node.py": f"from spiral.utils import walls\n{NODE}",
+            },
+            "ros2 run would not start this: setup.py lists the packages spiral, and so does not "
+            "install spiral.utils",
         ),
         (
             {"resource/spiral": None},
@@ -139,7 +163,12 @@ def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
                 **changed("setup.py", "packages=[package_name]", "packages=find_packages()"),
             },
             "ros2 run would not start this: setup.py lists no packages, and so does not install "
-            "spiral",
+            "spiral: there is no spiral/__init__.py",
+        ),
+        (
+            changed("setup.py", "'console_scripts'", "'console_script'"),
+            "setup.py names no console script, so that `ros2 run` finds nothing to start. Expected "
+            "in its entry_points: 'console_scripts' instead of 'console_script'",
         ),
         ({"setup.py": None, "setup.cfg": None}, "colcon would not build this: no setup.py"),
     ],

@@ -190,6 +190,15 @@ def test_a_missing_module_is_named_with_what_comes_near(tmp_path: Path) -> None:
     assert "no file spiral/turtle_controler.py. Near: spiral/turtle_controller.py." in text
 
 
+def test_a_module_that_was_saved_as_text_is_named(tmp_path: Path) -> None:
+    files = package("spiral")
+    files["spiral/turtle_controller.py.txt"] = files.pop("spiral/turtle_controller.py")
+    text = refused(lay(tmp_path, files))
+    assert text.endswith(
+        "There is spiral/turtle_controller.py.txt: rename it to turtle_controller.py, without .txt."
+    )
+
+
 def test_a_module_of_another_submission_is_out_of_reach(tmp_path: Path) -> None:
     setup = SETUP.format(package="alice", entries="'turtle_controller = bob.node:main'")
     setup = setup.replace("name=", "package_dir={'': '../'}, name=")

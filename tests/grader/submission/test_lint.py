@@ -149,6 +149,10 @@ PLACES = {
     "same_colour",
     "cancels",
     "grows",
+    "holds",
+    "zero",
+    "ends",
+    "no_return",
 }
 
 
@@ -172,6 +176,8 @@ PLACED = {
     ),
     f"{HEAD}    def go(self):\n        return self.speed\n": ("never_set", "speed", 5),
     f"{HEAD}    def go(self):\n        self.n += 1\n": ("never_set", "n", 5),
+    "def pen(r, width, off):\n    pass\npen(255, 3, 0)\npen(9, 0, 3)\n": ("swapped", "pen", 4),
+    "def main(args):\n    pass\n": ("entry", "main", 1),
     f"{HEAD}    def go(self):\n        self.n = self.n + 1\n": ("never_set", "n", 2),
     "from geometry_msgs.msg import Twist\nTwist = Twist()\n": ("hides_class", "Twist", 2),
     "class C:\n    def __init__(self):\n        self.v = 0.0,\n": ("comma", "v", 3),
@@ -206,6 +212,40 @@ def test_what_one_file_sets_another_may_read():
     base = "class Base:\n    def go(self):\n        return self.stoped\n"
     source = f"{HEAD}{READ}    def on_pose(self, pose):\n        self.stoped = True\n"
     assert reported({"a.py": source, "b.py": base}) == []
+
+
+COLOURS = "from .node import Node\nRED = (255, 0, 0)\ndef red(): print(RED)\n"
+TOLD = {
+    "a name that a module of one's own lacks": (
+        {"s/node.py": "from s.colours import GREEN, RED\nclass Node: pass\n"},
+        [
+            ("circular", "s/node.py", "unused", "s/colours.py", 1),
+            ("not_defined", "GREEN", "RED, red", "s/node.py", 1),
+            ("circular", "s/colours.py", "unused", "s/node.py", 1),
+        ],
+    ),
+    "a name that is spelt otherwise": (
+        {"s/draw.py": "from .colours import REDS\n", "s/node.py": "Node = 1\n"},
+        [("not_defined", "REDS", "RED", "s/draw.py", 1)],
+    ),
+    "a function of another file that returns nothing": (
+        {"s/draw.py": "from s.colours import red\nr = red()\n", "s/node.py": "Node = 1\n"},
+        [("no_return", "r", "red", "s/colours.py", 3)],
+    ),
+    "what is there": (
+        {"s/node.py": "from s import colours, walls\nNode = 1\n", "s/walls/a.py": "", "s/b.py": ""},
+        [],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TOLD)
+def test_what_the_files_of_a_package_show_together_is_found(name):
+    files, wanted = TOLD[name]
+    found = lint.find({"s/__init__.py": "", "s/colours.py": COLOURS, **files})
+    kinds = ("not_defined", "circular", "no_return")
+    told = [(s.kind, s.name, s.near, s.place.file, s.place.line) for s in found if s.kind in kinds]
+    assert told == wanted
 
 
 def test_what_a_package_shows_is_found_where_it_is_read(tmp_path):
