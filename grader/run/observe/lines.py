@@ -47,22 +47,19 @@ class LineMarks:
 
     def install(self) -> None:
         """Have all that is imported or run from now on compiled with marks."""
-        plain, keep = SourceFileLoader.source_to_code, SourceFileLoader._cache_bytecode  # type: ignore[attr-defined]
+        get_plain = SourceFileLoader.get_code
 
-        def source_to_code(loader: Any, data: Any, path: Any, **options: Any) -> CodeType:
-            code: CodeType = plain(loader, data, path, **options)
-            return self.marked(code, data, str(path))
-
-        def cache_bytecode(loader: Any, path: str, *others: Any) -> None:
-            if not self._files.has(path):  # what has marks is for this process alone
-                keep(loader, path, *others)
+        def get_code(loader: Any, name: str) -> CodeType | None:
+            code, file = get_plain(loader, name), loader.get_filename(name)
+            if code is None or not self._files.has(file):
+                return code
+            return self.marked(code, loader.get_data(file), file)
 
         def compile_program(source: Any, file: str, mode: str) -> CodeType:
             code: CodeType = compile(source, file, mode)
             return self.marked(code, source, file)
 
-        SourceFileLoader.source_to_code = source_to_code  # type: ignore[assignment]
-        SourceFileLoader._cache_bytecode = cache_bytecode  # type: ignore[attr-defined]
+        SourceFileLoader.get_code = get_code  # type: ignore[assignment, method-assign]
         runpy.compile = compile_program  # type: ignore[attr-defined]
 
     def marked(self, code: CodeType, source: bytes | str, file: str) -> CodeType:

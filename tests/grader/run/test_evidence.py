@@ -29,7 +29,7 @@ END = {
 }
 ACCOUNT = {
     **{"is_blind": False, "ends": [END], "waits": [], "slow": [], "timers": [], "caught": []},
-    **{"spun_s": 0.5, "stop": None, "raised": None, "returned_s": 1},
+    **{"ran": [], "spun_s": 0.5, "stop": None, "raised": None, "returned_s": 1},
 }
 
 
