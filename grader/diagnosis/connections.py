@@ -11,11 +11,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from difflib import SequenceMatcher
 
-from grader.diagnosis import source_lines, standstill
+from grader.diagnosis import lint_findings, standstill
 from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.source_lines import of_kind
+from grader.diagnosis.lint_findings import of_kind
 from grader.message import Message, msg
 from grader.recording.observations import End, EndKind
 from grader.recording.subject import Endpoint
@@ -191,10 +191,10 @@ def _first(
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
         if end.name == near.name:
-            found = source_lines.imported_at(case, end.type, near.type)
+            found = lint_findings.imported_at(case, end.type, near.type)
             end = replace(end, place=found or end.place)
         else:
-            end = replace(end, place=source_lines.named_at(case, end.name, end.place))
+            end = replace(end, place=lint_findings.named_at(case, end.name, end.place))
         return Diagnosis(key, describe(end, near), _fix(end, near), place=end.place)
     return None
 

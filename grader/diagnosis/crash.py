@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis import known_exceptions, lint_findings, source_lines
+from grader.diagnosis import known_exceptions, lint_findings, lint_hints
 from grader.diagnosis.case import Case, at, excerpt, line, sentences, thread_exception
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, plain_text
@@ -115,11 +115,11 @@ def wrong_value(case: Case) -> Diagnosis | None:
     if found is None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
-    given = source_lines.given_at(case, found["field"], _fitting(found["what"]))
+    given = lint_findings.given_at(case, found["field"], _fitting(found["what"]))
     place = given.place if given is not None else place
     number = given.near if given is not None else ""
     what, help_ = _wanted(found["field"], excerpt(found["what"]), place, number)
-    for finding in source_lines.of_kind(case, "comma"):
+    for finding in lint_findings.of_kind(case, "comma"):
         if place is not None and re.search(rf"\b{re.escape(finding.name)}\b", place.text):
             place = finding.place
             help_ = msg("Leave out the comma at its end: it makes a tuple of the number.")
@@ -140,7 +140,7 @@ def _fitting(what: str) -> Callable[[str], bool]:
     """Return whether a number, as it is written, may be what a field must be."""
     if limits := _RANGE.search(what):
         low, high = float(limits[1]), float(limits[2])
-        return lambda text: low <= source_lines.number(text) <= high
+        return lambda text: low <= lint_findings.number(text) <= high
     if "'float'" in what:
         return lambda text: "." in text or "e" in text
     if "'int'" in what:
@@ -180,10 +180,10 @@ def _wanted(
         )
     if "'int'" in what:
         number = number or "255.0"
-        if field in _COLOURS and 0 < source_lines.number(number) < 1:
+        if field in _COLOURS and 0 < lint_findings.number(number) < 1:
             return msg("an int"), msg(
                 "Colours are whole numbers from 0 to 255: write {whole} instead of {number}.",
-                whole=round(255 * source_lines.number(number)),
+                whole=round(255 * lint_findings.number(number)),
                 number=number,
             )
         return msg("an int"), msg(
@@ -248,7 +248,7 @@ def crashed(case: Case) -> Diagnosis | None:
     if case.run.outcome != "crashed" or raised is None:
         return None
     when = _when(case, raised)
-    hint = lint_findings.explain(case, raised) or known_exceptions.explain(raised)
+    hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
     place = hint.place or raised.place
     at_line = place if hint.text else raised.place
     cause = msg(
@@ -266,7 +266,7 @@ def thread_crashed(case: Case) -> Diagnosis | None:
     raised = case.raised or thread_exception(case.tail)
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
-    hint = lint_findings.explain(case, raised) or known_exceptions.explain(raised)
+    hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
     place = hint.place or raised.place
     cause = msg(
         "A thread of your program crashed{error}{where}.",

@@ -18,7 +18,7 @@ from grader.diagnosis import (
     crash,
     imports,
     lint_findings,
-    source_lines,
+    lost_points,
     standstill,
     unnoticed,
 )
@@ -107,7 +107,7 @@ def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
     }
     if found.key not in lines or (found.place is not None and "while" in found.place.text):
         return found
-    return replace(found, place=source_lines.first_of(case, lines[found.key]) or found.place)
+    return replace(found, place=lint_findings.first_of(case, lines[found.key]) or found.place)
 
 
 def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
@@ -137,7 +137,7 @@ def _shown(found: Diagnosis) -> Diagnosis:
 
 def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding what the source shows about its possible cause."""
-    with_finding = source_lines.beside(found, case)
+    with_finding = lost_points.beside(found, case)
     if with_finding is not found:
         return _shown(with_finding)
     return _shown(_with_unused(found, case) or _with_place(found, case))
@@ -149,7 +149,7 @@ def _text(found: Diagnosis) -> str:
 
 def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add the publisher or client that a finding names, where it was never used."""
-    end = source_lines.unused(found, case)
+    end = lost_points.unused(found, case)
     if end is None:
         return None
     if end.kind == "publisher":
@@ -157,7 +157,7 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
         return replace(found, help=sentences(found.help, unsent), place=end.place)
     unsent = msg("Your client{where} has sent no request.", where=line(end.place))
     cause = sentences(found.cause, unsent)
-    made = source_lines.first_of(case, "unsent")
+    made = lint_findings.first_of(case, "unsent")
     if made is None:
         return replace(found, cause=cause, place=end.place)
     help_ = msg("Send the request that you make: call_async(request).")
@@ -178,4 +178,4 @@ def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
         at = min((found.start() for found in spoken if found), default=len(text))
         if at < first and end.used_at is not None:
             first, place = at, end.used_at
-    return replace(found, place=source_lines.set_at(case, text) or place)
+    return replace(found, place=lint_findings.set_at(case, text) or place)

@@ -7,7 +7,7 @@ import sys
 
 from grader.diagnosis.case import Case, excerpt, line
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.source_lines import of_kind
+from grader.diagnosis.lint_findings import of_kind
 from grader.message import Message, msg
 from grader.recording.observations import Raised
 

@@ -24,7 +24,7 @@ from grader import linux
 from grader.errors import GraderFailure
 from grader.inspection import answer, inspector
 from grader.inspection.answer import Inspection, SetUp, SetUpFacts
-from grader.inspection.by_itself import unlike_launched
+from grader.inspection.launched import unlike_launched
 from grader.inspection.trace import FAILED, PackageTrace
 from grader.message import Message, msg
 from grader.recording.recording import Outcome, Recording

@@ -119,7 +119,7 @@ def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
 
 def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
     """Return notes on how a program started by itself differs from its start by launch files."""
-    from grader.inspection.by_itself import not_read, unlike_launched
+    from grader.inspection.launched import not_read, unlike_launched
 
     if not isinstance(submission.start, EntryPoint):
         return []

@@ -1,138 +1,26 @@
-"""Finds cause and line to change in the source, where the run shows their effect only."""
+"""Finds why a check lost points: in the source, and in the lines that the run did not reach."""
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from grader.diagnosis.case import Case, excerpt, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.lint_findings import in_other_order, is_about_stopping, of_kind
 from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.message import NOTHING, Message, msg
-from grader.recording.observations import End, LintFinding, LintKind, SourceLine
+from grader.recording.observations import End, LintFinding, LintKind
 
 #: Kinds that say more of a condition than whether it was ever true.
 _SAY_MORE = ("at_wall", "uncalled", "stays", "always", "local", "unread")
-#: Words of checks about a stop that did not come, or came at once.
-_ABOUT_STOPPING = ("wall", "zeros")
-
-
-def of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
-    """Yield the lint findings of these kinds."""
-    return (finding for finding in case.observed.lint_findings if finding.kind in kinds)
-
-
-def first_of(case: Case, kind: LintKind) -> SourceLine | None:
-    """Return the place of the first finding of a kind."""
-    return next((finding.place for finding in of_kind(case, kind)), None)
-
-
-def named_at(case: Case, name: str, place: SourceLine | None) -> SourceLine | None:
-    """Return the line of a name, where that is a constant apart from its use."""
-    if place is None or name.lstrip("/") in place.text:
-        return place
-    for finding in of_kind(case, "constant"):
-        if finding.name.lstrip("/") == name.lstrip("/"):
-            return finding.place
-    return place
-
-
-def number(text: str) -> float:
-    """Parse a number of a source; not a number where it is none."""
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
-def imported_at(case: Case, end_type: str, wanted: str) -> SourceLine | None:
-    """Return the import of a class that has the right name and is another package's."""
-    package, _, rest = end_type.partition("/")
-    name = rest.rpartition("/")[2]
-    for finding in of_kind(case, "imports"):
-        if finding.name == name == wanted.rpartition("/")[2] and finding.near.startswith(package):
-            return finding.place
-    return None
-
-
-def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> LintFinding | None:
-    """Return what gives a field of a message a number that does not fit."""
-    wrong = (each for each in of_kind(case, "argument") if not fits(each.near))
-    names = (field, f"linear.{field}", f"angular.{field}", "colour")
-    return next((each for each in wrong if each.name in names), None)
-
-
-def in_other_order(finding: LintFinding) -> tuple[Message, Message]:
-    """Say that a function is given its arguments in another order, and what to do."""
-    name, takes = excerpt(finding.name), excerpt(finding.near)
-    return (
-        msg("{name}() takes ({takes}), and is given them in another order", name=name, takes=takes),
-        msg("Give them in the order of `def {name}`: ({takes}).", name=name, takes=takes),
-    )
-
-
-def _is_about_stopping(text: str) -> bool:
-    """Whether a check's words are about a stop that did not come, or came at once."""
-    return any(word in text for word in _ABOUT_STOPPING)
-
-
-def set_at(case: Case, text: str) -> SourceLine | None:
-    """Return where the field of a message is set that a finding names first."""
-    if was_set := re.search(r"\b((?:linear|angular)\.[xyz]) was set", text):
-        for finding in of_kind(case, "sets"):
-            if finding.name == was_set[1]:
-                return finding.place
-    if value := re.search(r"\b(linear\.x|angular\.z) (is|was) (-?[\d.]+)", text):
-        given = [each for each in of_kind(case, "argument") if each.name == value[1]]
-        meant = [e.place for e in given if number(e.near) == number(value[3].rstrip("."))]
-        if meant:  # what was the same all the time is to grow where it is passed on
-            return meant[-1 if value[2] == "was" else 0]
-    if "limits does your node compare" in text or "look at its conditions" in text:
-        for colour in of_kind(case, "same_colour"):
-            if colour.name in text:
-                return colour.place
-        middles = [*of_kind(case, "at_middle")]
-        one_axis = [each for each in middles if each.name == "one axis"]
-        off = [each for each in middles if not 5.4 < number(each.near) < 5.65]
-        for finding in (*off, *one_axis, *middles):
-            return finding.place
-    if re.search(r"turn(?:ed)? on the spot", text):
-        halts = {each.place.line for each in of_kind(case, "argument") if number(each.near) == 0}
-        for finding in of_kind(case, "argument"):
-            is_turning = finding.name == "angular.z" and number(finding.near) != 0
-            if is_turning and finding.place.line in halts:
-                return finding.place
-    zeros = [e for e in of_kind(case, "argument") if e.name == "linear.x" and number(e.near) == 0]
-    if "never moved" in text:  # where what stays zero is passed on by its name
-        for finding in zeros:
-            if finding.near not in finding.place.text:
-                return finding.place
-    if "told to stop" in text:
-        for finding in zeros:
-            if "linear.x" in finding.place.text:
-                return finding.place
-        if not zeros and (cancels := first_of(case, "cancels")) is not None:
-            return cancels
-    found = [
-        (at, finding.place)
-        for finding in of_kind(case, "sets")
-        if (at := text.find(finding.name)) >= 0
-        and ("." in finding.name or f"`{finding.name}`" in text)
-    ]
-    if _is_about_stopping(text) and "drive on" not in text:
-        at = min(text.find(word) for word in _ABOUT_STOPPING if word in text)
-        found += [(at, finding.place) for finding in of_kind(case, "at_wall")]
-    return min(found, key=lambda each: each[0])[1] if found else None
 
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the lint finding that may be its cause."""
     if (without := _lacks(case) or _unspun(case)) is not None:
         return replace(without, run=found.run)
-    if (missed := _hidden(found, case) or _missed(found, case)) is not None:
-        return missed
+    if (lost := _hidden(found, case) or _missed(found, case)) is not None:
+        return lost
     if (meant := _misunderstood(found, case)) is not None:
         return meant
     for finding in of_kind(case, "swapped"):
@@ -209,7 +97,7 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
         goals = ["publish"] if end.kind == "publisher" else ["call", "call_async"]
     elif "look at its conditions" in spoken:
         goals = ["branch"]
-    elif _is_about_stopping(spoken):
+    elif is_about_stopping(spoken):
         goals = ["publish"]
     else:
         return None
@@ -314,7 +202,7 @@ def _unspun(case: Case) -> Diagnosis | None:
 def _beside_condition(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the condition that may be its cause."""
     spoken = f"{found.cause!s} {found.help!s}"
-    walls = [*of_kind(case, "at_wall")] if _is_about_stopping(spoken) else []
+    walls = [*of_kind(case, "at_wall")] if is_about_stopping(spoken) else []
     for finding in walls:
         if (wrong := _wrong_condition(finding, spoken)) is not None:
             text, help_ = wrong

@@ -1,0 +1,434 @@
+"""Explains exceptions where the source shows more than their text.
+
+A lint finding by itself is not reported: it may be meant. `LintFinding` describes each kind.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+from grader.diagnosis import known_exceptions
+from grader.diagnosis.case import Case, excerpt, function, line
+from grader.diagnosis.known_exceptions import Hint
+from grader.diagnosis.lint_findings import in_other_order, of_kind
+from grader.message import Message, as_message, msg
+from grader.recording.observations import LintKind, Raised
+from grader.text import misspelt
+
+#: So much of an exception's text is searched [characters].
+_LONGEST = 1000
+_GIVEN = re.compile(r"(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w")
+_VARIABLE = re.compile(r"variable '(\w{1,60})'")
+_NO_ATTRIBUTE = re.compile(r"has no attribute '(\w{1,60})'")
+_OF_A_SERVICE = re.compile(r"(\w{1,60})(?:\.__init__)?\(\) (?:got an unexpected k|takes no arg)")
+#: What an exception shows not to have been begun -> what the source lacks.
+_BEGINNINGS: dict[Message, tuple[LintKind, ...]] = {
+    known_exceptions.NO_INIT: ("no_init",),
+    known_exceptions.NO_NODE: ("no_super",),
+}
+#: What is asked for an entry, and for which.
+_ASKED = re.compile(r"\b([A-Za-z_][\w.]{0,60})\[([^\[\]]{1,60})\]")
+_PRINTED = re.compile(r"print\(([\w.]{1,60})\)$")
+_NO_INSTANCE = "Service classes can not be instantiated"
+
+
+def explain(case: Case, raised: Raised) -> Hint | None:
+    """Explain an exception where the source or the scene shows more than its text."""
+    return next((hint for rule in _RULES if (hint := rule(case, raised)) is not None), None)
+
+
+def _not_global(case: Case, raised: Raised) -> Hint | None:
+    found = _VARIABLE.search(raised.text[:_LONGEST])
+    if raised.type != "UnboundLocalError" or found is None:
+        return None
+    for finding in of_kind(case, "global"):
+        if finding.name == found[1]:
+            word = excerpt(finding.near)
+            outside = msg("outside")
+            if word.startswith("global"):
+                outside = msg("at the top of the file")
+            here = as_message(function(raised.place)) or msg("this function")
+            return Hint(
+                msg(
+                    "Write `{word}` as the first line of {here}: without it that is another"
+                    " variable, which has no value yet.",
+                    word=word,
+                    here=here,
+                ),
+                msg(
+                    "`{name}` is assigned {outside} (line {line}) and in {here}: add `{word}`",
+                    name=excerpt(finding.name),
+                    outside=outside,
+                    line=finding.place.line,
+                    here=here,
+                    word=word,
+                ),
+            )
+    return None
+
+
+def _without_self(case: Case, raised: Raised) -> Hint | None:
+    found = _GIVEN.search(raised.text[:_LONGEST])
+    if raised.type != "TypeError" or found is None or int(found[3]) != int(found[2]) + 1:
+        return None
+    for finding in of_kind(case, "without_self"):
+        if finding.name == found[1]:
+            written = excerpt(finding.place.text)
+            rest = written.partition("(")[2].lstrip()
+            comma = "" if rest.startswith(")") else ", "
+            return Hint(
+                msg(
+                    "A method takes self before all else: write `{written}`.",
+                    written=f"{written.partition('(')[0]}(self{comma}{rest}",
+                ),
+                place=finding.place,
+            )
+    return None
+
+
+def _in_other_order(case: Case, raised: Raised) -> Hint | None:
+    """An exception in a function that is given two arguments each in the other's place."""
+    for finding in of_kind(case, "swapped"):
+        if function(raised.place) == f"{finding.name}()":
+            what, help_ = in_other_order(finding)
+            return Hint(help_, what, finding.place)
+    return None
+
+
+def _misplaced(case: Case, raised: Raised) -> Hint | None:
+    """A method whose def is indented too far, or not far enough."""
+    found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
+    for finding in of_kind(case, "misplaced") if found is not None else ():
+        if found is None or finding.name != found[1]:
+            continue
+        how = msg("too little: it is outside of the class")
+        if finding.near:
+            how = msg("too far: it is inside {outer}()", outer=excerpt(finding.near))
+        return Hint(
+            msg("Begin it in the column of the other defs of the class, and move all its lines."),
+            msg("`def {name}` is indented {how}", name=excerpt(finding.name), how=how),
+            finding.place,
+        )
+    return None
+
+
+def _lacks_entry(case: Case, raised: Raised) -> Hint | None:
+    """A dict or a list that lacks what it is asked for, where the source shows what it has."""
+    found = _ASKED.findall(raised.place.text) if raised.place is not None else []
+    asked = {of.rpartition(".")[2]: index for of, index in found}
+    is_index = raised.type == "IndexError" and "index out of range" in raised.text
+    for finding in of_kind(case, "holds") if is_index or raised.type == "KeyError" else ():
+        if (index := asked.get(finding.name.rpartition(".")[2])) is None:
+            continue
+        words = {"name": excerpt(finding.name), "has": excerpt(finding.near)}
+        words |= {"index": excerpt(index), "key": excerpt(raised.text)}
+        if is_index:
+            return Hint(
+                msg("Indexes begin at 0: if you count from 1, write {name}[{index} - 1].", **words),
+                msg("{name} has the indexes {has}, and `{index}` is another", **words),
+            )
+        if f"'{raised.text}'" in finding.near.split(", "):
+            return Hint(
+                msg("Write {key}: instead of '{key}': there, and so on.", **words),
+                msg("{name} has the text '{key}', and is asked for the number {key}", **words),
+                finding.place,
+            )
+        return Hint(
+            msg(
+                "Ask for one of these, with quotes or without as there, or add {key}{where}.",
+                where=line(finding.place),
+                **words,
+            ),
+            msg("{name} has no entry {key}; it has: {has}", **words),
+        )
+    return None
+
+
+def _is_zero(case: Case, raised: Raised) -> Hint | None:
+    """A division by what begins with 0."""
+    place = raised.place
+    for finding in of_kind(case, "zero") if raised.type == "ZeroDivisionError" else ():
+        if place is not None and re.search(rf"[/%] *{re.escape(finding.name)}\b", place.text):
+            name, number = excerpt(finding.name), excerpt(finding.near)
+            other = "0.1" if "." in number else "1"
+            text = msg(
+                "line {line} divides by {name}, which begins with {number}",
+                line=place.line,
+                name=name,
+                number=number,
+            )
+            help_ = msg(
+                "Let it begin with another number: {name} = {other}.", name=name, other=other
+            )
+            return Hint(help_, text, finding.place)
+    return None
+
+
+def _ends(case: Case, raised: Raised) -> Hint | None:
+    """A next() of a generator that has given all."""
+    found = [*of_kind(case, "ends")] if raised.type == "StopIteration" else []
+    if len(found) != 1 or raised.place is None:
+        return None
+    name = excerpt(found[0].name)
+    return Hint(
+        msg("Let {name}() go on: while True:, a longer range(), itertools.count().", name=name),
+        msg(
+            "next() in line {line} finds nothing more: {name}() has come to its end",
+            line=raised.place.line,
+            name=name,
+        ),
+        found[0].place,
+    )
+
+
+def _hidden_method(case: Case, raised: Raised) -> Hint | None:
+    if "object is not callable" not in raised.text[:_LONGEST] or raised.place is None:
+        return None
+    for finding in of_kind(case, "method"):
+        name = excerpt(finding.name)
+        if f"self.{name}(" in raised.place.text:
+            return Hint(
+                msg(
+                    "self.{name} is set to something else{where}, and that hides the method "
+                    "{name}(): give one of them another name.",
+                    name=name,
+                    where=line(finding.place),
+                )
+            )
+    return None
+
+
+def _class_given(case: Case, raised: Raised) -> Hint | None:
+    place = raised.place
+    for finding in of_kind(case, "class"):
+        if place is not None and ("spin" in place.text or place.line == finding.place.line):
+            call, name = excerpt(finding.near), excerpt(finding.name)
+            return Hint(
+                msg(
+                    "The parentheses are missing: node = {name}(), then {call}(node).",
+                    name=name,
+                    call=call,
+                ),
+                msg(
+                    "{call} was given a class, not a node that was made of it",
+                    call=call.rpartition(".")[2],
+                ),
+                finding.place,
+            )
+    return None
+
+
+def _service_for_request(case: Case, raised: Raised) -> Hint | None:
+    services = {each.type.rpartition("/")[2] for each in case.scene_has if each.kind == "service"}
+    services |= {end.type.rpartition("/")[2] for end in case.ends if end.kind == "client"}
+    text = raised.text[:_LONGEST]
+    found = _OF_A_SERVICE.search(text)
+    name = found[1] if found else ""
+    if _NO_INSTANCE in text and raised.place is not None:
+        calls = re.findall(r"(\w{1,60})\(", raised.place.text)
+        name = next((each for each in calls if each in services), "")
+    if name not in services:
+        return None
+    return Hint(
+        msg(
+            "Write {name}.Request(...) there: that is what a request is made of.",
+            name=excerpt(name),
+        ),
+        msg("{name} is the service, not a request to it", name=excerpt(name)),
+    )
+
+
+def _misspelt(case: Case, raised: Raised) -> Hint | None:
+    """An attribute that is set under another name, or nowhere."""
+    found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
+    if found is None or raised.place is None or f".{found[1]}" not in raised.place.text:
+        return None
+    name = excerpt(found[1])
+    for finding in of_kind(case, "local"):
+        if finding.name == found[1] and finding.near == f"self.{found[1]}":
+            return Hint(
+                msg("Write self.{name} = ... there.", name=name),
+                msg("`{name}` is a variable of that function; self.{name} is never set", name=name),
+                finding.place,
+            )
+    for finding in of_kind(case, "never_read"):
+        if misspelt(finding.name, found[1]):
+            return Hint(
+                msg("Write self.{name} there, or the other name here.", name=name),
+                msg(
+                    "self.{name} has no value: what is set is self.{other}, which is never read; "
+                    "compare the names",
+                    name=name,
+                    other=excerpt(finding.name),
+                ),
+                finding.place,
+            )
+    for finding in of_kind(case, "never_set"):
+        if finding.name == found[1] and "__init__" in finding.place.text:
+            return Hint(
+                msg("Write self.{name} = ... in __init__, or compare the name.", name=name),
+                msg(
+                    "self.{name} has no value when that line runs: nothing has set it by then",
+                    name=name,
+                ),
+                finding.place,
+            )
+    return None
+
+
+def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
+    """A callback whose own line has to change."""
+    text = raised.text[:_LONGEST]
+    if "callback should be" in text:
+        wrong = [*of_kind(case, "no_message", "without_self")]
+        for finding in wrong:
+            if len(wrong) == 1 or raised.place is None or finding.name in raised.place.text:
+                name = excerpt(finding.name)
+                return Hint(
+                    msg(
+                        "A method takes self before all else, and a callback of a subscription the "
+                        "message: def {name}(self, pose).",
+                        name=name,
+                    ),
+                    msg("{name}(), the callback of a subscription, takes no message", name=name),
+                    finding.place,
+                )
+    missing = known_exceptions.MISSING.search(text)
+    for finding in of_kind(case, "entry") if missing is not None and missing[1] == "main" else ():
+        takes = excerpt(finding.near)
+        with_none = ", ".join(f"{each}=None" for each in takes.split(", "))
+        return Hint(
+            msg("Write `def main({takes}):` there.", takes=with_none),
+            msg("main() is called with nothing, and takes ({takes})", takes=takes),
+            finding.place,
+        )
+    for finding in of_kind(case, "message_for_timer") if missing else ():
+        if missing is not None and missing[1] == finding.name:
+            name = excerpt(finding.name)
+            return Hint(
+                msg("Write def {name}(self): a timer is given nothing but self.", name=name),
+                msg("{name}(), the callback of a timer, takes too much", name=name),
+                finding.place,
+            )
+    return None
+
+
+def _called_callback(case: Case, raised: Raised) -> Hint | None:
+    for finding in of_kind(case, "called_callback"):
+        if raised.place is not None and raised.place.line == finding.place.line:
+            return Hint(
+                known_exceptions.NOT_CALLED,
+                msg(
+                    "{name}() is called at once, where it is to be passed",
+                    name=excerpt(finding.name),
+                ),
+                finding.place,
+            )
+    return None
+
+
+def _hidden_class(case: Case, raised: Raised) -> Hint | None:
+    for finding in of_kind(case, "hides_class"):
+        if f"'{finding.name}' object is not callable" in raised.text[:_LONGEST]:
+            name = excerpt(finding.name)
+            return Hint(
+                msg("Give what you make there another name, as message = {name}().", name=name),
+                msg("`{name}` is the class no more: that name was given to something", name=name),
+                finding.place,
+            )
+    return None
+
+
+def _class_kept(case: Case, raised: Raised) -> Hint | None:
+    is_sent = raised.place is not None and re.search(
+        r"\.(?:call|call_async|publish)\(", raised.place.text
+    )
+    is_class = "'property' object" in raised.text or "'getset_descriptor' object" in raised.text
+    if is_class or (is_sent and raised.type == "TypeError"):
+        for finding in of_kind(case, "class_kept"):
+            name = excerpt(finding.name)
+            return Hint(
+                msg("The parentheses are missing: write {name}() there.", name=name),
+                msg("{name} without parentheses is the class, not a message", name=name),
+                finding.place,
+            )
+    return None
+
+
+def _not_begun(case: Case, raised: Raised) -> Hint | None:
+    """ROS or a node that was not begun: the line to change is where that should have been."""
+    known = known_exceptions.explain(raised)
+    for finding in of_kind(case, *_BEGINNINGS.get(known.text, ())):
+        return replace(known, place=finding.place)
+    return None
+
+
+def _calls_itself(case: Case, raised: Raised) -> Hint | None:
+    for finding in of_kind(case, "calls_itself") if raised.type == "RecursionError" else ():
+        name, again = excerpt(finding.name), excerpt(finding.near)
+        help_ = msg("Leave that call out, and let a timer call {name}().", name=name)
+        if again:
+            help_ = msg("Write {again} instead: its timer then calls you again.", again=again)
+        if again == "ros":
+            help_ = msg(
+                "Leave that call out: ROS calls {name}() again and again by itself.", name=name
+            )
+        text = msg("{name}() calls itself without end", name=name)
+        return Hint(help_, text, finding.place)
+    return None
+
+
+def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
+    """None: of a shutdown before, of a variable that another hides, of a missing return."""
+    if "NoneType" not in raised.text or raised.place is None:
+        return None
+    for finding in of_kind(case, "ends_before_spin"):
+        if "spin" in raised.place.text and finding.place.line < raised.place.line:
+            return Hint(
+                msg("Move {name}() to the end of main().", name=excerpt(finding.name)),
+                msg("ROS is shut down before that line spins"),
+                finding.place,
+            )
+    for finding in of_kind(case, "local"):
+        if finding.name in raised.place.text and not finding.near.startswith("self."):
+            return Hint(
+                msg(
+                    "Write `{near}` as the first line of the function.", near=excerpt(finding.near)
+                ),
+                msg(
+                    "`{name}` is still None: what is set is another one, of that function",
+                    name=excerpt(finding.name),
+                ),
+                finding.place,
+            )
+    for finding in of_kind(case, "no_return"):
+        names = rf"\b(?:{re.escape(finding.name)}|{re.escape(finding.near)})\b"
+        if re.search(names, raised.place.text):
+            name = excerpt(finding.near)
+            printed = _PRINTED.match(finding.place.text)
+            text = msg("{name}() returns nothing, that is None", name=name)
+            help_ = msg("End {name}() with `return` and its result.", name=name)
+            if printed is not None:
+                text = msg("{name}() prints its result and returns None", name=name)
+                help_ = msg("Write `return {result}` there.", result=excerpt(printed[1]))
+            return Hint(help_, text, finding.place)
+    for finding in of_kind(case, "no_effect"):
+        return Hint(
+            msg("Write return before it, if that is what you mean."),
+            msg(
+                "a function returned None; nothing uses what `{code}` is",
+                code=excerpt(finding.name),
+            ),
+            finding.place,
+        )
+    return None
+
+
+_RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
+    *(_called_callback, _not_global, _without_self, _hidden_method, _class_given),
+    *(_service_for_request, _hidden_class, _misplaced, _misspelt, _wrong_callback, _class_kept),
+    *(_not_begun, _calls_itself, _none_for_a_value, _lacks_entry, _is_zero, _ends),
+    _in_other_order,
+)
