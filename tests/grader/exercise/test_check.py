@@ -56,8 +56,10 @@ def test_a_part_of_the_share_fails_with_that_part_of_the_points_and_help():
 
 
 def test_what_depends_on_a_failed_check_is_not_judged_and_says_for_which_it_waited():
-    second = verdicts(an_exercise(0.5), {"first": 4, "second": 6})["second"]
+    found = verdicts(an_exercise(0.5), {"first": 4, "second": 6})
+    second = found["second"]
     assert (second.status, second.score, second.max_score) == ("not_judged", 0, 6)
+    assert (second.waited_for(found), found["first"].waited_for(found)) == (("first",), ())
     assert "“The first thing” did not pass" in str(second.rationale)
 
 
