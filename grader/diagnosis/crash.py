@@ -30,6 +30,10 @@ _NOT_PYTHON = (
     ),
     (re.compile(r"\n.*\belse if\b"), msg("Python's word is elif: write elif CONDITION:")),
     (re.compile(r"\n.*(?:&&|\|\|)"), msg("In Python && is `and`, || is `or`, and ! is `not`.")),
+    (
+        re.compile(r"leading zeros in decimal integer"),
+        msg("A number has a point, not a comma: 0.01. And it does not begin with 0 otherwise."),
+    ),
     (re.compile(r"Maybe you meant '=='"), msg("Compare by ==; a single = assigns a value.")),
     (
         re.compile(r"expected ':'"),
@@ -199,7 +203,9 @@ def _wanted(
                 "Write .to_msg() behind it: a clock's now().to_msg()."
             )
         return msg("a {name}", name=name), msg(
-            "Set the parts of {field} one by one, as in msg.{field}.x = 2.0.", field=excerpt(field)
+            "Set the parts of {field} one by one, as in msg.{field}.{part} = 1.0.",
+            field=excerpt(field),
+            part="z" if field == "angular" else "x",
         )
     return plain_text(what.rstrip(".")), msg(
         "`ros2 interface show TYPE` lists the fields of a message."

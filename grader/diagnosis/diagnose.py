@@ -52,6 +52,7 @@ RULES: Final[tuple[Rule, ...]] = (
     connections.calls_nobody,
     standstill.does_nothing,
     standstill.stuck_in_callback,
+    lint_findings.unstarted,
     standstill.stuck_in_call,
     standstill.endless_loop,
     lint_findings.called_at_once,

@@ -62,7 +62,7 @@ def not_importable(case: Case) -> Diagnosis | None:
             "your node was graded: take std_msgs, std_srvs or geometry_msgs "
             "instead, or ask whoever runs the grader to install it."
         )
-    elif (advice := _of_own_module(case, raised) or _better(text)) is not None:
+    elif advice := _of_own_module(case, raised) or _elsewhere(case, raised) or _better(text):
         help_ = advice
     return Diagnosis("not_importable", cause, help_, place=raised.place)
 
@@ -88,6 +88,18 @@ def _better(text: str) -> Message | None:
             "own has to be in what you hand in. Compare the name.",
             name=excerpt(found[1]),
         )
+    return None
+
+
+def _elsewhere(case: Case, raised: Raised) -> Message | None:
+    """Return where the file of a module lies that is imported from somewhere else."""
+    for finding in of_kind(case, "elsewhere"):
+        if finding.place.line == getattr(raised.place, "line", 0):
+            return msg(
+                "There is no {name}; there is {near}: give it that place and name.",
+                name=excerpt(finding.name),
+                near=excerpt(finding.near),
+            )
     return None
 
 

@@ -31,6 +31,7 @@ MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional argume
 _TAKES_CALLBACK = re.compile(r"create_(?:timer|subscription|service)\(|add_done_callback\(")
 _AWAITED = re.compile(r"object (\w{1,60}) can't be used in 'await' expression")
 _NO_FILE = re.compile(r"\[Errno \d+\] [^:]{1,60}: '([^'\n]{1,300})")
+_UNPACKED = re.compile(r"values to unpack \(expected \d{1,3}")
 _SUBSCRIPTED = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
 _CREATES = re.compile(r"\b(create_(?:publisher|subscription|client|service))\(")
 _IN_ORDER = {
@@ -146,6 +147,11 @@ def _no_argument(_: str, text: str, place: SourceLine | None) -> Hint | None:
             NOT_CALLED,
             msg("{name}() is called at once, where it is to be passed", name=excerpt(found[1])),
         )
+    if found[1] == "create_service" and "callback" in text:
+        return Hint(
+            msg("To call a service: self.create_client({takes}).", takes="TYPE, '/name'"),
+            msg("create_service() offers a service, and needs a callback for that"),
+        )
     if found[1].startswith("create_") and "qos_profile" in text:
         return Hint(
             msg(
@@ -192,6 +198,27 @@ def _read_only_name(_: str, text: str, __: SourceLine | None) -> Hint | None:
             name=excerpt(found[1]),
         )
     )
+
+
+def _values(name: str, text: str, place: SourceLine | None) -> Hint | None:
+    """Another number of values than names, super without parentheses, names with blanks."""
+    counts = _UNPACKED.search(text)
+    if name == "ValueError" and counts is not None and place is not None:
+        left, _, right = place.text.partition("=")
+        return Hint(
+            msg(
+                "{names} stand on the left: what {values} is has to have as many values.",
+                names=excerpt(left.strip()),
+                values=excerpt(right.strip()),
+            )
+        )
+    if "requires a 'super' object" in text:
+        return Hint(
+            msg("Write super().__init__(...)."), msg("super stands there without parentheses")
+        )
+    if name == "InvalidNodeNameException":
+        return Hint(msg("Write letters, digits and _ only, as in 'my_node'."))
+    return None
 
 
 def _class_for_instance(name: str, text: str, place: SourceLine | None) -> Hint | None:
@@ -381,6 +408,7 @@ _RULES: tuple[Callable[[str, str, SourceLine | None], Hint | None], ...] = (
         _no_argument,
         _without_init,
         _read_only_name,
+        _values,
         _class_for_instance,
         _no_node,
         _callback,

@@ -118,7 +118,8 @@ def set_at(case: Case, text: str) -> SourceLine | None:
     found = [
         (at, finding.place)
         for finding in of_kind(case, "sets")
-        if (at := text.find(finding.name)) >= 0
+        if not ("grew" in text and re.search(r"=\s*0(?:\.0*)?\s*(?:#|$)", finding.place.text))
+        and (at := text.find(finding.name)) >= 0
         and ("." in finding.name or f"`{finding.name}`" in text)
     ]
     if is_about_stopping(text) and "drive on" not in text:
@@ -227,6 +228,23 @@ def called_at_once(case: Case) -> Diagnosis | None:
                 "Pass it by its name, without parentheses: {handed}.",
                 handed=f"{excerpt(finding.near)}{name}{', args=(node,)' * is_spin})",
             ),
+            place=finding.place,
+        )
+    return None
+
+
+def unstarted(case: Case) -> Diagnosis | None:
+    """A thread that is to spin, and is never started."""
+    for finding in of_kind(case, "unstarted") if case.observed.spun_s is None else ():
+        name = excerpt(finding.name)
+        return Diagnosis(
+            "unstarted",
+            msg(
+                "Nothing starts your thread {name}{where}, so nothing spins the node.",
+                name=name,
+                where=line(finding.place),
+            ),
+            msg("Write {name}.start() behind it.", name=name),
             place=finding.place,
         )
     return None

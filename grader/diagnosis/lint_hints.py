@@ -183,6 +183,20 @@ def _ends(case: Case, raised: Raised) -> Hint | None:
     )
 
 
+def _misnamed(case: Case, raised: Raised) -> Hint | None:
+    """A method that has nearly the name of the one that Python looks for."""
+    is_init = "__init__() missing" in raised.text and "'node_name'" in raised.text
+    for finding in of_kind(case, "misnamed"):
+        name, near = excerpt(finding.name), excerpt(finding.near)
+        if raised.type == "NotImplementedError" or (is_init and near == "__init__"):
+            return Hint(
+                msg("Write def {near}(...) there.", near=near),
+                msg("{name}() is not called: Python looks for {near}()", name=name, near=near),
+                finding.place,
+            )
+    return None
+
+
 def _hidden_method(case: Case, raised: Raised) -> Hint | None:
     if "object is not callable" not in raised.text[:_LONGEST] or raised.place is None:
         return None
@@ -304,9 +318,16 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
             msg("main() is called with nothing, and takes ({takes})", takes=takes),
             finding.place,
         )
-    for finding in of_kind(case, "message_for_timer") if missing else ():
+    timers = sorted(of_kind(case, "message_for_timer"), key=lambda each: not each.near)
+    for finding in timers if missing else ():
         if missing is not None and missing[1] == finding.name:
             name = excerpt(finding.name)
+            if finding.near:
+                return Hint(
+                    msg("Give create_timer() the function that is to be called by it."),
+                    msg("{name}() is the callback of your subscription, not of a timer", name=name),
+                    finding.place,
+                )
             return Hint(
                 msg("Write def {name}(self): a timer is given nothing but self.", name=name),
                 msg("{name}(), the callback of a timer, takes too much", name=name),
@@ -427,7 +448,7 @@ def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
 
 
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
-    *(_called_callback, _not_global, _without_self, _hidden_method, _class_given),
+    *(_called_callback, _misnamed, _not_global, _without_self, _hidden_method, _class_given),
     *(_service_for_request, _hidden_class, _misplaced, _misspelt, _wrong_callback, _class_kept),
     *(_not_begun, _calls_itself, _none_for_a_value, _lacks_entry, _is_zero, _ends),
     _in_other_order,

@@ -12,43 +12,109 @@ from grader.message import NOTHING, Message, msg
 from grader.recording.observations import End, LintFinding, LintKind
 
 #: Kinds that say more of a condition than whether it was ever true.
-_SAY_MORE = ("at_wall", "uncalled", "stays", "always", "local", "unread")
+_SAY_MORE = ("at_wall", "uncalled", "always", "local", "unread")
+
+_RETURN = msg("Write return before it, if that is what you mean.")
+_COLOURS = "look at its conditions"
+#: Kind of a finding -> a word of the checks that it may explain, '' for all; cause and help.
+_MEANT: dict[LintKind, tuple[str, Message, Message]] = {
+    "compared": (
+        "",
+        msg("`{name}` compares, and sets nothing{where}."),
+        msg("Write = for ==."),
+    ),
+    "always": ("driving", msg("`{name}`{where} is always true."), NOTHING),
+    "adds_nothing": ("", msg("`{name}`{where} lets nothing grow."), NOTHING),
+    "no_effect": ("", msg("Nothing uses what `{name}`{where} is."), _RETURN),
+    "plus": (
+        "",
+        msg("`{code}`{where} sets it anew each time, and adds nothing."),
+        msg("Write +=."),
+    ),
+    "resets": (
+        "",
+        msg("`{code}`{where} sets {name} anew each time, so what is added to it is lost."),
+        msg("Set it once, before: in __init__ or before the loop, and keep it as self.{name}."),
+    ),
+    "sides": (
+        "",
+        msg("`{code}`{where} sets the argument, not {near}."),
+        msg("Exchange the sides: {near} = {name}."),
+    ),
+    "unpublished": (
+        "",
+        msg("`{name}`{where} is filled, and never sent."),
+        msg("Write publish({name}), or call_async({name}) for a request, behind it."),
+    ),
+    "default": (
+        "",
+        msg(
+            "`{name}`{where} is worked out once, when Python reads the function, and stays"
+            " the same."
+        ),
+        msg("Ask for the time in the function, not in its arguments."),
+    ),
+    "other_text": (
+        "",
+        msg("`{code}`{where} compares with {name}; what is set is {near}."),
+        msg("Write the same text in both places, letter by letter."),
+    ),
+    "late": (
+        _COLOURS,
+        msg(
+            "`{name}` in the lambda{where} is looked up when that is called: then the loop"
+            " is over, and it is the last one."
+        ),
+        msg("Write lambda {name}={name}: there, which keeps each."),
+    ),
+    "degrees": (
+        _COLOURS,
+        msg("`{name}`{where}: the angle is in radians, not in degrees."),
+        msg("A full turn is 2 * math.pi; or use math.degrees(...)."),
+    ),
+    "overrules": (
+        _COLOURS,
+        msg(
+            "This `if`{where} begins anew, and its else sets {name} again, whatever the if "
+            "above has set."
+        ),
+        msg("Write elif for if."),
+    ),
+    "twice": (
+        _COLOURS,
+        msg("`{code}`{where} sets again what the line before it has set."),
+        msg("One of the two is meant for another name."),
+    ),
+    "shared": (
+        _COLOURS,
+        msg("`{name}`{where} is one and the same object, several times."),
+        msg("Make each for itself: [... for _ in range(4)]."),
+    ),
+    "grows": (
+        "grew by",
+        msg("`{code}`{where} is done with each message, in {near}(): many times a second."),
+        msg("Move it to where you publish."),
+    ),
+}
 
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the lint finding that may be its cause."""
     if (without := _lacks(case) or _unspun(case)) is not None:
         return replace(without, run=found.run)
-    if (lost := _hidden(found, case) or _missed(found, case)) is not None:
+    if (lost := _hidden(found, case) or _misunderstood(found, case)) is not None:
         return lost
-    if (meant := _misunderstood(found, case)) is not None:
-        return meant
     for finding in of_kind(case, "swapped"):
         what, help_ = in_other_order(finding)
         text = msg("{what}{where}.", what=what, where=line(finding.place))
         cause = sentences(text, found.cause)
         return replace(found, cause=cause, help=help_, place=finding.place)
-    for finding in of_kind(case, "compared", "always", "adds_nothing", "no_effect"):
-        if finding.kind == "always" and "driving" not in str(found.help):
-            continue
-        code, where = excerpt(finding.name), line(finding.place)
-        help_ = found.help
-        match finding.kind:
-            case "compared":
-                text = msg("`{code}` compares, and sets nothing{where}.", code=code, where=where)
-                help_ = msg("Write = for ==.")
-            case "adds_nothing":
-                text = msg("`{code}`{where} lets nothing grow.", code=code, where=where)
-            case "no_effect":
-                text = msg("Nothing uses what `{code}`{where} is.", code=code, where=where)
-                help_ = msg("Write return before it, if that is what you mean.")
-            case _:
-                text = msg("`{code}`{where} is always true.", code=code, where=where)
-        return replace(found, cause=sentences(text, found.cause), help=help_, place=finding.place)
     for finding in of_kind(case, "uncalled", "unread", "local"):
         text, help_ = _cause_and_help(finding)
         cause = sentences(text, found.cause)
         return replace(found, cause=cause, help=help_, place=finding.place)
+    if (missed := _missed(found, case)) is not None:
+        return missed
     for finding in of_kind(case, "swallows"):
         hides = msg(
             "`{code}`{where} hides every error in {name}().",
@@ -98,9 +164,10 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
     elif "look at its conditions" in spoken:
         goals = ["branch"]
     elif is_about_stopping(spoken):
-        goals = ["publish"]
+        goals = ["publish", "branch"]
     else:
         return None
+    stays = {each.place: each for each in of_kind(case, "stays")}
     known = {each.place for each in case.observed.lint_findings if each.kind in _SAY_MORE}
     for finding in of_kind(case, "unreached"):
         goal, how, *values = finding.near.split(" ", 2)
@@ -126,58 +193,36 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
                     **words,
                 )
                 help_ = msg("What is to happen meanwhile belongs in a callback.")
-        if goal == "branch":
+        if (kept := stays.get(finding.place)) is not None:
+            help_ = msg(
+                "Nothing sets {name} after the start: which line should?",
+                name=excerpt(kept.name),
+            )
+        if goal == "branch" and end is None:
             help_ = found.help
         return replace(found, cause=sentences(cause, found.cause), help=help_, place=finding.place)
     return None
 
 
 def _misunderstood(found: Diagnosis, case: Case) -> Diagnosis | None:
-    """Add what Python takes otherwise than it was meant, where that may cost the points."""
+    """Add what the source says otherwise than it was meant, where that may cost the points."""
     spoken = f"{found.cause!s} {found.help!s}"
-    kinds: list[LintKind] = ["default"]
-    if "look at its conditions" in spoken:
-        kinds += ["late", "degrees", "overrules"]
-    if "grew by" in spoken:
-        kinds += ["grows"]
-    for finding in of_kind(case, *kinds):
-        name, near = excerpt(finding.name), excerpt(finding.near)
-        words = {"name": name, "where": line(finding.place)}
-        match finding.kind:
-            case "late":
-                cause = msg(
-                    "`{name}` in the lambda{where} is looked up when that is called: then the loop"
-                    " is over, and it is the last one.",
-                    **words,
-                )
-                help_ = msg("Write lambda {name}={name}: there, which keeps each.", name=name)
-            case "degrees":
-                cause = msg("`{name}`{where}: the angle is in radians, not in degrees.", **words)
-                help_ = msg("A full turn is 2 * math.pi; or use math.degrees(...).")
-            case "overrules":
-                cause = msg(
-                    "This `if`{where} begins anew, and its else sets {name} again, whatever the if "
-                    "above has set.",
-                    **words,
-                )
-                help_ = msg("Write elif for if.")
-            case "grows":
-                cause = msg(
-                    "`{code}`{where} is done with each message, in {near}(): many times a second.",
-                    code=excerpt(finding.place.text),
-                    near=near,
-                    where=line(finding.place),
-                )
-                help_ = msg("Move it to where you publish.")
-            case _:
-                cause = msg(
-                    "`{name}`{where} is worked out once, when Python reads the function, and stays"
-                    " the same.",
-                    **words,
-                )
-                help_ = msg("Ask for the time in the function, not in its arguments.")
-        cause = sentences(cause, found.cause)
-        return replace(found, cause=cause, help=help_, place=finding.place)
+    for kind, (about, cause, help_) in _MEANT.items():
+        for finding in of_kind(case, kind) if about in spoken else ():
+            words = {
+                "name": excerpt(finding.name),
+                "near": excerpt(finding.near),
+                "code": excerpt(finding.place.text),
+                "where": line(finding.place),
+            }
+            if kind == "compared" and " == " not in finding.name:
+                help_ = _RETURN
+            return replace(
+                found,
+                cause=sentences(msg(cause.key, **words), found.cause),
+                help=msg(help_.key, **words) if help_ else found.help,
+                place=finding.place,
+            )
     return None
 
 

@@ -171,6 +171,17 @@ def does_nothing(case: Case) -> Diagnosis | None:
         after=after(case.ended_s),
     )
     help_ = msg("Let the file end with: if __name__ == '__main__': main()")
+    for finding in case.observed.lint_findings:
+        if finding.kind == "misnamed" and finding.near == "__init__":
+            cause = msg(
+                "Your program ended {after}, and nothing called {name}(){where}: Python looks for "
+                "__init__().",
+                after=after(case.ended_s),
+                name=excerpt(finding.name),
+                where=line(finding.place),
+            )
+            help_ = msg("Write def {near}(...) there.", near="__init__")
+            return Diagnosis("does_nothing", cause, help_, place=finding.place)
     return Diagnosis("does_nothing", cause, help_, time_s=case.ended_s)
 
 

@@ -187,6 +187,35 @@ def not_read(trace: PackageTrace, module: str, function: str) -> list[Message]:
     ]
 
 
+def not_installed(trace: PackageTrace) -> list[Message]:
+    """A sentence on what `ros2 launch` would not find: a file, or a program of the package."""
+    setup, found = trace.setup, list[Message]()
+    if setup is None or not setup.scripts:
+        return found
+    names = sorted(script.name for script in setup.scripts)
+    for launch in trace.launches:
+        if launch.file in setup.left:
+            found.append(
+                msg(
+                    "`ros2 launch` would not find {file}: setup.py does not install it; list it in "
+                    "data_files",
+                    file=launch.file,
+                )
+            )
+        for node in launch.nodes:
+            if node.package == setup.name and node.executable not in names:
+                found.append(
+                    msg(
+                        "{file} starts {program}, which setup.py does not install; it installs"
+                        " {names}",
+                        file=launch.file,
+                        program=node.executable,
+                        names=", ".join(names)[:200],
+                    )
+                )
+    return found
+
+
 def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[Message]:
     """A sentence on each launch file that starts more of the package, or starts it otherwise.
 

@@ -119,9 +119,10 @@ def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
 
 def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
     """Return notes on how a program started by itself differs from its start by launch files."""
-    from grader.inspection.launched import not_read, unlike_launched
+    from grader.inspection.launched import not_installed, not_read, unlike_launched
 
     if not isinstance(submission.start, EntryPoint):
         return []
     target = submission.start.module, submission.start.function
-    return [*not_read(trace, *target), *unlike_launched(trace, *target)]
+    unlike = unlike_launched(trace, *target)
+    return [*not_installed(trace), *not_read(trace, *target), *unlike]

@@ -24,6 +24,8 @@ from grader.text import misspelt
 
 #: So many findings are kept, and so much of a name or a line [characters].
 MOST, LONGEST = 80, 300
+#: So many files are looked at for one that an import may mean.
+MOST_FILES = 1000
 #: Longer sources are not linted [characters].
 MOST_SOURCE = 200_000
 SPINS = ("spin", "spin_once", "spin_until_future_complete", "add_node")
@@ -103,6 +105,12 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
         is_short = sum(map(len, sources.values())) <= MOST_SOURCE
         trees = _parse(sources) if is_short else {}
         found = _find(trees, sources, lies)[:MOST]
+        below = (
+            path.relative_to(root).as_posix() for path in islice(root.rglob("*.py"), MOST_FILES)
+        )
+        there = {path.lower().rpartition("/")[2]: path for path in below}
+        for name, tree in trees.items():
+            found += _elsewhere(tree, name, lies, there)
         steps = ((file, step) for file in trees for step in paths.find(Source(trees[file])))
         found += [_finding(*step[:3], file, step[3]) for file, step in islice(steps, paths.MOST)]
     except (OSError, RecursionError, MemoryError, ValueError):
@@ -230,6 +238,24 @@ def _imported_file(file: str, node: ast.ImportFrom, files: Iterable[str]) -> str
     folders = file.split("/")[: -node.level] if node.level else []
     path = "/".join([*folders, *(node.module or "").split(".")])
     return next((each for each in (f"{path}.py", f"{path}/__init__.py") if each in files), None)
+
+
+def _elsewhere(
+    tree: ast.AST, file: str, lies: Callable[[str], bool], there: Mapping[str, str]
+) -> Iterator[LintFinding]:
+    """Yield imports of modules of a package that lie in another place, or in other letters.
+
+    Args:
+        there: the files of the submission by their names in small letters.
+    """
+    for node in ast.walk(tree):
+        match node:
+            case ast.ImportFrom(module=str() as module, level=level):
+                folders = file.split("/")[:-level] if level else []
+                path = "/".join((*folders, *module.split(".")))
+                near = there.get(f"{path.rpartition('/')[2].lower()}.py", "")
+                if "/" in path and near and lies(path.rpartition("/")[0]) and not lies(path):
+                    yield _finding("elsewhere", f"{path}.py", near, file, node.lineno)
 
 
 # Attributes and methods ---------------------------------------------------------------------------

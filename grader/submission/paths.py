@@ -8,7 +8,7 @@ is why a call was never reached.
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
@@ -60,19 +60,20 @@ def find(source: Source) -> Iterator[tuple[LintKind, str, str, int]]:
     Yields: the kind of `LintFinding`, its name and near, and a line.
     """
     tree, parents, functions = source.tree, source.parents, source.functions
+    given = {last(each) for _, each in source.given()}
     for node in ast.walk(tree):
         if isinstance(node, ast.If):
             step = Step("branch", node.body[0].lineno, "true", *_lines(node.body[0]))
             yield "step", ast.unparse(node.test), str(step), node.lineno
         if isinstance(node, ast.Call) and (last(node.func) in (*SENDS, *functions)):
-            yield from _steps(last(node.func), node, parents)
+            yield from _steps(last(node.func), node, parents, given)
         for target in node.targets if isinstance(node, ast.Assign) else ():
             if isinstance(target, ast.Attribute):
-                yield from _steps(f"set:{ast.unparse(target)}", target, parents)
+                yield from _steps(f"set:{ast.unparse(target)}", target, parents, given)
 
 
 def _steps(
-    goal: str, inner: ast.expr, parents: Parents
+    goal: str, inner: ast.expr, parents: Parents, given: Collection[str]
 ) -> Iterator[tuple[LintKind, str, str, int]]:
     found: list[tuple[str, str, int, ast.stmt]] = []
     node: ast.AST = inner
@@ -98,7 +99,8 @@ def _steps(
                 case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
                     if name == "__init__":
                         return
-                    found.insert(0, ("called", name, outer.lineno, entered))
+                    if name not in given:  # what ROS calls others explain
+                        found.insert(0, ("called", name, outer.lineno, entered))
                     break
         node = outer
     for how, code, line, later in found:
@@ -161,18 +163,20 @@ def unreached(steps: Iterable[LintFinding], ran: Iterable[RanFile]) -> Iterator[
     for (_, goal, _), stop in stops.items():
         if goal not in (*SENDS, "branch"):
             continue
+        found = [stop]
         for _ in range(DEEPEST):  # to what should have called the function, or set the condition
-            finding, step = stop
+            finding, step = found[-1]
             if step.how == "called":
                 deeper = [at for at in ways if at[1] == finding.name]
             else:
                 deeper = [at for at in ways if at[1][:4] == "set:" and at[1][4:] in finding.name]
-            if not deeper or any(at not in stops for at in deeper) or stops[deeper[0]] == stop:
+            if not deeper or any(at not in stops for at in deeper) or stops[deeper[0]] in found:
                 break
-            stop = stops[deeper[0]]
-        finding, step = stop
-        seen = values.get((finding.place.file, finding.place.line), "")
-        yield replace(finding, kind="unreached", near=f"{goal} {step.how} {seen}".rstrip())
+            found.append(stops[deeper[0]])
+        for finding, step in reversed(found):
+            seen = values.get((finding.place.file, finding.place.line), "")
+            near = f"{goal} {step.how} {seen}".rstrip()
+            yield replace(finding, kind="unreached", near=near)
 
 
 def _stop(

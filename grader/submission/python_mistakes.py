@@ -12,7 +12,8 @@ from itertools import pairwise
 from grader.recording.observations import LintKind
 from grader.submission import scopes
 from grader.submission.conditions import Values
-from grader.submission.scopes import Source, last
+from grader.submission.scopes import Function, Source, last
+from grader.text import misspelt
 
 #: Kind, name, near, line; see `LintFinding`.
 Found = tuple[LintKind, str, str, int]
@@ -23,9 +24,10 @@ _LEAVES = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 
 def find(source: Source, values: Values) -> Iterator[Found]:
     """Yield findings in a file."""
-    for rule in (_recursion, _idle, _late, _overrules, _defaults):
+    for rule in (_recursion, _idle, _late, _overrules, _defaults, _names_of_methods, _blocks):
         yield from rule(source)
-    yield from _degrees(source, values)
+    for rule_of_values in (_degrees, _texts, _factors):
+        yield from rule_of_values(source, values)
 
 
 def _recursion(source: Source) -> Iterator[Found]:
@@ -55,6 +57,12 @@ def _idle(source: Source) -> Iterator[Found]:
                 yield "no_effect", ast.unparse(value), "", node.lineno
             case ast.Expr(value=ast.Constant(value=int() | float() as value)):
                 yield "no_effect", str(value), "", node.lineno
+            case ast.Expr(value=ast.Subscript() as value):
+                yield "uncalled", ast.unparse(value), "", node.lineno
+            case ast.Assign(targets=[target], value=ast.UnaryOp(op=ast.UAdd())):
+                yield "plus", ast.unparse(target), "", node.lineno
+            case ast.BinOp(left=ast.List(elts=[ast.Call()]), op=ast.Mult()):
+                yield "shared", ast.unparse(node), "", node.lineno
             case ast.If(test=ast.Constant(value=True)):
                 yield "always", "if True", "", node.lineno
             case ast.AugAssign(op=ast.Add(), value=ast.Constant(value=int() | float() as value)):
@@ -148,3 +156,106 @@ def _degrees(source: Source, values: Values) -> Iterator[Found]:
             is_turn = any(isinstance(e, ast.Call) and last(e.func) == "atan2" for e in made)
             if is_turn or last(angle) == "theta":
                 yield "degrees", ast.unparse(node), "", node.lineno
+
+
+def _texts(source: Source, values: Values) -> Iterator[Found]:
+    """Comparisons with a text that the name never gets, but one that is nearly it."""
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Compare(left=left, comparators=[ast.Constant(value=str() as text)]):
+                kept = values.assigned(ast.unparse(left)) if last(left) else []
+                texts = [e.value for e in kept if isinstance(e, ast.Constant)]
+                near = [t for t in texts if isinstance(t, str) and t.lower() == text.lower()]
+                if near and len(texts) == len(kept) and text not in texts:
+                    yield "other_text", repr(text), repr(near[0]), node.lineno
+
+
+def _factors(source: Source, values: Values) -> Iterator[Found]:
+    """Products of what begins with 0, and stays so."""
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.AugAssign(target=target, op=ast.Mult()):
+                begins = values.assigned(ast.unparse(target))
+                first = [each.value for each in begins if isinstance(each, ast.Constant)]
+                if first and not any(first):
+                    yield "adds_nothing", ast.unparse(node), "", node.lineno
+
+
+def _names_of_methods(source: Source) -> Iterator[Found]:
+    """Methods that are nearly called `__init__`, or as one that they are to replace."""
+    classes = {of.name: of for of in ast.walk(source.tree) if isinstance(of, ast.ClassDef)}
+    for of in classes.values():
+        own = {each.name: each for each in of.body if isinstance(each, Function)}
+        for name, method in own.items():
+            if name.strip("_") in ("init", "int", "inti") and "__init__" not in own:
+                yield "misnamed", name, "__init__", method.lineno
+        for base in (classes[last(each)] for each in of.bases if last(each) in classes):
+            for name in (each.name for each in base.body if isinstance(each, Function)):
+                for other, method in own.items():
+                    if name not in own and misspelt(name, other):
+                        yield "misnamed", other, name, method.lineno
+
+
+def _blocks(source: Source) -> Iterator[Found]:
+    """Lines that the next one, or the next time, makes needless."""
+    for node in ast.walk(source.tree):
+        block = getattr(node, "body", None)
+        if not isinstance(block, list):
+            continue
+        for first, second in pairwise(block):
+            match first, second:
+                case ast.Assign(targets=[one], value=ast.Constant()), ast.Assign(
+                    targets=[other], value=ast.Constant()
+                ) if ast.dump(one) == ast.dump(other):
+                    yield "twice", ast.unparse(other), "", second.lineno
+        if isinstance(node, ast.While | ast.For | Function):
+            yield from _resets(block)
+        if isinstance(node, Function):
+            yield from _sides(node)
+            yield from _unpublished(node, source)
+
+
+def _resets(block: list[ast.stmt]) -> Iterator[Found]:
+    begun = {}
+    for statement in block:
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant(value=int() | float())):
+                begun[name] = statement.lineno
+            case ast.AugAssign(target=ast.Name(id=name)) if name in begun:
+                yield "resets", name, "", begun[name]
+
+
+def _sides(function: Function) -> Iterator[Found]:
+    """An argument that gets the attribute of its name, and is not used after that."""
+    arguments = {each.arg for each in function.args.args}
+    reads = [n.id for n in ast.walk(function) if isinstance(n, ast.Name) and _is_read(n)]
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(
+                targets=[ast.Name(id=name)], value=ast.Attribute(value=ast.Name(id="self")) as kept
+            ) if name in arguments and name not in reads:
+                yield "sides", name, ast.unparse(kept), node.lineno
+
+
+def _unpublished(function: Function, source: Source) -> Iterator[Found]:
+    """A message that a function makes and fills, and hands to nothing."""
+    imported = {alias.asname or alias.name for _, alias in source.imported()}
+    made: dict[str, int] = {}
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=of)):
+                owner = of.value if isinstance(of, ast.Attribute) else of
+                if isinstance(owner, ast.Name) and owner.id in imported:
+                    made[name] = node.lineno
+    for node in ast.walk(function):
+        if isinstance(node, ast.Name) and _is_read(node) and node.id in made:
+            outer: ast.AST = node
+            while isinstance(source.parents[outer], ast.Attribute):
+                outer = source.parents[outer]
+            if outer is node or _is_read(outer):
+                made.pop(node.id)
+    yield from (("unpublished", name, "", line) for name, line in made.items())
+
+
+def _is_read(node: ast.AST) -> bool:
+    return isinstance(getattr(node, "ctx", None), ast.Load)

@@ -44,6 +44,7 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
         _bare_nodes,
         _unspun,
         _cancels,
+        _unstarted,
         _grows,
     ):
         for file, source in sources.items():
@@ -69,7 +70,8 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
 
 def _callbacks(source: Source) -> Iterator[Found]:
     """Callbacks that take the wrong arguments, or wait for an answer."""
-    for by, function in source.callbacks():
+    each = [*source.callbacks()]
+    for by, function in each:
         arguments = [*function.args.posonlyargs, *function.args.args]
         is_method = isinstance(source.parents.get(function), ast.ClassDef)
         takes = len(arguments) - (is_method and bool(arguments) and arguments[0].arg == "self")
@@ -77,6 +79,10 @@ def _callbacks(source: Source) -> Iterator[Found]:
             yield "no_message", function.name, "", function.lineno
         if by == "create_timer" and takes > 0 and not function.args.defaults:
             yield "message_for_timer", function.name, "", function.lineno
+            if any(of == "create_subscription" and f is function for of, f in each):
+                for of, given in source.given():  # it is right for the other
+                    if of == by and last(given) == function.name:
+                        yield "message_for_timer", function.name, "heard", given.lineno
         if isinstance(function, ast.AsyncFunctionDef):
             node = _first_await(function)
             if node is not None:
@@ -139,12 +145,22 @@ def _brackets(source: Source) -> Iterator[Found]:
                 last(target) and only.col_offset == node.value.col_offset
             ):
                 yield "comma", last(target), "", node.lineno
+            case ast.Assign(targets=[target], value=ast.Tuple(elts=[ast.Constant() as a, b])) if (
+                last(target) and a.col_offset == node.value.col_offset and _is_decimal(a, b)
+            ):
+                yield "comma", last(target), ast.unparse(b), node.lineno
             case ast.Assign(value=ast.Name(id=name)) if name in imported:
                 yield "class_kept", name, "", node.lineno
             case ast.Assign(value=ast.Attribute(value=ast.Name(id=name), attr="Request")) if (
                 name in imported
             ):
                 yield "class_kept", f"{name}.Request", "", node.lineno
+
+
+def _is_decimal(whole: ast.Constant, part: ast.expr) -> bool:
+    """Whether two numbers look like one that was written with a comma: 0,5."""
+    is_whole = isinstance(whole.value, int) and 0 <= whole.value < 10
+    return is_whole and isinstance(part, ast.Constant) and isinstance(part.value, int)
 
 
 def _entry(source: Source) -> Iterator[Found]:
@@ -191,6 +207,16 @@ def _grows(source: Source) -> Iterator[Found]:
             match node:
                 case ast.AugAssign(target=ast.Attribute() as target, op=ast.Add()):
                     yield "grows", ast.unparse(target), function.name, node.lineno
+
+
+def _unstarted(source: Source) -> Iterator[Found]:
+    """Threads that nothing starts."""
+    begun = {ast.unparse(call.func) for call in source.calls("start")}
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Assign(targets=[target], value=ast.Call(func=of)) if last(of) == "Thread":
+                if last(target) and f"{ast.unparse(target)}.start" not in begun:
+                    yield "unstarted", ast.unparse(target), "", node.lineno
 
 
 def _cancels(source: Source) -> Iterator[Found]:

@@ -198,7 +198,7 @@ def _same(commands: Sequence[CmdVel]) -> Cause | None:
     )
     if not len(speeds) or not (np.isfinite(speeds).all() and np.isfinite(turns).all()):
         return None
-    if np.ptp(speeds) < 1e-9:
+    if np.ptp(speeds) <= 0.01 * abs(float(speeds.mean())):
         return Cause(
             msg("linear.x was {speed:.3g} in every command.", speed=speeds[0]),
             msg(

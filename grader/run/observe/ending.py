@@ -86,7 +86,7 @@ class EndWitness:
         """Return the submission's line that an exception comes from."""
         last = stuck.last_line(self._files.trace(error))
         place = self._files.row_of_frame(last) if last else None
-        if isinstance(error, SyntaxError) and place is None:
+        if isinstance(error, SyntaxError):  # what imports the file is not wrong
             file, line = error.filename or "", (error.text or "").strip()[:LONGEST]
             if self._files.has(file):
                 place = {**self._files.row(file, error.lineno or 0), "text": line}

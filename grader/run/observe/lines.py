@@ -228,4 +228,5 @@ def _value(frame: FrameType, name: str) -> str:
         if all(type(part) in _PLAIN for part in parts[:4]) and len(parts) <= 4:
             shown = f"{value:.4g}" if type(value) is float else repr(value)
             return shown if len(shown) <= LONGEST_VALUE else ""
+        return f"<{type.__getattribute__(type(value), '__name__')}>"[:LONGEST_VALUE]
     return ""

@@ -377,6 +377,14 @@ CAUSES = {
         "ended_by_caught",
         "Your program caught an exception, and so ended after 6.1 s: KeyError: 4 (drive.py",
     ),
+    "a thread that nothing starts": (
+        run_of(
+            said(spun_s=None, lint_findings=(LintFinding("unstarted", "spinner", "", LINE),)),
+            "stalled",
+        ),
+        "unstarted",
+        "Nothing starts your thread spinner (drive.py, line 39) .* spinner.start()",
+    ),
     "a function that a thread was to run": (
         run_of(
             said(

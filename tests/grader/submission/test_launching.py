@@ -179,7 +179,14 @@ def test_a_launch_file_that_is_not_run_is_told_where_it_matters(
 ) -> None:
     submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
     assert submission.start == EntryPoint("spiral.node", "main")
-    assert str(submission.remarks[-1]).startswith(note)
+    assert any(str(remark).startswith(note) for remark in submission.remarks)
+
+
+def test_what_ros2_launch_would_not_find_is_told(tmp_path: Path) -> None:
+    other = LIST.format(DRIVE.replace("turtle_controller", "turtle_controller.py"))
+    remarks = opened(lay(tmp_path, TWO | {"launch/a.launch.py": other})).remarks
+    assert any("would not find launch/a.launch.py" in str(remark) for remark in remarks)
+    assert any("starts turtle_controller.py, which setup.py" in str(remark) for remark in remarks)
 
 
 def test_two_launch_files_that_differ_settle_nothing(tmp_path: Path) -> None:

@@ -91,6 +91,54 @@ FOUND = {
         "Thread(target=rclpy.spin(node)).start()\n",
         ("called", "rclpy.spin", "Thread(target=", 1),
     ),
+    "=+ where += is meant": ("speed = 0\nspeed =+ 0.1\n", ("plus", "speed", "", 2)),
+    "a function from a dict that is not called": (
+        "painters[now]\n",
+        ("uncalled", "painters[now]", "", 1),
+    ),
+    "one request, four times": (
+        "requests = [Request()] * 4\n",
+        ("shared", "[Request()] * 4", "", 1),
+    ),
+    "a factor of what begins with 0": (
+        f"{HEAD}        self.speed = 0.0\n    def go(self):\n        self.speed *= 1.01\n",
+        ("adds_nothing", "self.speed *= 1.01", "", 6),
+    ),
+    "a text in other letters": (
+        f"{HEAD}        self.last = 'Red'\n    def go(self):\n        return self.last != 'red'\n",
+        ("other_text", "'red'", "'Red'", 6),
+    ),
+    "_init_ for __init__": (
+        "class C:\n    def _init_(self):\n        pass\n",
+        ("misnamed", "_init_", "__init__", 2),
+    ),
+    "a method that is to replace another": (
+        "class A:\n    def on_pose(self):\n        pass\n\nclass B(A):\n"
+        "    def on_Pose(self):\n        pass\n",
+        ("misnamed", "on_Pose", "on_pose", 6),
+    ),
+    "a speed that begins anew in each round": (
+        "while True:\n    speed = 0.0\n    speed += 0.1\n",
+        ("resets", "speed", "", 2),
+    ),
+    "an attribute and an argument the wrong way round": (
+        f"{HEAD}    def on_pose(self, stopped):\n        stopped = self.stopped\n",
+        ("sides", "stopped", "self.stopped", 5),
+    ),
+    "a message that is filled and not sent": (
+        "from geometry_msgs.msg import Twist\ndef go():\n    msg = Twist()\n"
+        "    msg.linear.x = 1.0\n",
+        ("unpublished", "msg", "", 3),
+    ),
+    "the same field twice": (
+        "def go(request):\n    request.r = 255\n    request.r = 0\n",
+        ("twice", "request.r", "", 3),
+    ),
+    "a thread that is not started": (
+        "spinner = Thread(target=spin)\n",
+        ("unstarted", "spinner", "", 1),
+    ),
+    "a comma for a point": ("STEP = 0,5\n", ("comma", "STEP", "5", 1)),
     "a request that nobody sends": (
         "request = SetPen.Request(r=1)\n",
         ("unsent", "SetPen", "", 1),

@@ -635,9 +635,9 @@ def test_an_exercise_may_allow_more_than_half_of_a_stay():
 def test_the_picture_forgives_what_pen_per_quadrant_forgives():
     found = verdicts(HalfASecondLate)
     assert (found["pen_per_quadrant"].score, found["picture"].score) == (20, 5)
-    found = verdicts(NineTenthsLate)
-    assert found["picture"].score == 0
-    assert "70 % or more" in str(found["picture"].rationale)
+    found = verdicts(NineTenthsLate, own_ink=0.75)
+    assert (found["pen_per_quadrant"].score, found["picture"].score) == (0, 0)
+    assert "75 % or more" in str(found["picture"].rationale)
 
 
 class ColoursTheBackground(Spiral):
