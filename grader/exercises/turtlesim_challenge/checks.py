@@ -193,9 +193,9 @@ def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
     The points are the part of the entries that are right, times the number of different colours
     out of four: 15 right entries of 31, and 3 colours, are 15/31 x 3/4 x 20 = 7.26 of 20 points.
     In a varied run the quadrants that were entered count instead of four; the worst run counts.
-    Where fewer than {chance_share%} of the entries are right, or the colours of a varied run come
-    where the turtle would be if it obeyed each command exactly, they do not come from the pose: no
-    points.
+    Where fewer than {chance_share%} of the entries are right, one right entry for each quadrant not
+    counted, or the colours of a varied run come where the turtle would be if it obeyed each command
+    exactly, they do not come from the pose: no points.
     """
     return error_first(recordings, judge_pens(recordings, tolerances))
 

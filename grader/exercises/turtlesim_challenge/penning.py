@@ -86,7 +86,7 @@ def _entries(number: int) -> Message:
 
 def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pens.Coloring:
     """Judge the colours of a run from elsewhere, which may have too few entries to show them."""
-    by_itself = pens.coloring(path, tolerances, known={})
+    by_itself = pens.coloring(path, tolerances)
     if by_itself.different == len(by_itself.by_quadrant) and by_itself.share:
         return by_itself
     as_before = pens.coloring(path, tolerances, known=nominal.by_quadrant)

@@ -89,8 +89,7 @@ def coloring(
     Args:
         wanted: how many quadrants with colours of their own make all of the points; 0: those that
             were entered.
-        known: the quadrants' colours, as another run has shown them, if any; then an entry that
-            shows a colour itself does not count as one that has it by more than chance.
+        known: the quadrants' colours, where another run has shown them.
     """
     entries = path.entries(tolerances["band_m"])
     pens = pens_by_tick(path.recording)
@@ -120,7 +119,7 @@ def coloring(
         or not _draws(colors[e.settled(waits[e]) : e.last_tick + 1])
     ]
     alike_ones, by_chance = groups(by_quadrant, near), tolerances["chance_share"]
-    if known is not None and judged:
+    if judged:  # what shows a colour itself has it, and tells nothing
         shown = len(by_quadrant.keys() - asked.keys()) / len(judged)
         by_chance = shown + by_chance * (1 - shown)
     return Coloring(judged, bad, by_quadrant, alike_ones, colors, waits, wanted, by_chance)
