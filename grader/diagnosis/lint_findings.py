@@ -118,8 +118,7 @@ def set_at(case: Case, text: str) -> SourceLine | None:
     found = [
         (at, finding.place)
         for finding in of_kind(case, "sets")
-        if not ("grew" in text and re.search(r"=\s*0(?:\.0*)?\s*(?:#|$)", finding.place.text))
-        and (at := text.find(finding.name)) >= 0
+        if (at := text.find(finding.name)) >= 0
         and ("." in finding.name or f"`{finding.name}`" in text)
     ]
     if is_about_stopping(text) and "drive on" not in text:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from grader.diagnosis.case import Case, excerpt, line, sentences
@@ -90,6 +91,11 @@ _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
         msg("`{name}`{where} is one and the same object, several times."),
         msg("Make each for itself: [... for _ in range(4)]."),
     ),
+    "heads": (
+        "into a quadrant gave",
+        msg("`{name}`{where} is where the turtle looks, not where it is."),
+        msg("Take the quadrant from x and y of the pose."),
+    ),
     "grows": (
         "grew by",
         msg("`{code}`{where} is done with each message, in {near}(): many times a second."),
@@ -163,7 +169,7 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
         goals = ["publish"] if end.kind == "publisher" else ["call", "call_async"]
     elif "look at its conditions" in spoken:
         goals = ["branch"]
-    elif is_about_stopping(spoken):
+    elif "ran into" in spoken:  # it has come to a wall, and should have stopped there
         goals = ["publish", "branch"]
     else:
         return None
@@ -171,8 +177,8 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
     known = {each.place for each in case.observed.lint_findings if each.kind in _SAY_MORE}
     for finding in of_kind(case, "unreached"):
         goal, how, *values = finding.near.split(" ", 2)
-        is_start = "__name__" in finding.name
-        if goal not in goals or finding.place in known or is_start:
+        is_flag = goal == "branch" and not re.search("[<>=]", finding.name)
+        if goal not in goals or finding.place in known or is_flag or "__name__" in finding.name:
             continue
         words = {"code": excerpt(finding.name), "where": line(finding.place)}
         seen = msg(" ({values})", values=excerpt(values[0])) if values else NOTHING

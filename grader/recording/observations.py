@@ -100,6 +100,7 @@ LintKind = Literal[
     "misnamed",
     "elsewhere",
     "unstarted",
+    "heads",
     "holds",
     "zero",
     "ends",
@@ -283,7 +284,7 @@ class LintFinding:
             NEAR, and gets it in another order; `entry` - main() needs the arguments NEAR;
             `not_defined` - NAME is imported from a module of the submission's that defines only
             NEAR; `circular` - the file NAME imports this one, too, which uses it or not (`unused`);
-            `unstarted` - nothing starts the thread NAME.
+            `unstarted` - nothing starts the thread NAME; `heads` - NAME is the angle of a pose.
     """
 
     kind: LintKind

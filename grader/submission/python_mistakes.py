@@ -158,16 +158,20 @@ def _degrees(source: Source, values: Values) -> Iterator[Found]:
                 yield "degrees", ast.unparse(node), "", node.lineno
 
 
-def _texts(source: Source, values: Values) -> Iterator[Found]:
-    """Comparisons with a text that the name never gets, but one that is nearly it."""
+def _texts(source: Source, _: Values) -> Iterator[Found]:
+    """Comparisons with a text that stands nowhere else, but in other letters."""
+    compared: dict[str, int] = {}
+    others: set[str] = set()
     for node in ast.walk(source.tree):
-        match node:
-            case ast.Compare(left=left, comparators=[ast.Constant(value=str() as text)]):
-                kept = values.assigned(ast.unparse(left)) if last(left) else []
-                texts = [e.value for e in kept if isinstance(e, ast.Constant)]
-                near = [t for t in texts if isinstance(t, str) and t.lower() == text.lower()]
-                if near and len(texts) == len(kept) and text not in texts:
-                    yield "other_text", repr(text), repr(near[0]), node.lineno
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            if isinstance(source.parents[node], ast.Compare):
+                compared.setdefault(node.value, node.lineno)
+            else:
+                others.add(node.value)
+    for text, line in compared.items():
+        near = sorted(other for other in others if other.lower() == text.lower())
+        if near and text not in others:
+            yield "other_text", repr(text), repr(near[0]), line
 
 
 def _factors(source: Source, values: Values) -> Iterator[Found]:

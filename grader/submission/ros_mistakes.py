@@ -44,6 +44,7 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
         _bare_nodes,
         _unspun,
         _cancels,
+        _heads,
         _unstarted,
         _grows,
     ):
@@ -217,6 +218,17 @@ def _unstarted(source: Source) -> Iterator[Found]:
             case ast.Assign(targets=[target], value=ast.Call(func=of)) if last(of) == "Thread":
                 if last(target) and f"{ast.unparse(target)}.start" not in begun:
                     yield "unstarted", ast.unparse(target), "", node.lineno
+
+
+def _heads(source: Source) -> Iterator[Found]:
+    """Where the pose's angle is read."""
+    for node in ast.walk(source.tree):
+        if (
+            isinstance(node, ast.Attribute)
+            and node.attr == "theta"
+            and isinstance(node.ctx, ast.Load)
+        ):
+            yield "heads", ast.unparse(node), "", node.lineno
 
 
 def _cancels(source: Source) -> Iterator[Found]:
@@ -458,8 +470,8 @@ def _constants(source: Source) -> Iterator[Found]:
 
 
 def _fields(source: Source) -> Iterator[Found]:
-    """Where fields of messages are set: the first place of each."""
-    seen: set[str] = set()
+    """Where fields of messages are set: the first place of each, one of zero last."""
+    places: dict[str, tuple[bool, int]] = {}
     for node in ast.walk(source.tree):
         match node:
             case ast.Attribute(value=ast.Attribute(attr=part), attr=name, ctx=ast.Store()):
@@ -470,7 +482,9 @@ def _fields(source: Source) -> Iterator[Found]:
                 names = [name] if name in FIELDS else []
             case _:
                 continue
+        given = getattr(source.parents[node], "value", None)
+        place = isinstance(given, ast.Constant) and not given.value, node.lineno
         for name in names:
-            if name not in seen:
-                seen.add(name)
-                yield "sets", name, "", node.lineno
+            if name not in places or place[0] < places[name][0]:
+                places[name] = place
+    yield from (("sets", name, "", line) for name, (_, line) in places.items())

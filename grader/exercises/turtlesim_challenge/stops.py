@@ -235,27 +235,24 @@ def _moving(path: Path, tolerances: Tolerances) -> Finding:
         return Finding(0, text, _ONE_SAYS_STOP, (stopped, end))
     nearest = float(path.wall_distance.min()) if len(path) else 0.0
     if nearest <= tolerances["edge_m"]:
-        return Finding(
-            0,
-            msg(
-                "{moving}; it had come as near to a wall as {nearest_m:.2f} m.",
-                moving=text,
-                nearest_m=nearest,
-            ),
-            msg(
-                "Compare x and y of the pose with the size of the window, and publish a zero Twist."
-            ),
-            (end,),
+        text = msg(
+            "{moving}; it had come as near to a wall as {nearest_m:.2f} m.",
+            moving=text,
+            nearest_m=nearest,
         )
-    text = msg(
-        "{moving}, and never came nearer to a wall than {nearest_m:.2f} m.",
-        moving=text,
-        nearest_m=nearest,
-    )
-    cause = why_no_wider(path)
-    if cause is None:
-        return Finding(0, text, msg("The spiral has to grow until it is near an edge."), (end,))
-    return Finding(0, joined([cause.text, text], " "), cause.help, (end,))
+        help_ = msg(
+            "Compare x and y of the pose with the size of the window, and publish a zero Twist."
+        )
+    else:
+        text = msg(
+            "{moving}, and never came nearer to a wall than {nearest_m:.2f} m.",
+            moving=text,
+            nearest_m=nearest,
+        )
+        help_ = msg("The spiral has to grow until it is near an edge.")
+    if (cause := why_no_wider(path)) is not None:
+        text, help_ = joined([cause.text, text], " "), cause.help
+    return Finding(0, text, help_, (end,))
 
 
 def _was_still_moving(path: Path) -> Message:

@@ -105,8 +105,8 @@ FOUND = {
         ("adds_nothing", "self.speed *= 1.01", "", 6),
     ),
     "a text in other letters": (
-        f"{HEAD}        self.last = 'Red'\n    def go(self):\n        return self.last != 'red'\n",
-        ("other_text", "'red'", "'Red'", 6),
+        "def go():\n    if last != 'red':\n        change('Red', 255)\n",
+        ("other_text", "'red'", "'Red'", 2),
     ),
     "_init_ for __init__": (
         "class C:\n    def _init_(self):\n        pass\n",
@@ -239,6 +239,7 @@ PLACED = {
     "    def on_pose(self, pose):\n        self.speed += 0.1\n        self.timer.cancel()\n": (
         *("grows", "self.speed", 6),
     ),
+    "def on_pose(pose):\n    turn = pose.theta\n": ("heads", "pose.theta", 2),
     "def on_pose(pose):\n    timer.cancel()\n": ("cancels", "timer.cancel()", 2),
     "from rclpy.executors import SingleThreadedExecutor\n"
     f"{HEAD}{READ}    def go(self):\n        self.stoped = True\n": ("unread", "stoped", 7 + 1),
