@@ -223,6 +223,12 @@ def ended_itself(case: Case) -> Diagnosis | None:
     )
     if raised is not None and raised.type == "SystemExit":
         when = _when(case, raised)
+        for finding in lint_findings.of_kind(case, "exits"):
+            if finding.place.line == getattr(raised.place, "line", 0):
+                help_ = msg(
+                    "That line is reached where `{test}` is true: is that the right way round?",
+                    test=excerpt(finding.name),
+                )
         text = excerpt(raised.text)
         value = text if text.isdecimal() else repr(text)
         cause = msg(

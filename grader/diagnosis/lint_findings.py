@@ -98,6 +98,8 @@ def set_at(case: Case, text: str) -> SourceLine | None:
         off = [each for each in middles if not 5.4 < number(each.near) < 5.65]
         for finding in (*off, *one_axis, *middles):
             return finding.place
+    if "needless call" in text and (kept := first_of(case, "keeps")) is not None:
+        return kept
     if re.search(r"turn(?:ed)? on the spot", text):
         halts = {each.place.line for each in of_kind(case, "argument") if number(each.near) == 0}
         for finding in of_kind(case, "argument"):

@@ -101,6 +101,8 @@ LintKind = Literal[
     "elsewhere",
     "unstarted",
     "heads",
+    "exits",
+    "keeps",
     "holds",
     "zero",
     "ends",
@@ -284,7 +286,9 @@ class LintFinding:
             NEAR, and gets it in another order; `entry` - main() needs the arguments NEAR;
             `not_defined` - NAME is imported from a module of the submission's that defines only
             NEAR; `circular` - the file NAME imports this one, too, which uses it or not (`unused`);
-            `unstarted` - nothing starts the thread NAME; `heads` - NAME is the angle of a pose.
+            `unstarted` - nothing starts the thread NAME; `heads` - NAME is the angle of a pose;
+            `exits` - where NAME is true the program ends; `keeps` - NAME is kept for the next
+            comparison.
     """
 
     kind: LintKind

@@ -45,6 +45,8 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
         _unspun,
         _cancels,
         _heads,
+        _exits,
+        _keeps,
         _unstarted,
         _grows,
     ):
@@ -218,6 +220,29 @@ def _unstarted(source: Source) -> Iterator[Found]:
             case ast.Assign(targets=[target], value=ast.Call(func=of)) if last(of) == "Thread":
                 if last(target) and f"{ast.unparse(target)}.start" not in begun:
                     yield "unstarted", ast.unparse(target), "", node.lineno
+
+
+def _exits(source: Source) -> Iterator[Found]:
+    """Lines that end the program where a condition is true."""
+    for call in source.calls("SystemExit", "exit"):
+        outer = source.around(call, ast.If)
+        if isinstance(outer, ast.If) and call.lineno < (outer.body[-1].end_lineno or 0) + 1:
+            yield "exits", ast.unparse(outer.test), "", call.lineno
+
+
+def _keeps(source: Source) -> Iterator[Found]:
+    """Where is kept what the next value is compared with."""
+    compared = {
+        ast.unparse(each)
+        for node in ast.walk(source.tree)
+        if isinstance(node, ast.Compare) and isinstance(node.ops[0], ast.NotEq)
+        for each in (node.left, *node.comparators)
+    }
+    for node in ast.walk(source.tree):
+        match node:
+            case ast.Assign(targets=[ast.Attribute() as kept], value=value):
+                if not isinstance(value, ast.Constant) and ast.unparse(kept) in compared:
+                    yield "keeps", ast.unparse(kept), "", node.lineno
 
 
 def _heads(source: Source) -> Iterator[Found]:

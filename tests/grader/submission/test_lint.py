@@ -239,6 +239,10 @@ PLACED = {
     "    def on_pose(self, pose):\n        self.speed += 0.1\n        self.timer.cancel()\n": (
         *("grows", "self.speed", 6),
     ),
+    "if not ready:\n    raise SystemExit('late')\n": ("exits", "not ready", 2),
+    f"{HEAD}    def go(self, q):\n        if q != self.q:\n            self.q = q\n": (
+        *("keeps", "self.q", 6),
+    ),
     "def on_pose(pose):\n    turn = pose.theta\n": ("heads", "pose.theta", 2),
     "def on_pose(pose):\n    timer.cancel()\n": ("cancels", "timer.cancel()", 2),
     "from rclpy.executors import SingleThreadedExecutor\n"
