@@ -108,8 +108,8 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the lint finding that may be its cause."""
     if (without := _lacks(case) or _unspun(case)) is not None:
         return replace(without, run=found.run)
-    if (lost := _hidden(found, case) or _misunderstood(found, case)) is not None:
-        return lost
+    if (hidden := _hidden(found, case)) is not None:
+        return hidden
     for finding in of_kind(case, "swapped"):
         what, help_ = in_other_order(finding)
         text = msg("{what}{where}.", what=what, where=line(finding.place))
@@ -119,6 +119,8 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
         text, help_ = _cause_and_help(finding)
         cause = sentences(text, found.cause)
         return replace(found, cause=cause, help=help_, place=finding.place)
+    if (meant := _misunderstood(found, case)) is not None:
+        return meant
     if (missed := _missed(found, case)) is not None:
         return missed
     for finding in of_kind(case, "swallows"):
