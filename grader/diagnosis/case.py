@@ -7,13 +7,22 @@ program prints is as untrusted as what it reports.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
 
 from grader.message import NOTHING, Message, joined, msg
-from grader.recording.observations import End, EndKind, Observations, Raised, SourceLine, Standstill
+from grader.recording.observations import (
+    End,
+    EndKind,
+    LintFinding,
+    LintKind,
+    Observations,
+    Raised,
+    SourceLine,
+    Standstill,
+)
 from grader.recording.recording import Recording, Run
 from grader.recording.subject import Endpoint, EndpointKind, load_subject
 from grader.text import clip, one_line, plain
@@ -117,6 +126,16 @@ class Case:
     def the_thing(self) -> Message:
         """What the submission drives, with its article: 'the robot'."""
         return load_subject(self.recording.scene).the_thing
+
+
+def of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
+    """Yield the lint findings of these kinds."""
+    return (finding for finding in case.observed.lint_findings if finding.kind in kinds)
+
+
+def first_of(case: Case, kind: LintKind) -> SourceLine | None:
+    """Return the place of the first finding of a kind."""
+    return next((finding.place for finding in of_kind(case, kind)), None)
 
 
 def excerpt(text: str) -> str:

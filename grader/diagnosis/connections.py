@@ -12,10 +12,9 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from grader.diagnosis import lint_findings, standstill
-from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, since
+from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, of_kind, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.lint_findings import of_kind
 from grader.message import Message, msg
 from grader.recording.observations import End, EndKind
 from grader.recording.subject import Endpoint

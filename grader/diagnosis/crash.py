@@ -8,7 +8,7 @@ from contextlib import suppress
 from signal import Signals
 
 from grader.diagnosis import known_exceptions, lint_findings, lint_hints
-from grader.diagnosis.case import Case, at, excerpt, line, sentences, thread_exception
+from grader.diagnosis.case import Case, at, excerpt, line, of_kind, sentences, thread_exception
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, plain_text
 from grader.recording.observations import Raised, SourceLine
@@ -123,7 +123,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
     place = given.place if given is not None else place
     number = given.near if given is not None else ""
     what, help_ = _wanted(found["field"], excerpt(found["what"]), place, number)
-    for finding in lint_findings.of_kind(case, "comma"):
+    for finding in of_kind(case, "comma"):
         if place is not None and re.search(rf"\b{re.escape(finding.name)}\b", place.text):
             place = finding.place
             help_ = msg("Leave out the comma at its end: it makes a tuple of the number.")
@@ -223,7 +223,7 @@ def ended_itself(case: Case) -> Diagnosis | None:
     )
     if raised is not None and raised.type == "SystemExit":
         when = _when(case, raised)
-        for finding in lint_findings.of_kind(case, "exits"):
+        for finding in of_kind(case, "exits"):
             if finding.place.line == getattr(raised.place, "line", 0):
                 help_ = msg(
                     "That line is reached where `{test}` is true: is that the right way round?",

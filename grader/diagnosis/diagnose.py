@@ -22,7 +22,7 @@ from grader.diagnosis import (
     standstill,
     unnoticed,
 )
-from grader.diagnosis.case import Case, excerpt, line, sentences
+from grader.diagnosis.case import Case, excerpt, first_of, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.verdict import Verdict
 from grader.message import msg
@@ -108,7 +108,7 @@ def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
     }
     if found.key not in lines or (found.place is not None and "while" in found.place.text):
         return found
-    return replace(found, place=lint_findings.first_of(case, lines[found.key]) or found.place)
+    return replace(found, place=first_of(case, lines[found.key]) or found.place)
 
 
 def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
@@ -158,7 +158,7 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
         return replace(found, help=sentences(found.help, unsent), place=end.place)
     unsent = msg("Your client{where} has sent no request.", where=line(end.place))
     cause = sentences(found.cause, unsent)
-    made = lint_findings.first_of(case, "unsent")
+    made = first_of(case, "unsent")
     if made is None:
         return replace(found, cause=cause, place=end.place)
     help_ = msg("Send the request that you make: call_async(request).")

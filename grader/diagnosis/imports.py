@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 import sys
 
-from grader.diagnosis.case import Case, excerpt, line
+from grader.diagnosis.case import Case, excerpt, line, of_kind
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.lint_findings import of_kind
 from grader.message import Message, msg
 from grader.recording.observations import Raised
 
@@ -167,8 +166,7 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
 def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
     """The module that is imported lies in the submission's own package."""
     file = raised.place.file if raised.place else ""
-    beside = (each for each in case.observed.lint_findings if each.kind == "beside")
-    found = (each for each in beside if each.place.file == file)
+    found = (each for each in of_kind(case, "beside") if each.place.file == file)
     finding = next((each for each in found if f"'{each.name}'" in raised.text), None)
     if finding is None:
         return None

@@ -7,26 +7,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from grader.diagnosis.case import Case, excerpt, line
+from grader.diagnosis.case import Case, excerpt, first_of, line, of_kind
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.standstill import hears_once, never_spins
 from grader.message import Message, msg
-from grader.recording.observations import LintFinding, LintKind, SourceLine
+from grader.recording.observations import LintFinding, SourceLine
 
 #: Words of checks about a stop that did not come, or came at once.
 _ABOUT_STOPPING = ("wall", "zeros")
-
-
-def of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
-    """Yield the lint findings of these kinds."""
-    return (finding for finding in case.observed.lint_findings if finding.kind in kinds)
-
-
-def first_of(case: Case, kind: LintKind) -> SourceLine | None:
-    """Return the place of the first finding of a kind."""
-    return next((finding.place for finding in of_kind(case, kind)), None)
 
 
 def named_at(case: Case, name: str, place: SourceLine | None) -> SourceLine | None:

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from grader.diagnosis import known_exceptions
-from grader.diagnosis.case import Case, excerpt, function, line
+from grader.diagnosis.case import Case, excerpt, function, line, of_kind
 from grader.diagnosis.known_exceptions import Hint
-from grader.diagnosis.lint_findings import in_other_order, of_kind
+from grader.diagnosis.lint_findings import in_other_order
 from grader.message import Message, as_message, msg
 from grader.recording.observations import LintKind, Raised
 from grader.text import misspelt

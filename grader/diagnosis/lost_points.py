@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from grader.diagnosis.case import Case, excerpt, line, sentences
+from grader.diagnosis.case import Case, excerpt, line, of_kind, sentences
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.lint_findings import in_other_order, is_about_stopping, of_kind
+from grader.diagnosis.lint_findings import in_other_order, is_about_stopping
 from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.message import NOTHING, Message, msg
 from grader.recording.observations import End, LintFinding, LintKind
@@ -15,7 +15,6 @@ from grader.recording.observations import End, LintFinding, LintKind
 #: Kinds that say more of a condition than whether it was ever true.
 _SAY_MORE = ("at_wall", "uncalled", "always", "local", "unread")
 
-_RETURN = msg("Write return before it, if that is what you mean.")
 _COLOURS = "look at its conditions"
 #: Kind of a finding -> a word of the checks that it may explain, '' for all; cause and help.
 _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
@@ -26,7 +25,11 @@ _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
     ),
     "always": ("driving", msg("`{name}`{where} is always true."), NOTHING),
     "adds_nothing": ("", msg("`{name}`{where} lets nothing grow."), NOTHING),
-    "no_effect": ("", msg("Nothing uses what `{name}`{where} is."), _RETURN),
+    "no_effect": (
+        "",
+        msg("Nothing uses what `{name}`{where} is."),
+        msg("Write return before it, if that is what you mean."),
+    ),
     "plus": (
         "",
         msg("`{code}`{where} sets it anew each time, and adds nothing."),
@@ -102,6 +105,25 @@ _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
         msg("Move it to where you publish."),
     ),
 }
+#: How a step that was not taken should have been; see `grader.submission.paths.Step`.
+_NOT_TAKEN: dict[str, tuple[Message, Message]] = {
+    "true": (
+        msg("`{code}`{where} is never true{seen}."),
+        msg("Look at that condition, and at what sets its names before."),
+    ),
+    "false": (
+        msg("`{code}`{where} is always true{seen}."),
+        msg("Look at that condition, and at what sets its names before."),
+    ),
+    "called": (
+        msg("Nothing calls {code}(){where}."),
+        msg("Call it where it is needed, or let a timer or a subscription do so."),
+    ),
+    "past": (
+        msg("`{code}`{where} never comes to its end, and what stands after it is not reached."),
+        msg("What is to happen meanwhile belongs in a callback."),
+    ),
+}
 
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
@@ -169,7 +191,7 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
     end, spoken = unused(found, case), f"{found.cause!s} {found.help!s}"
     if end is not None:
         goals = ["publish"] if end.kind == "publisher" else ["call", "call_async"]
-    elif "look at its conditions" in spoken:
+    elif _COLOURS in spoken:
         goals = ["branch"]
     elif "ran into" in spoken:  # it has come to a wall, and should have stopped there
         goals = ["publish", "branch"]
@@ -178,29 +200,14 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
     stays = {each.place: each for each in of_kind(case, "stays")}
     known = {each.place for each in case.observed.lint_findings if each.kind in _SAY_MORE}
     for finding in of_kind(case, "unreached"):
-        goal, how, *values = finding.near.split(" ", 2)
+        goal, how, values = (*finding.near.split(" ", 2), "", "")[:3]
         is_flag = goal == "branch" and not re.search("[<>=]", finding.name)
         if goal not in goals or finding.place in known or is_flag or "__name__" in finding.name:
             continue
-        words = {"code": excerpt(finding.name), "where": line(finding.place)}
-        seen = msg(" ({values})", values=excerpt(values[0])) if values else NOTHING
-        match how:
-            case "true":
-                cause = msg("`{code}`{where} is never true{seen}.", seen=seen, **words)
-                help_ = msg("Look at that condition, and at what sets its names before.")
-            case "false":
-                cause = msg("`{code}`{where} is always true{seen}.", seen=seen, **words)
-                help_ = msg("Look at that condition, and at what sets its names before.")
-            case "called":
-                cause = msg("Nothing calls {code}(){where}.", **words)
-                help_ = msg("Call it where it is needed, or let a timer or a subscription do so.")
-            case _:
-                cause = msg(
-                    "`{code}`{where} never comes to its end, and what stands after it is not"
-                    " reached.",
-                    **words,
-                )
-                help_ = msg("What is to happen meanwhile belongs in a callback.")
+        seen = msg(" ({values})", values=excerpt(values)) if values else NOTHING
+        words = {"code": excerpt(finding.name), "where": line(finding.place), "seen": seen}
+        cause, help_ = _NOT_TAKEN.get(how, _NOT_TAKEN["past"])
+        cause = msg(cause.key, **words)
         if (kept := stays.get(finding.place)) is not None:
             help_ = msg(
                 "Nothing sets {name} after the start: which line should?",
@@ -223,8 +230,6 @@ def _misunderstood(found: Diagnosis, case: Case) -> Diagnosis | None:
                 "code": excerpt(finding.place.text),
                 "where": line(finding.place),
             }
-            if kind == "compared" and " == " not in finding.name:
-                help_ = _RETURN
             return replace(
                 found,
                 cause=sentences(msg(cause.key, **words), found.cause),

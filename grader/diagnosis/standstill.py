@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.diagnosis.case import Case, after, excerpt, function, line, sentences, since
+from grader.diagnosis.case import Case, after, excerpt, function, line, of_kind, sentences, since
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, msg_many
 from grader.recording.observations import SourceLine
@@ -171,8 +171,8 @@ def does_nothing(case: Case) -> Diagnosis | None:
         after=after(case.ended_s),
     )
     help_ = msg("Let the file end with: if __name__ == '__main__': main()")
-    for finding in case.observed.lint_findings:
-        if finding.kind == "misnamed" and finding.near == "__init__":
+    for finding in of_kind(case, "misnamed"):
+        if finding.near == "__init__":
             cause = msg(
                 "Your program ended {after}, and nothing called {name}(){where}: Python looks for "
                 "__init__().",

@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from grader.recording.observations import LintKind
-from grader.submission.scopes import Function, Parents, around, last, scope_nodes
+from grader.submission.scopes import Found, Function, Parents, around, last, scope_nodes
 
 #: The window's side [m], as turtlesim draws it.
 SIZE_M = 11.09
@@ -158,7 +157,7 @@ class Values:
         raise Unknown
 
 
-def held(tree: ast.Module, values: Values) -> Iterator[tuple[LintKind, str, str, int]]:
+def held(tree: ast.Module, values: Values) -> Iterator[Found]:
     """Yield what the names in a file hold, where that may end a program."""
     changed, divisors, seen = set(), set(), set()
     for node in ast.walk(tree):
@@ -196,9 +195,7 @@ def held(tree: ast.Module, values: Values) -> Iterator[tuple[LintKind, str, str,
                     yield "ends", node.name, "", min(loops, default=node.lineno)
 
 
-def find(
-    tree: ast.Module, parents: Parents, values: Values
-) -> Iterator[tuple[LintKind, str, str, int]]:
+def find(tree: ast.Module, parents: Parents, values: Values) -> Iterator[Found]:
     """Yield where the pose is compared with the middle of the window, or tells that a wall is near.
 
     Yields: the kind of `LintFinding`, its name and near, and a line.
@@ -234,9 +231,7 @@ def _where_used(node: ast.expr, tree: ast.Module, parents: Parents) -> int:
     return node.lineno
 
 
-def _of_the_middle(
-    node: ast.Compare, parents: Parents, values: Values
-) -> Iterator[tuple[LintKind, str, str, int]]:
+def _of_the_middle(node: ast.Compare, parents: Parents, values: Values) -> Iterator[Found]:
     parts = [node.left, *node.comparators]
     axes = [last(each) for each in parts if last(each) in ("x", "y")]
     for part in parts if axes else []:

@@ -103,15 +103,10 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
             lines[file.relative_to(root).as_posix()] = text.splitlines()
         sources = {file: "\n".join(text) for file, text in lines.items()}
         is_short = sum(map(len, sources.values())) <= MOST_SOURCE
-        trees = _parse(sources) if is_short else {}
-        found = _find(trees, sources, lies)[:MOST]
-        below = (
-            path.relative_to(root).as_posix() for path in islice(root.rglob("*.py"), MOST_FILES)
-        )
-        there = {path.lower().rpartition("/")[2]: path for path in below}
-        for name, tree in trees.items():
-            found += _elsewhere(tree, name, lies, there)
-        steps = ((file, step) for file in trees for step in paths.find(Source(trees[file])))
+        parsed = _parse(sources) if is_short else {}
+        found = _find(parsed, sources, lies)[:MOST]
+        found += _elsewhere(parsed, root, lies)
+        steps = ((file, step) for file, source in parsed.items() for step in paths.find(source))
         found += [_finding(*step[:3], file, step[3]) for file, step in islice(steps, paths.MOST)]
     except (OSError, RecursionError, MemoryError, ValueError):
         return ()
@@ -144,18 +139,18 @@ def find(
     return _find(_parse(sources), sources, lies)
 
 
-def _parse(sources: Mapping[str, str]) -> dict[str, ast.Module]:
-    trees = {}
+def _parse(sources: Mapping[str, str]) -> dict[str, Source]:
+    parsed = {}
     for file, text in sources.items():
         with suppress(SyntaxError):
-            trees[file] = parse(text.encode("utf-8", "replace"), file)
-    return trees
+            parsed[file] = Source(parse(text.encode("utf-8", "replace"), file))
+    return parsed
 
 
 def _find(
-    trees: Mapping[str, ast.Module], sources: Mapping[str, str], lies: Callable[[str], bool]
+    parsed: Mapping[str, Source], sources: Mapping[str, str], lies: Callable[[str], bool]
 ) -> list[LintFinding]:
-    names = Names()
+    names, trees = Names(), {file: source.tree for file, source in parsed.items()}
     for tree in trees.values():
         names.add(tree)
     by_name = re.compile(rf"\b({'|'.join(BY_NAME)})\b")
@@ -183,7 +178,7 @@ def _find(
     found += [
         finding for file, tree in trees.items() for finding in _swallows(tree, callbacks, file)
     ]
-    found += [_finding(*each[:3], file, each[3]) for file, each in ros_mistakes.find(trees)]
+    found += [_finding(*each[:3], file, each[3]) for file, each in ros_mistakes.find(parsed)]
     return list(dict.fromkeys(found))
 
 
@@ -235,27 +230,35 @@ def _own_modules(trees: Mapping[str, ast.Module]) -> Iterator[LintFinding]:
 
 def _imported_file(file: str, node: ast.ImportFrom, files: Iterable[str]) -> str | None:
     """Return the file of the submission that `from ... import` reads; None for any other."""
-    folders = file.split("/")[: -node.level] if node.level else []
-    path = "/".join([*folders, *(node.module or "").split(".")])
+    path = _imported_path(file, node)
     return next((each for each in (f"{path}.py", f"{path}/__init__.py") if each in files), None)
 
 
-def _elsewhere(
-    tree: ast.AST, file: str, lies: Callable[[str], bool], there: Mapping[str, str]
-) -> Iterator[LintFinding]:
-    """Yield imports of modules of a package that lie in another place, or in other letters.
+def _imported_path(file: str, node: ast.ImportFrom) -> str:
+    """Return where `from ... import` looks below the root of the submission: 'folder/name'."""
+    folders = file.split("/")[: -node.level] if node.level else []
+    return "/".join([*folders, *(node.module or "").split(".")])
 
-    Args:
-        there: the files of the submission by their names in small letters.
-    """
-    for node in ast.walk(tree):
-        match node:
-            case ast.ImportFrom(module=str() as module, level=level):
-                folders = file.split("/")[:-level] if level else []
-                path = "/".join((*folders, *module.split(".")))
-                near = there.get(f"{path.rpartition('/')[2].lower()}.py", "")
-                if "/" in path and near and lies(path.rpartition("/")[0]) and not lies(path):
-                    yield _finding("elsewhere", f"{path}.py", near, file, node.lineno)
+
+def _elsewhere(
+    parsed: Mapping[str, Source], root: Path, lies: Callable[[str], bool]
+) -> Iterator[LintFinding]:
+    """Yield imports of modules of a package that lie in another place, or in other letters."""
+    missing = [
+        (path, file, node.lineno)
+        for file, source in parsed.items()
+        for node in source.nodes
+        if isinstance(node, ast.ImportFrom)
+        and node.module
+        and "/" in (path := _imported_path(file, node))
+        and lies(path.rpartition("/")[0])
+        and not lies(path)
+    ]
+    files = islice(root.rglob("*.py"), MOST_FILES) if missing else ()
+    there = {each.name.lower(): each.relative_to(root).as_posix() for each in files}
+    for path, file, line in missing:
+        if near := there.get(f"{path.rpartition('/')[2].lower()}.py"):
+            yield _finding("elsewhere", f"{path}.py", near, file, line)
 
 
 # Attributes and methods ---------------------------------------------------------------------------

@@ -14,14 +14,13 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.recording.observations import LintFinding, LintKind, RanFile
-from grader.submission.scopes import Function, Parents, Source, last
+from grader.recording.observations import LintFinding, RanFile
+from grader.submission.scopes import LEAVES, Found, Function, Parents, Source, last
 
 #: The calls that a diagnosis asks about.
 SENDS = ("publish", "call_async", "call")
 #: So many steps of a submission are kept; a function is looked for so often.
 MOST, DEEPEST = 300, 5
-_LEAVES = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 #: Statements that run no line.
 _IDLE = (ast.Global, ast.Nonlocal, ast.Pass)
 
@@ -54,14 +53,14 @@ class Step(NamedTuple):
         return cls(goal, int(line), how, int(first), int(last_))
 
 
-def find(source: Source) -> Iterator[tuple[LintKind, str, str, int]]:
+def find(source: Source) -> Iterator[Found]:
     """Yield the steps to each call that sends something or calls a function of the file.
 
     Yields: the kind of `LintFinding`, its name and near, and a line.
     """
-    tree, parents, functions = source.tree, source.parents, source.functions
-    given = {last(each) for _, each in source.given()}
-    for node in ast.walk(tree):
+    parents, functions = source.parents, source.functions
+    given = {last(each) for _, each in source.given}
+    for node in source.nodes:
         if isinstance(node, ast.If):
             step = Step("branch", node.body[0].lineno, "true", *_lines(node.body[0]))
             yield "step", ast.unparse(node.test), str(step), node.lineno
@@ -72,9 +71,7 @@ def find(source: Source) -> Iterator[tuple[LintKind, str, str, int]]:
                 yield from _steps(f"set:{ast.unparse(target)}", target, parents, given)
 
 
-def _steps(
-    goal: str, inner: ast.expr, parents: Parents, given: Collection[str]
-) -> Iterator[tuple[LintKind, str, str, int]]:
+def _steps(goal: str, inner: ast.expr, parents: Parents, given: Collection[str]) -> Iterator[Found]:
     found: list[tuple[str, str, int, ast.stmt]] = []
     node: ast.AST = inner
     while (outer := parents.get(node)) is not None:
@@ -117,7 +114,7 @@ def _blocks(node: ast.AST) -> Iterator[Sequence[ast.stmt]]:
 
 def _left_behind(statement: ast.stmt) -> tuple[str, str]:
     """Return what has to be so for what comes after a statement: how, and the code."""
-    if isinstance(statement, ast.If) and isinstance(statement.body[-1], _LEAVES):
+    if isinstance(statement, ast.If) and isinstance(statement.body[-1], LEAVES):
         return "false", ast.unparse(statement.test)
     if isinstance(statement, ast.While):
         return "past", f"while {ast.unparse(statement.test)}:"
@@ -129,7 +126,7 @@ def _may_stay(statement: ast.stmt) -> bool:
     """Whether what comes after a statement may not be reached."""
     if isinstance(statement, ast.ClassDef | Function):
         return False
-    return any(isinstance(node, (ast.Call, ast.While, *_LEAVES)) for node in ast.walk(statement))
+    return any(isinstance(node, (ast.Call, ast.While, *LEAVES)) for node in ast.walk(statement))
 
 
 def _is_idle(statement: ast.stmt) -> bool:

@@ -9,17 +9,15 @@ import ast
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
-from grader.recording.observations import LintKind
 from grader.submission import scopes
 from grader.submission.conditions import Values
-from grader.submission.scopes import Function, Source, last
+from grader.submission.scopes import LEAVES, Found, Function, Source, is_read, last
 from grader.text import misspelt
 
-#: Kind, name, near, line; see `LintFinding`.
-Found = tuple[LintKind, str, str, int]
+#: Of a class so many methods are compared with those of another.
+MOST_METHODS = 100
 #: Numbers of degrees.
 _DEGREES = (45, 90, 180, 270, 360)
-_LEAVES = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 
 
 def find(source: Source, values: Values) -> Iterator[Found]:
@@ -49,10 +47,12 @@ def _recursion(source: Source) -> Iterator[Found]:
 
 def _idle(source: Source) -> Iterator[Found]:
     """Statements and conditions that have no effect."""
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
-            case ast.Expr(value=ast.Compare() as test):
+            case ast.Expr(value=ast.Compare(ops=[ast.Eq()]) as test):
                 yield "compared", ast.unparse(test), "", node.lineno
+            case ast.Expr(value=ast.Compare() as value):
+                yield "no_effect", ast.unparse(value), "", node.lineno
             case ast.Expr(value=ast.IfExp() | ast.BinOp() | ast.BoolOp() | ast.UnaryOp() as value):
                 yield "no_effect", ast.unparse(value), "", node.lineno
             case ast.Expr(value=ast.Constant(value=int() | float() as value)):
@@ -72,7 +72,7 @@ def _idle(source: Source) -> Iterator[Found]:
 
 def _late(source: Source) -> Iterator[Found]:
     """Lambdas in a loop that use its variable: it has another value when they are called."""
-    for loop in ast.walk(source.tree):
+    for loop in source.nodes:
         targets = ast.walk(loop.target) if isinstance(loop, ast.For) else ()
         names = {each.id for each in targets if isinstance(each, ast.Name)}
         for inner in ast.walk(loop) if names else ():
@@ -93,7 +93,7 @@ def own_calls(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
         if scopes.returns_nothing(function)
     }
     for file, source in sources.items():
-        for call in (node for node in ast.walk(source.tree) if isinstance(node, ast.Call)):
+        for call in source.all_calls:
             if found := scopes.in_other_order(call, functions):
                 yield file, found
             name, user, owner = last(call.func), source.parents[call], call.func
@@ -107,12 +107,12 @@ def own_calls(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
 
 def _overrules(source: Source) -> Iterator[Found]:
     """An `if` whose `else` sets again what the `if` before it has set."""
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         for block in (getattr(node, "body", None), getattr(node, "orelse", None)):
             for first, second in pairwise(block if isinstance(block, list) else []):
                 match first, second:
                     case ast.If(orelse=[]), ast.If(orelse=[_, *_]):
-                        leaves = isinstance(first.body[-1], _LEAVES)
+                        leaves = isinstance(first.body[-1], LEAVES)
                         both = _set(first.body) & _set(_else(second))
                         if both and not leaves:
                             yield "overrules", min(both), "", second.lineno
@@ -142,7 +142,7 @@ def _defaults(source: Source) -> Iterator[Found]:
 
 def _degrees(source: Source, values: Values) -> Iterator[Found]:
     """Angles in radians that are divided by or compared with degrees."""
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.BinOp(left=left, op=ast.Div() | ast.FloorDiv() | ast.Mod(), right=right):
                 angle, others = left, [right]
@@ -162,7 +162,7 @@ def _texts(source: Source, _: Values) -> Iterator[Found]:
     """Comparisons with a text that stands nowhere else, but in other letters."""
     compared: dict[str, int] = {}
     others: set[str] = set()
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             if isinstance(source.parents[node], ast.Compare):
                 compared.setdefault(node.value, node.lineno)
@@ -176,7 +176,7 @@ def _texts(source: Source, _: Values) -> Iterator[Found]:
 
 def _factors(source: Source, values: Values) -> Iterator[Found]:
     """Products of what begins with 0, and stays so."""
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.AugAssign(target=target, op=ast.Mult()):
                 begins = values.assigned(ast.unparse(target))
@@ -187,22 +187,23 @@ def _factors(source: Source, values: Values) -> Iterator[Found]:
 
 def _names_of_methods(source: Source) -> Iterator[Found]:
     """Methods that are nearly called `__init__`, or as one that they are to replace."""
-    classes = {of.name: of for of in ast.walk(source.tree) if isinstance(of, ast.ClassDef)}
+    classes = {of.name: of for of in source.nodes if isinstance(of, ast.ClassDef)}
     for of in classes.values():
         own = {each.name: each for each in of.body if isinstance(each, Function)}
         for name, method in own.items():
             if name.strip("_") in ("init", "int", "inti") and "__init__" not in own:
                 yield "misnamed", name, "__init__", method.lineno
         for base in (classes[last(each)] for each in of.bases if last(each) in classes):
-            for name in (each.name for each in base.body if isinstance(each, Function)):
-                for other, method in own.items():
+            replaced = [each.name for each in base.body if isinstance(each, Function)]
+            for name in replaced[:MOST_METHODS]:
+                for other, method in [*own.items()][:MOST_METHODS]:
                     if name not in own and misspelt(name, other):
                         yield "misnamed", other, name, method.lineno
 
 
 def _blocks(source: Source) -> Iterator[Found]:
     """Lines that the next one, or the next time, makes needless."""
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         block = getattr(node, "body", None)
         if not isinstance(block, list):
             continue
@@ -232,7 +233,7 @@ def _resets(block: list[ast.stmt]) -> Iterator[Found]:
 def _sides(function: Function) -> Iterator[Found]:
     """An argument that gets the attribute of its name, and is not used after that."""
     arguments = {each.arg for each in function.args.args}
-    reads = [n.id for n in ast.walk(function) if isinstance(n, ast.Name) and _is_read(n)]
+    reads = [n.id for n in ast.walk(function) if isinstance(n, ast.Name) and is_read(n)]
     for node in ast.walk(function):
         match node:
             case ast.Assign(
@@ -243,23 +244,18 @@ def _sides(function: Function) -> Iterator[Found]:
 
 def _unpublished(function: Function, source: Source) -> Iterator[Found]:
     """A message that a function makes and fills, and hands to nothing."""
-    imported = {alias.asname or alias.name for _, alias in source.imported()}
     made: dict[str, int] = {}
     for node in ast.walk(function):
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=of)):
                 owner = of.value if isinstance(of, ast.Attribute) else of
-                if isinstance(owner, ast.Name) and owner.id in imported:
+                if isinstance(owner, ast.Name) and owner.id in source.messages:
                     made[name] = node.lineno
     for node in ast.walk(function):
-        if isinstance(node, ast.Name) and _is_read(node) and node.id in made:
+        if isinstance(node, ast.Name) and is_read(node) and node.id in made:
             outer: ast.AST = node
             while isinstance(source.parents[outer], ast.Attribute):
                 outer = source.parents[outer]
-            if outer is node or _is_read(outer):
+            if outer is node or is_read(outer):
                 made.pop(node.id)
     yield from (("unpublished", name, "", line) for name, line in made.items())
-
-
-def _is_read(node: ast.AST) -> bool:
-    return isinstance(getattr(node, "ctx", None), ast.Load)

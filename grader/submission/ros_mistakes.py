@@ -14,8 +14,7 @@ from difflib import get_close_matches
 from typing import TypeGuard
 
 from grader.submission import conditions, python_mistakes, scopes
-from grader.submission.python_mistakes import Found
-from grader.submission.scopes import Function, Source, last, unread
+from grader.submission.scopes import Found, Function, Source, is_read, last, unread
 
 #: Of larger sources, in the nodes of their syntax trees times their files, nothing is looked for.
 MOST_NODES = 60_000
@@ -29,9 +28,8 @@ _NAME = re.compile(r"[\w/~]{2,80}")
 FIELDS = ("linear", "angular", "r", "g", "b", "width", "off")
 
 
-def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
+def find(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
     """Yield findings in the files of a submission, each with its file; the surest first."""
-    sources = {file: Source(tree) for file, tree in trees.items()}
     if len(sources) * sum(len(source.parents) for source in sources.values()) > MOST_NODES:
         return
     whole = [*sources.values()]
@@ -57,7 +55,7 @@ def find(trees: Mapping[str, ast.Module]) -> Iterator[tuple[str, Found]]:
         yield from ((file, found) for found in _attributes(source, whole))
         yield from ((file, found) for found in scopes.misplaced(source.tree, source.parents))
     yield from python_mistakes.own_calls(sources)
-    values = conditions.Values([*trees.values()])
+    values = conditions.Values([source.tree for source in whole])
     for file, source in sources.items():
         yield from ((file, found) for found in python_mistakes.find(source, values))
         places = conditions.find(source.tree, source.parents, values)
@@ -83,7 +81,7 @@ def _callbacks(source: Source) -> Iterator[Found]:
         if by == "create_timer" and takes > 0 and not function.args.defaults:
             yield "message_for_timer", function.name, "", function.lineno
             if any(of == "create_subscription" and f is function for of, f in each):
-                for of, given in source.given():  # it is right for the other
+                for of, given in source.given:  # it is right for the other
                     if of == by and last(given) == function.name:
                         yield "message_for_timer", function.name, "heard", given.lineno
         if isinstance(function, ast.AsyncFunctionDef):
@@ -94,7 +92,7 @@ def _callbacks(source: Source) -> Iterator[Found]:
 
 def _called_callbacks(source: Source) -> Iterator[Found]:
     """Functions of one's own that are called where they are to be passed."""
-    for name, each in source.given():
+    for name, each in source.given:
         if isinstance(each, ast.Call) and last(each.func) in source.functions:
             yield "called_callback", last(each.func), name, each.lineno
 
@@ -139,8 +137,8 @@ def _around_spin(source: Source) -> Iterator[Found]:
 
 def _brackets(source: Source) -> Iterator[Found]:
     """Message classes that are kept instead of a message, or hidden by one; a stray comma."""
-    imported = {alias.asname or alias.name for _, alias in source.imported()}
-    for node in ast.walk(source.tree):
+    imported = source.messages
+    for node in source.nodes:
         match node:
             case ast.Assign(targets=[ast.Name(id=name)]) if name in imported:
                 yield "hides_class", name, "", node.lineno
@@ -177,7 +175,7 @@ def _entry(source: Source) -> Iterator[Found]:
 
 def _bare_nodes(source: Source) -> Iterator[Found]:
     """Classes of nodes whose `__init__` does not call that of Node."""
-    for of in ast.walk(source.tree):
+    for of in source.nodes:
         if _is_node(of):
             for each in of.body:
                 if isinstance(each, Function) and each.name == "__init__":
@@ -192,14 +190,14 @@ def _is_node(of: ast.AST) -> TypeGuard[ast.ClassDef]:
 
 def _unspun(source: Source) -> Iterator[Found]:
     """Nodes that are made, and that nothing is given."""
-    nodes = {of.name for of in ast.walk(source.tree) if _is_node(of)}
-    names = Counter(n.id for n in ast.walk(source.tree) if isinstance(n, ast.Name))
-    for node in ast.walk(source.tree):
+    nodes = {of.name for of in source.nodes if _is_node(of)}
+    names = Counter(node.id for node in source.nodes if isinstance(node, ast.Name))
+    ends = source.calls("destroy_node", "shutdown")
+    names.subtract(ast.unparse(getattr(call.func, "value", call.func)) for call in ends)
+    for node in source.nodes:
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id=of))):
-                ends = source.calls("destroy_node", "shutdown")
-                used = sum(name == ast.unparse(getattr(c.func, "value", c.func)) for c in ends)
-                if of in nodes and names[name] - used == 1:
+                if of in nodes and names[name] == 1:
                     yield "unspun", name, of, node.lineno
 
 
@@ -215,7 +213,7 @@ def _grows(source: Source) -> Iterator[Found]:
 def _unstarted(source: Source) -> Iterator[Found]:
     """Threads that nothing starts."""
     begun = {ast.unparse(call.func) for call in source.calls("start")}
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.Assign(targets=[target], value=ast.Call(func=of)) if last(of) == "Thread":
                 if last(target) and f"{ast.unparse(target)}.start" not in begun:
@@ -226,7 +224,7 @@ def _exits(source: Source) -> Iterator[Found]:
     """Lines that end the program where a condition is true."""
     for call in source.calls("SystemExit", "exit"):
         outer = source.around(call, ast.If)
-        if isinstance(outer, ast.If) and call.lineno < (outer.body[-1].end_lineno or 0) + 1:
+        if isinstance(outer, ast.If) and call.lineno <= (outer.body[-1].end_lineno or 0):
             yield "exits", ast.unparse(outer.test), "", call.lineno
 
 
@@ -234,11 +232,11 @@ def _keeps(source: Source) -> Iterator[Found]:
     """Where is kept what the next value is compared with."""
     compared = {
         ast.unparse(each)
-        for node in ast.walk(source.tree)
+        for node in source.nodes
         if isinstance(node, ast.Compare) and isinstance(node.ops[0], ast.NotEq)
         for each in (node.left, *node.comparators)
     }
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.Assign(targets=[ast.Attribute() as kept], value=value):
                 if not isinstance(value, ast.Constant) and ast.unparse(kept) in compared:
@@ -247,12 +245,8 @@ def _keeps(source: Source) -> Iterator[Found]:
 
 def _heads(source: Source) -> Iterator[Found]:
     """Where the pose's angle is read."""
-    for node in ast.walk(source.tree):
-        if (
-            isinstance(node, ast.Attribute)
-            and node.attr == "theta"
-            and isinstance(node.ctx, ast.Load)
-        ):
+    for node in source.nodes:
+        if isinstance(node, ast.Attribute) and node.attr == "theta" and is_read(node):
             yield "heads", ast.unparse(node), "", node.lineno
 
 
@@ -274,7 +268,7 @@ def _number(node: ast.expr) -> float | None:
 def _stays(source: Source, values: conditions.Values) -> Iterator[Found]:
     """Tests of what keeps the value that it began with: nothing ever sets it."""
     seen: set[str] = set()
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.Compare(ops=[ast.Eq() | ast.NotEq() | ast.Is() | ast.IsNot()]):
                 tested = [node.left, *node.comparators]
@@ -321,7 +315,7 @@ def _waits(source: Source) -> Iterator[Found]:
 def _colours(source: Source) -> Iterator[Found]:
     """Colours that are written twice: the second place of each."""
     first: dict[tuple[float, ...], int] = {}
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
                 pass
@@ -340,7 +334,7 @@ def _colours(source: Source) -> Iterator[Found]:
 def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
     """Literals that a message's field gets, also by way of an argument or a name."""
     followed: set[tuple[str, str]] = set()
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.Assign(targets=[ast.Attribute(attr=name, value=outer)], value=value):
                 part = last(outer)
@@ -366,7 +360,7 @@ def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
                 for begin in _plain(literal, values):
                     yield "argument", known, ast.unparse(begin), begin.lineno
                     yield "argument", known, ast.unparse(begin), call.lineno
-        for each in ast.walk(source.tree):
+        for each in source.nodes:
             match each:
                 case ast.Assign(targets=[target], value=literal) if last(target) == given:
                     pass
@@ -376,7 +370,7 @@ def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
                     continue
             if literal is not None and _number(literal) is not None:
                 yield "argument", known, ast.unparse(literal), each.lineno
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         if isinstance(node, ast.Tuple | ast.Call):
             parts = getattr(node, "elts", None) or getattr(node, "args", [])
             numbers = [number for each in parts if (number := _number(each)) is not None]
@@ -388,14 +382,14 @@ def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
 
 
 def _imports(source: Source) -> Iterator[Found]:
-    for node, alias in source.imported():
+    for node, alias in source.imported:
         yield "imports", alias.name, node.module or "", node.lineno
 
 
 def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
     """What a program of ROS needs, and nowhere has: init, spin, a timer, a subscription."""
     makes = list(source.calls("create_node"))
-    nodes = {node.name for each in whole for node in ast.walk(each.tree) if _is_node(node)}
+    nodes = {node.name for each in whole for node in each.nodes if _is_node(node)}
     makes += source.calls(*nodes)
     if makes and not any(_has(each, "init") for each in whole):
         yield "no_init", "", "", _start_of(source, makes[0])
@@ -404,7 +398,7 @@ def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
     used = {
         last(node)
         for each in whole
-        for node in ast.walk(each.tree)
+        for node in each.nodes
         if isinstance(node, ast.Attribute | ast.Name) and isinstance(node.ctx, ast.Load)
     }
     creates = [*source.calls(*CREATES)]
@@ -441,14 +435,14 @@ def _is_stored(node: ast.AST) -> TypeGuard[ast.Attribute]:
 
 def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
     """Attributes of self that are read and never set, with the start of the class."""
-    classes = {n.name for each in whole for n in ast.walk(each.tree) if isinstance(n, ast.ClassDef)}
+    classes = {n.name for each in whole for n in each.nodes if isinstance(n, ast.ClassDef)}
     stored: set[str] = set()
     read: set[str] = set()
     for each in whole:
-        for node in ast.walk(each.tree):
+        for node in each.nodes:
             if isinstance(node, ast.Attribute):
                 (read if isinstance(node.ctx, ast.Load) else stored).add(node.attr)
-    for of in ast.walk(source.tree):
+    for of in source.nodes:
         if not isinstance(of, ast.ClassDef):
             continue
         methods = [n for n in of.body if isinstance(n, Function)]
@@ -486,7 +480,7 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
 
 def _constants(source: Source) -> Iterator[Found]:
     """Names of topics and services that stand apart from where they are used."""
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
             texts = (n for n in ast.walk(node.value) if isinstance(n, ast.Constant))
             for each in texts:
@@ -497,7 +491,7 @@ def _constants(source: Source) -> Iterator[Found]:
 def _fields(source: Source) -> Iterator[Found]:
     """Where fields of messages are set: the first place of each, one of zero last."""
     places: dict[str, tuple[bool, int]] = {}
-    for node in ast.walk(source.tree):
+    for node in source.nodes:
         match node:
             case ast.Attribute(value=ast.Attribute(attr=part), attr=name, ctx=ast.Store()):
                 names = [f"{part}.{name}"] if part in FIELDS else []

@@ -5,11 +5,15 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from grader.recording.observations import LintKind
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+#: Kind, name, near, line; see `LintFinding`.
+Found = tuple[LintKind, str, str, int]
+#: Statements after which the next line does not run.
+LEAVES = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 #: A node -> the one that it is part of.
 Parents = Mapping[ast.AST, ast.AST]
 
@@ -20,6 +24,11 @@ def last(called: ast.AST) -> str:
         case ast.Attribute(attr=name) | ast.Name(id=name):
             return name
     return ""
+
+
+def is_read(node: ast.AST) -> bool:
+    """Whether a name or an attribute is read there, not set."""
+    return isinstance(getattr(node, "ctx", None), ast.Load)
 
 
 def around(node: ast.AST, parents: Parents, *kinds: type[ast.AST]) -> ast.AST | None:
@@ -40,45 +49,65 @@ CALLBACKS = {
 
 @dataclass
 class Source:
-    """One file, with what is asked of it again and again."""
+    """One file, with what is asked of it again and again.
+
+    Attributes:
+        nodes: all of its syntax tree, in the order of `ast.walk`.
+        functions: by name.
+        parents: a node -> the one that it is part of.
+    """
 
     tree: ast.Module
+    nodes: list[ast.AST] = field(default_factory=list)
     functions: dict[str, Function] = field(default_factory=dict)
     parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for node in ast.walk(self.tree):
+        self.nodes += ast.walk(self.tree)
+        for node in self.nodes:
             for child in ast.iter_child_nodes(node):
                 self.parents[child] = node
             if isinstance(node, Function):
                 self.functions[node.name] = node
 
+    @cached_property
+    def all_calls(self) -> list[ast.Call]:
+        """All calls."""
+        return [node for node in self.nodes if isinstance(node, ast.Call)]
+
     def calls(self, *names: str) -> Iterator[ast.Call]:
         """Yield the calls of functions of these names, of whatever object."""
-        for node in ast.walk(self.tree):
-            if isinstance(node, ast.Call) and last(node.func) in names:
-                yield node
+        return (call for call in self.all_calls if last(call.func) in names)
 
     def around(self, node: ast.AST, *kinds: type[ast.AST]) -> ast.AST | None:
         """Return the nearest of these kinds that a node is in."""
         return around(node, self.parents, *kinds)
 
-    def imported(self) -> Iterator[tuple[ast.ImportFrom, ast.alias]]:
-        """Yield the imports of messages and services."""
-        for node in ast.walk(self.tree):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").endswith((".msg", ".srv")):
-                yield from ((node, alias) for alias in node.names)
+    @cached_property
+    def imported(self) -> list[tuple[ast.ImportFrom, ast.alias]]:
+        """The imports of messages and services."""
+        found = (node for node in self.nodes if isinstance(node, ast.ImportFrom))
+        of_ros = (node for node in found if (node.module or "").endswith((".msg", ".srv")))
+        return [(node, alias) for node in of_ros for alias in node.names]
 
-    def given(self) -> Iterator[tuple[str, ast.expr]]:
-        """Yield what stands where ROS is to get a callback, and by which call."""
+    @cached_property
+    def messages(self) -> set[str]:
+        """The names of messages and services, as the file calls them."""
+        return {alias.asname or alias.name for _, alias in self.imported}
+
+    @cached_property
+    def given(self) -> list[tuple[str, ast.expr]]:
+        """What stands where ROS is to get a callback, and by which call."""
+        found: list[tuple[str, ast.expr]] = []
         for name, (position, keyword) in CALLBACKS.items():
             for call in self.calls(name):
-                yield from ((name, each) for each in call.args[position : position + 1])
-                yield from ((name, word.value) for word in call.keywords if word.arg == keyword)
+                found += ((name, each) for each in call.args[position : position + 1])
+                found += ((name, word.value) for word in call.keywords if word.arg == keyword)
+        return found
 
     def callbacks(self) -> Iterator[tuple[str, Function]]:
         """Yield the functions that ROS is to call, and by which call it gets them."""
-        for name, each in self.given():
+        for name, each in self.given:
             if (function := self.functions.get(last(each))) is not None:
                 yield name, function
 
@@ -96,9 +125,7 @@ class Source:
             waiting += [self.functions[name] for name in calls if name in self.functions]
 
 
-def not_declared(
-    node: ast.AST, outer: tuple[ast.AST, ...] = ()
-) -> Iterator[tuple[LintKind, str, str, int]]:
+def not_declared(node: ast.AST, outer: tuple[ast.AST, ...] = ()) -> Iterator[Found]:
     """Yield names that a function sets, and a scope around it sets, too.
 
     Yields: the kind of `LintFinding`, the name, the declaration that lacks, and a line.
@@ -164,11 +191,7 @@ def _plain(target: ast.expr) -> list[ast.Name]:
 
 def unread(function: Function) -> dict[str, int]:
     """Map the local names that a function never reads to the line where first."""
-    loads = {
-        node.id
-        for node in ast.walk(function)
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
-    }
+    loads = {node.id for node in ast.walk(function) if isinstance(node, ast.Name) and is_read(node)}
     added = {
         node.target.id
         for node in ast.walk(function)
@@ -181,10 +204,7 @@ def _is_read_beside(home: ast.AST, function: Function, name: str) -> bool:
     """Whether anything but a function itself reads a name."""
     inside = set(map(id, ast.walk(function)))
     return any(
-        isinstance(node, ast.Name)
-        and node.id == name
-        and isinstance(node.ctx, ast.Load)
-        and id(node) not in inside
+        isinstance(node, ast.Name) and node.id == name and is_read(node) and id(node) not in inside
         for node in ast.walk(home)
     )
 
@@ -192,7 +212,7 @@ def _is_read_beside(home: ast.AST, function: Function, name: str) -> bool:
 def _is_read_first(function: Function, name: str) -> bool:
     """Whether a function reads a name no later than it sets it."""
     uses = [n for n in scope_nodes(function) if isinstance(n, ast.Name) and n.id == name]
-    reads = [node.lineno for node in uses if isinstance(node.ctx, ast.Load)]
+    reads = [node.lineno for node in uses if is_read(node)]
     sets = [node.lineno for node in uses if isinstance(node.ctx, ast.Store)]
     adds = any(
         isinstance(n, ast.AugAssign) and isinstance(n.target, ast.Name) and n.target.id == name
@@ -204,7 +224,7 @@ def _is_read_first(function: Function, name: str) -> bool:
 # Functions ----------------------------------------------------------------------------------------
 
 
-def misplaced(tree: ast.Module, parents: Parents) -> Iterator[tuple[LintKind, str, str, int]]:
+def misplaced(tree: ast.Module, parents: Parents) -> Iterator[Found]:
     """Yield what looks like a method, and is defined in a function or outside of all classes."""
     for node in ast.walk(tree):
         outer = parents.get(node)
@@ -230,9 +250,7 @@ def last_print(function: Function) -> int:
     return max(prints, default=function.lineno)
 
 
-def in_other_order(
-    call: ast.Call, functions: Mapping[str, Function]
-) -> tuple[LintKind, str, str, int] | None:
+def in_other_order(call: ast.Call, functions: Mapping[str, Function]) -> Found | None:
     """Return a call that gives two arguments each in the other's place; None for any other."""
     called, given = call.func, [*call.args]
     if last(called) == "partial" and given:

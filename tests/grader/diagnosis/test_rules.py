@@ -560,6 +560,13 @@ def test_a_slip_stands_before_the_finding_that_it_may_explain(kind):
     assert found.place == LINE
 
 
+@pytest.mark.parametrize("near", ["", "publish", "publish nohow", "publish true a = 1"])
+def test_a_recording_may_tell_of_unreached_lines_in_any_form(near):
+    finding = LintFinding("unreached", "a > 1", near, LINE)
+    found = of_check("It ran into the wall.", lint_findings=(finding,))
+    assert str(found.cause).endswith("It ran into the wall.")
+
+
 def test_a_slip_that_explains_an_exception_only_is_not_told_of_anything_else():
     findings = tuple(
         LintFinding(kind, "a", "b", LINE) for kind in ("method", "without_self", "class")

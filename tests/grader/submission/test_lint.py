@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+
 import pytest
 
 from grader.recording.observations import LintFinding, SourceLine
@@ -335,6 +337,26 @@ def test_a_value_that_python_refuses_or_does_not_write_is_no_failure_of_ours(tmp
     file.write_text(source)
     with open_submission(file) as submission:
         assert submission.found
+
+
+def test_twice_the_source_takes_about_twice_the_steps(monkeypatch):
+    steps = 0
+    children = ast.iter_child_nodes
+
+    def counted(node):
+        nonlocal steps
+        steps += 1
+        return children(node)
+
+    monkeypatch.setattr(ast, "iter_child_nodes", counted)
+    taken = []
+    for functions in (40, 80):
+        steps = 0
+        bodies = (f"def f{i}():\n    a = P()\n    m = Twist()\n" for i in range(functions))
+        head = "from geometry_msgs.msg import Twist\nclass P(Node):\n    pass\n"
+        lint.find({"a.py": head + "".join(bodies)})
+        taken.append(steps)
+    assert taken[1] < 2.5 * taken[0]
 
 
 def test_a_file_that_nobody_looks_through_is_started_all_the_same(tmp_path):
