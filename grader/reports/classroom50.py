@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from decimal import ROUND_HALF_UP, Decimal
 from typing import Any, Final
 
@@ -47,7 +47,7 @@ def render(report: Report) -> str:
     if report.not_shown:
         left_out = {"test-name": report.not_shown_name, "passed": False, "score": 0, "max-score": 0}
         tests.append({**left_out, "status": "not_shown", "message": report.not_shown})
-    return _document(points, tests)
+    return _document(report.made, points, tests)
 
 
 def render_error(report: ErrorReport) -> str:
@@ -71,11 +71,11 @@ def render_error(report: ErrorReport) -> str:
         "max-score": points.max_total,
         "message": "\n\n".join(report.paragraphs),
     }
-    return _document(points, [test])
+    return _document(report.made, points, [test])
 
 
-def _document(points: WholePoints, tests: list[dict[str, Any]]) -> str:
-    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+def _document(made: datetime, points: WholePoints, tests: list[dict[str, Any]]) -> str:
+    now = made.strftime("%Y-%m-%dT%H:%M:%SZ")
     document = {
         "schema": _SCHEMA,
         **_identity(os.environ),

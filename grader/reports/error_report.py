@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
@@ -40,6 +41,7 @@ class ErrorReport:
         is_judged: whether the student has to act, so that the score is 0.
         message: found, expected, and what to do; may have several lines.
         max_score: the exercise's points; None where they are not known.
+        made: when this report was made, in UTC.
         folder, checks, file: as above.
     """
 
@@ -52,6 +54,7 @@ class ErrorReport:
     ) -> None:
         self.is_judged = error.whose == "submission"
         self.whose = error.whose
+        self.made = datetime.now(UTC)
         self.message = text.clip_middle(text.plain(translate(error.message)).strip(), _TEXT_LIMIT)
         self.max_score = None if error.max_score is None else float(error.max_score)
         self.folder = folder

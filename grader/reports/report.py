@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Self
@@ -64,6 +65,7 @@ class Report:
         diagnosis: that of the result, with texts of limited length; None for none.
         not_shown: a sentence on the checks that are left out; '' for none.
         not_shown_name: the name of these as one check, for formats that know only checks.
+        made: when this report was made, in UTC.
         notes: sentences on whose attempt it is, the deduction for lateness, and `not_shown`.
         beside, view: as above.
     """
@@ -71,6 +73,7 @@ class Report:
     def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
         shown: Result = text.plain_all(readable.few(as_seen(result, view)), readable.RAW_LIMIT)
         self._result = result
+        self.made = datetime.now(UTC)
         self.beside = beside
         self.view = view
         self.exercise = readable.line(shown.exercise) or tr("(no name)")
