@@ -117,6 +117,17 @@ def test_where_no_moment_shows_a_fault_it_opens_as_it_is(judged):
     assert elements(html.render(samples.report(judged)), "main") == [{}]
 
 
+def test_the_first_box_has_the_line_and_the_help_of_the_diagnosis_of_a_check_too():
+    place = {"file": "a.py", "line": 29, "function": "", "text": "if self.state == 'GO':"}
+    found = samples.diagnosis(key="check", check="a", place=place, help="Look at that condition.")
+    lost = verdict("a", "failed", 0, help="Is publish() called?")
+    content = html.render(samples.report(lost, diagnosis=found))
+    box = content.partition('<section class="first')[2].partition("</section>")[0]
+    assert "a.py, line 29" in box
+    assert "Look at that condition." in box
+    assert "Is publish() called?" not in box
+
+
 @pytest.mark.parametrize(
     ("more", "opened"),
     [
