@@ -75,13 +75,15 @@ MAY_IMPORT: dict[str, set[str]] = {
     "robot_py.joint_state_publisher": {"robot_py.joint_states"}
     | below("turtlesim_py.ros", "program", "rclcpp_node"),
     **dict.fromkeys(GROUND, GROUND),
+    # a library of its own
+    "grader.rosidl": below("grader", "message", "errors"),
     "grader.recording": GROUND,
     "grader.scenes": GROUND | {"grader.recording"},
     "grader.scenes.turtlesim": GROUND
-    | {"grader.recording", "grader.scenes.scene", "grader.scenes.live"}
+    | below("grader", "recording", "scenes.scene", "scenes.live", "rosidl.cdr")
     | below("turtlesim_py", "__init__", "world", "scenario", "ros", "live"),
     # a package is inspected in the submission's process, which sees little of ours
-    "grader.inspection": GROUND | below("grader", "recording", "inspection"),
+    "grader.inspection": GROUND | below("grader", "recording", "inspection", "rosidl.cdr"),
     "grader.inspection.trace": below("grader", "strict_json", "message"),
     "grader.inspection.answer": {"grader.strict_json", "grader.inspection.trace"},
     "grader.inspection.examining": below("grader", "limited", "linux", "strict_json", "message")
@@ -99,7 +101,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.run.limits": {"grader.message"},
     "grader.run.sandbox": GROUND | {"grader.run.limits"},
     "grader.run.processes": GROUND | below("grader.run", "limits", "sandbox"),
-    "grader.run.lockstep": GROUND | {"grader.run.processes"},
+    "grader.run.lockstep": GROUND | below("grader", "run.processes", "rosidl"),
     # virtual time, and what is observed, know nothing of each other; who starts a program puts them
     # together
     "grader.run.clock": below("grader", "message", "run.lockstep"),
@@ -193,7 +195,7 @@ MAY_IMPORT: dict[str, set[str]] = {
 EXTENSION = {
     "grader_robots.__init__": set(),
     "grader_robots.scene": GROUND
-    | below("grader", "recording", "scenes.scene", "scenes.by_hand")
+    | below("grader", "recording", "rosidl.cdr", "scenes.scene", "scenes.by_hand")
     | {"grader.inspection.trace", "robot_py", "turtlesim_py.ros.program"},
     "grader_robots.inspection": {"grader.message"}
     | below("grader", "recording", "inspection")

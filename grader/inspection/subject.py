@@ -11,10 +11,10 @@ from typing import ClassVar, Final
 from grader.inspection import inspector, launched
 from grader.inspection.trace import PackageTrace, decode, encode
 from grader.message import Message, msg
-from grader.recording.cdr import string, string_of
 from grader.recording.channel import Channel
 from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
 from grader.recording.view import Part, Pictures, View
+from grader.rosidl.cdr import string, string_of
 from grader.translations import tr
 
 _TOPIC: Final = "/package"

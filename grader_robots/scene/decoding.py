@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from grader.recording.cdr import CdrReader, CdrWriter, string_of
+from grader.rosidl.cdr import CdrReader, CdrWriter, string_of
 
 JOINT_STATE, TF_MESSAGE = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 STRING = "std_msgs/msg/String"
@@ -119,7 +119,7 @@ def transforms(tick: int, data: bytes, number: int, topic: str, publisher: str) 
     found = []
     for _ in range(read.number("I")):
         stamp_ns, parent, child = read.stamp_ns(), read.text(), read.text()
-        x, y, z, *rotation = read.array(7)
+        x, y, z, *rotation = read.array(7).tolist()
         a, b, c, d = rotation
         placed = (parent, child, (x, y, z), (a, b, c, d))
         found.append(Transform(tick, number, topic, publisher, stamp_ns, *placed))

@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any, Final
 
-from grader.recording import cdr
 from grader.recording.subject import Trace
+from grader.rosidl import cdr
 from grader_robots.scene import decoding
 from grader_robots.scene.trace import (
     DESCRIPTION,

@@ -12,7 +12,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from grader.message import Message
-from grader.recording import cdr
+from grader.rosidl import cdr
 from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Simulation, arrived
 from grader_robots.scene import decoding
 from grader_robots.scene.trace import (

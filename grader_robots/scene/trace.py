@@ -19,9 +19,9 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple, Self
 
 from grader.message import Message, msg
-from grader.recording.cdr import string, string_of
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage, Trace
+from grader.rosidl.cdr import string, string_of
 from grader_robots.scene import decoding
 from grader_robots.scene.decoding import JOINT_STATE, STRING, TF_MESSAGE, HeardJointState, Transform
 from robot_py.robot_state import JointState, Placed, Robot, RobotState

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import sys
 import weakref
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -18,6 +19,9 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 
 from grader.message import msg
+from grader.rosidl import classes, handles
+from grader.rosidl.cdr import deserialise, is_made, serialise
+from grader.rosidl.definitions import Definitions
 from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
 
@@ -38,6 +42,20 @@ def install(registry: EndpointRegistry) -> None:
     REGISTRY = registry
     for kind in (Node, Publisher, Subscription, Client, Service, LifecycleStateMachine):
         setattr(_rclpy, kind.__name__, kind)
+    _rclpy.rclpy_serialize = lambda message, kind: serialized(message)
+    _rclpy.rclpy_deserialize = deserialized
+
+
+def make_importable(texts: Mapping[str, str]) -> Definitions:
+    """Have this process import classes of definitions, where no others have their names.
+
+    Args:
+        texts: a type's name, `my_interfaces/msg/Num` -> its definition.
+    """
+    classes.make_support = handles.capsule
+    made = Definitions(texts)
+    sys.meta_path.append(made)
+    return made
 
 
 def profile(c_qos: Any) -> QoSProfile:
@@ -54,6 +72,8 @@ def ros_type(python_type: type) -> str:
 def serialized(message: Any) -> bytes:
     """Serialise a message to CDR; a wrong one raises what rclpy's publish would."""
     kind = type(message)
+    if is_made(kind):
+        return bytes(pass_on(serialise, message))
     if kind._TYPE_SUPPORT is None:
         pass_on(kind.__import_type_support__)
     data: bytes = pass_on(_serialize, message, kind)
@@ -66,6 +86,11 @@ def deserialized(data: bytes, kind: Any) -> Any:
     Raises:
         RMWError (of rclpy): the bytes are no such message.
     """
+    if is_made(kind):
+        try:
+            return deserialise(data, kind)
+        except ValueError as error:
+            as_python_does(_rclpy.RMWError(f"failed to deserialize ROS message: {error}"))
     if kind._TYPE_SUPPORT is None:
         kind.__import_type_support__()
     return pass_on(_deserialize, data, kind)
@@ -173,7 +198,7 @@ class Subscription(Registered, _rclpy.Subscription):
         """Return the oldest message in the reader with its info, or None."""
         while (item := self.reader.pop()) is not None:
             try:
-                message = item.data if raw else _deserialize(item.data, self.reader.message)
+                message = item.data if raw else deserialized(item.data, self.reader.message)
             except _rclpy.RMWError:  # somebody has published other bytes; DDS drops them
                 continue
             return message, {

@@ -21,10 +21,10 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording.cdr import MARK, CdrReader, CdrWriter, string, string_of
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage
 from grader.recording.view import Times
+from grader.rosidl.cdr import MARK, CdrReader, CdrWriter, string, string_of
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace, check
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import CmdVel, Event, EventError, from_json, to_json

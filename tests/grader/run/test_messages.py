@@ -59,6 +59,7 @@ NOT_WITH_DDS = {
     "asks_the_dead": Expected("e469489ae5957b4f", "finished", None),
     "contexts": Expected("b50b12face28d192"),
     "follows_clock": Expected("58fb7d999da9fc97"),
+    "made_classes": Expected("8bed1e70f80ddea8", "exited"),
     "raw_messages": Expected("940c4e79b5f151a1", "finished", None),
     "rotates_on": Expected("57c51c00a6ba3742"),
 }

@@ -11,9 +11,9 @@ from hypothesis import given
 from rosbags.typesys import Stores, get_typestore
 
 from grader.recording.bag import types_of
-from grader.recording.cdr import string
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage
+from grader.rosidl.cdr import string
 from grader.scenes.turtlesim import messages
 from grader.scenes.turtlesim.scene import SCENE
 from grader.scenes.turtlesim.trace import TurtleTrace

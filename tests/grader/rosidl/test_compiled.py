@@ -1,0 +1,104 @@
+"""Every class made of an installed definition is as the compiled one; and of 500 drawn ones."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import shutil
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from ament_index_python import get_search_paths
+from setuptools import Distribution
+
+from grader.rosidl.cdr import installed
+from grader.rosidl.classes import type_hash
+from grader.rosidl.definitions import Definitions, slot_of
+from interfaces import build
+from tests.grader.rosidl.comparing import differences
+from tests.grader.rosidl.drawing import package
+
+KINDS = ("msg", "srv", "action")
+pytestmark = [
+    # other releases write classes a little differently
+    pytest.mark.applies(metadata.version("rclpy").startswith("7."), reason="Jazzy's"),
+    # the build forks; a worker of pytest-xdist has a thread
+    pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning"),
+]
+
+
+def definitions(shares: list[Path]) -> dict[str, dict[str, str]]:
+    """Package -> type's name -> text."""
+    found: dict[str, dict[str, str]] = {}
+    for share in shares:
+        for kind in KINDS:
+            for file in sorted(share.glob(f"*/{kind}/*.{kind}")):
+                package_name = file.parts[-3]
+                texts = found.setdefault(package_name, {})
+                texts.setdefault(f"{package_name}/{kind}/{file.stem}", file.read_text("utf-8"))
+    return found
+
+
+def compare(texts: dict[str, str], shares: list[Path]) -> None:
+    """Compare made and imported classes, and the published hashes."""
+    made = Definitions(texts)
+    print("skipped:", {name: str(error) for name, error in made.errors.items()})
+    assert not made.errors
+    wrong, compared, rng = [], set(), random.Random(1)
+    for name in texts:
+        real, ours = installed(slot_of(name)), made.type(name)
+        wrong += [f"{name} {each}" for each in differences(real, ours, rng, compared)]
+        published = json.loads(next(
+            file for share in shares if (file := share / f"{name}.json").is_file()
+        ).read_text("utf-8"))["type_hashes"][0]  # fmt: skip
+        if {type_hash(real), type_hash(ours)} != {published["hash_string"]}:
+            wrong.append(f"{name}: hashes differ")
+    print(f"{len(texts)} interfaces, {len(compared)} classes; {len(wrong)} differences")
+    assert not wrong, "\n".join([f"{len(wrong)} differences", *wrong[:20]])
+
+
+SHARES = [Path(prefix, "share") for prefix in get_search_paths()]
+INSTALLED = definitions(SHARES)
+
+
+def test_the_installed_definitions_are_found():
+    assert len(INSTALLED) >= 20
+    assert sum(map(len, INSTALLED.values())) >= 190
+
+
+@pytest.mark.parametrize("name", INSTALLED)
+def test_made_classes_are_as_those_that_are_installed(name):
+    compare(INSTALLED[name], SHARES)
+
+
+@pytest.mark.more("minutes to compile")
+@pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="nothing is built there")
+@pytest.mark.timeout(1200)
+@pytest.mark.parametrize("number", range(5))
+def test_made_classes_are_as_those_that_are_compiled(number, tmp_path, monkeypatch):
+    """100 definitions that are drawn."""
+    name = f"drawn_{number}"
+    texts = package(random.Random(number), name, 100)
+    compile_package(name, texts, tmp_path, monkeypatch)
+    compare(texts, [tmp_path / "temporary" / "rosidl" / name / "share"])
+
+
+def compile_package(name: str, texts: dict[str, str], folder: Path, monkeypatch) -> None:
+    """Build a package of interfaces as those of the project are, and make it importable."""
+    root = folder / "interfaces"
+    for path, text in texts.items():
+        file = root / "packages" / f"{path}.{path.split('/')[1]}"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    (root / "packages" / name / "package.xml").write_text("<package/>")
+    shutil.copyfile(build.HERE / "dispatch.c", root / "dispatch.c")
+    (folder / "pyproject.toml").touch()
+    monkeypatch.setattr(build, "HERE", root)
+    monkeypatch.setattr(build, "PACKAGES", {name: name})
+    command = build.BuildInterfaces(Distribution({"ext_modules": build.extensions()}))
+    command.build_lib, command.build_temp = str(folder / "built"), str(folder / "temporary")
+    command.ensure_finalized()
+    command.run()
+    monkeypatch.syspath_prepend(folder / "built")
