@@ -11,14 +11,14 @@ import ast
 import codecs
 import importlib.abc
 import importlib.machinery
-import importlib.util
+import json
 import keyword
 import math
 import re
+import sys
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from contextlib import suppress
-from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
@@ -26,9 +26,10 @@ from typing import Any, Final
 import numpy as np
 import rosidl_adapter.parser as adapter
 import rosidl_parser.definition as idl
+from ament_index_python import get_package_share_directory
 
 from grader.errors import SubmissionError
-from grader.message import NOTHING, Message, msg
+from grader.message import Message, msg
 from grader.rosidl.cdr import installed, module_of, number_of, value_type
 from grader.rosidl.classes import classes_of, described, parts
 
@@ -88,16 +89,19 @@ class Definitions(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         for name, text in texts.items():
             length += len(text)
             try:
-                if length > LONGEST:
-                    raise mistake(name, 0, _too_long(LONGEST))
+                if length > LONGEST or max(map(len, text.splitlines()), default=0) > LONGEST_LINE:
+                    what = msg(
+                        "found more than {n:,} characters, or {line:,} in a line. Shorten your "
+                        "definitions.",
+                        **{"n": LONGEST, "line": LONGEST_LINE},
+                    )
+                    raise mistake(name, 0, what)
                 self._elements[name] = parse(name, text)
             except SubmissionError as error:
                 self.errors[name] = error
-        for name in self._in_order():
-            try:
-                self._extents[name] = self._extent(name)
-            except SubmissionError as error:
-                self.errors[name] = error
+        for name in self._elements:
+            with suppress(SubmissionError):
+                self._extent(name)
         #: a module -> its types
         self._modules: dict[str, list[str]] = {}
         for name in filter(_TYPE.fullmatch, texts):
@@ -123,6 +127,32 @@ class Definitions(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         if name not in self._classes:
             self._classes[name] = classes_of(self._elements[name], self.find)
         return self._classes[name]
+
+    def type_hash(self, name: str) -> str:
+        """Return the hash of one of these: RIHS01, of REP-2011.
+
+        What is imported for it takes a tenth of a second.
+        """
+        import rosidl_generator_type_description as rihs
+
+        filler = idl.Member(idl.BasicType("uint8"), "structure_needs_at_least_one_member")
+        add = {idl.Message: rihs.add_msg, idl.Service: rihs.add_srv, idl.Action: rihs.add_action}
+        known: dict[str, Any] = {}
+        for own in self._extents:
+            add[type(self._elements[own])](self._elements[own], known)
+        describe = rihs.serialize_individual_type_description
+        types = {
+            own: describe(made.namespaced_type, made.members or [filler])
+            for own, made in known.items()
+        }
+        fields = (field for made in known.values() for field in made.members)
+        needed = {rihs.field_type_nested_type_name(field.type) for field in fields}
+        for package, kind, other in (each.split("/") for each in needed - types.keys() - {""}):
+            file = Path(get_package_share_directory(package), kind, f"{other}.json")
+            published = json.loads(file.read_text("utf-8"))["type_description_msg"]
+            for each in (published["type_description"], *published["referenced_type_descriptions"]):
+                types.setdefault(each["type_name"], each)
+        return str(rihs.calculate_type_hash(rihs.extract_full_type_description(name, types)))
 
     # as importlib has it -----------------------------------------------------------------------
 
@@ -153,62 +183,59 @@ class Definitions(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
     # whether they hold together ----------------------------------------------------------------
 
-    def _in_order(self) -> list[str]:
-        """Return the names, those first that others have as fields; circles last."""
-        needs = {
-            name: {name_of(value_type(field.type)) for field in _fields(element)}
-            & self._elements.keys()
-            for name, element in self._elements.items()
-        }
-        sorter, order = TopologicalSorter(needs), list[str]()
-        with suppress(CycleError):
-            sorter.prepare()
-        while ready := sorter.get_ready():
-            order += ready
-            sorter.done(*ready)
-        return list(dict.fromkeys([*order, *self._elements]))
+    def _extent(self, name: str, within: tuple[str, ...] = ()) -> tuple[int, int]:
+        """Return the extent of a definition.
 
-    def _extent(self, name: str) -> tuple[int, int]:
-        """Return the extent of a definition. Raises SubmissionError: a field's type is wrong."""
+        Raises:
+            SubmissionError: it has a mistake, which is among the errors then.
+        """
+        if name in self.errors:
+            raise self.errors[name]
+        if name in self._extents:
+            return self._extents[name]
         size, deep = VALUE, 1
         for field in _fields(self._elements[name]):
-            value, number = value_type(field.type), number_of(field.type)
-            what, one, within = NOTHING, VALUE, 0
-            if isinstance(value, idl.NamespacedType):
-                what, one, within = self._looked_up(value)
-            if isinstance(field.type, idl.Array):
-                one = field.type.size * (one if number is None else number.dtype.itemsize)
-            elif field.type is not value:
-                one = VALUE
-            size, deep = size + one, max(deep, within + 1)
-            if not what and (size > LARGEST or deep > DEEPEST):
-                what = msg(
-                    "`{name}` makes messages too large: {n:,} bytes and {deep} messages within "
-                    "each other are allowed. Use a smaller array, or a sequence.",
-                    **{"name": field.name, "n": LARGEST, "deep": DEEPEST},
-                )
-            if what:
-                raise mistake(name, field.get_annotation_value("line"), what)
+            try:
+                one, inner = self._looked_up(value_type(field.type), (*within, name))
+                if isinstance(field.type, idl.Array):
+                    number = number_of(field.type)
+                    one = field.type.size * (one if number is None else number.dtype.itemsize)
+                elif field.type is not value_type(field.type):
+                    one = VALUE
+                size, deep = size + one, max(deep, inner + 1)
+                if size > LARGEST or deep > DEEPEST:
+                    raise SubmissionError(
+                        "`{name}` makes messages too large: {n:,} bytes and {deep} messages within "
+                        "each other are allowed. Use a smaller array, or a sequence.",
+                        **{"name": field.name, "n": LARGEST, "deep": DEEPEST},
+                    )
+            except SubmissionError as error:
+                line = field.get_annotation_value("line")
+                self.errors[name] = mistake(name, line, error.message)
+                raise self.errors[name] from None
+        self._extents[name] = size, deep
         return size, deep
 
-    def _looked_up(self, slot: Any) -> tuple[Message, int, int]:
-        """Return what is wrong with a field's type, and its extent."""
-        name = name_of(slot)
-        if name in self._extents:
-            return NOTHING, *self._extents[name]
-        if name in self.errors:
-            what = msg("`{type}` has a mistake itself. Correct that first.", type=described(slot))
-        elif name in self._elements:
-            what = msg("`{type}` contains itself. Remove the field.", type=described(slot))
-        elif _is_installed(slot):
-            return NOTHING, INSTALLED, 1
-        else:
-            what = msg(
-                "`{type}` is not known. Check its name; a type of another package is written as "
-                "geometry_msgs/Point.",
-                type=described(slot),
-            )
-        return what, 0, 0
+    def _looked_up(self, slot: Any, within: tuple[str, ...]) -> tuple[int, int]:
+        """Return the extent of a value; raise SubmissionError, with what is wrong with its type."""
+        if not (name := name_of(slot)):
+            return VALUE, 0
+        shown = described(slot)
+        if name in within:
+            raise SubmissionError("`{type}` contains itself. Remove the field.", type=shown)
+        if name in self._elements or name in self.errors:
+            try:
+                return self._extent(name, within) if len(within) < DEEPEST else (VALUE, DEEPEST)
+            except SubmissionError:
+                what = msg("`{type}` has a mistake itself. Correct that first.", type=shown)
+                raise SubmissionError(what) from None
+        if _is_installed(slot):
+            return INSTALLED, 1
+        raise SubmissionError(
+            "`{type}` is not known. Check its name; a type of another package is written as "
+            "geometry_msgs/Point.",
+            type=shown,
+        )
 
 
 def slot_of(name: str) -> Any:
@@ -224,12 +251,8 @@ def name_of(slot: Any) -> str:
 
 def _is_installed(slot: Any) -> bool:
     """Whether a message's class is installed; nothing is imported to find out."""
-    package, kind, module = module_of(slot).split(".")
-    with suppress(ImportError, ValueError):
-        spec = importlib.util.find_spec(package)
-        folders = (spec and spec.submodule_search_locations) or []
-        return any((Path(folder) / kind / f"{module}.py").is_file() for folder in folders)
-    return False
+    module = Path(*module_of(slot).split(".")).with_suffix(".py")
+    return any(Path(folder, module).is_file() for folder in sys.path)
 
 
 def _fields(element: Any) -> list[idl.Member]:
@@ -249,10 +272,6 @@ def mistake(name: str, line: int, what: Message) -> SubmissionError:
     return SubmissionError("{file}, line {line}: {what}", file=file, line=str(line), what=what)
 
 
-def _too_long(most: int) -> Message:
-    return msg("found more than {n:,} characters. Shorten your definitions.", n=most)
-
-
 def parse(name: str, text: str) -> Any:
     """Parse a definition, by itself.
 
@@ -270,7 +289,8 @@ def parse(name: str, text: str) -> Any:
     if named is None or any(map(keyword.iskeyword, named.groups())):
         what = msg(
             "expected a name such as my_interfaces/msg/Num: in the package's name small letters, "
-            "in the type's a capital first, then letters and digits; no word of Python's. Rename it."
+            "in the type's a capital first, then letters and digits; no word of Python's. Rename "
+            "it."
         )
         raise mistake(name, 0, what)
     package, kind, _ = named.groups()
@@ -287,12 +307,10 @@ def parse(name: str, text: str) -> Any:
         if line == "---":
             at, names = at + 1, set()
         elif line := line.replace("\t", " ").partition("#")[0].rstrip():
-            found = _parse_line(package, line)
-            if isinstance(found, Message):
-                raise mistake(name, number, found)
-            if found.name in names:
-                what = msg("`{name}` is there twice. Rename one of them.", name=found.name)
-                raise mistake(name, number, what)
+            try:
+                found = _parse_line(package, line, names)
+            except SubmissionError as error:
+                raise mistake(name, number, error.message) from None
             names.add(found.name)
             found.annotations.append(idl.Annotation("line", number))
             is_constant, message = isinstance(found, idl.Constant), made[at]
@@ -302,21 +320,21 @@ def parse(name: str, text: str) -> Any:
     return (idl.Service if kind == "srv" else idl.Action)(slot_of(name), *made)
 
 
-def _parse_line(package: str, line: str) -> Any:
-    """Return the field or the constant of a line, or what is wrong with it."""
+def _parse_line(package: str, line: str, taken: Set[str]) -> Any:
+    """Return the field or the constant of a line."""
     kind, _, rest = line.partition(" ")
     name, is_constant, value = rest.lstrip().partition("=")
     if not is_constant:
         name, _, value = name.partition(" ")
     name, value = name.rstrip(), value.lstrip()
-    if len(line) > LONGEST_LINE:
-        return _too_long(LONGEST_LINE)
     if not (kind and name):
-        return msg("found `{line}`, expected a type and a name: int32 count.", line=line[:80])
+        what = msg("found `{line}`, expected a type and a name: int32 count.", line=line[:80])
+        raise SubmissionError(what)
     pattern, example = (_CONSTANT, "MAX_SPEED") if is_constant else (_NAME, "max_speed")
-    if not pattern.fullmatch(name) or keyword.iskeyword(name) or name in _TAKEN:
-        return msg(
-            "`{name}` is no name here. It is written as {example}, and is no word of Python's.",
+    if not pattern.fullmatch(name) or keyword.iskeyword(name) or name in {*_TAKEN, *taken}:
+        raise SubmissionError(
+            "`{name}` is no name here, or is taken. A name is written as {example}, and is no word "
+            "of Python's.",
             **{"name": name[:80], "example": example},
         )
     try:
@@ -328,14 +346,14 @@ def _parse_line(package: str, line: str) -> Any:
         member = idl.Member(_slot(field.type), name)
         if field.default_value is not None:
             default = _value(member.type, field.default_value)
-            member.annotations.append(idl.Annotation("default", default))
+            member.annotations.append(idl.Annotation("default", {"value": default}))
         return member
     except Exception as error:  # the adapter's have nothing in common
-        return msg(
+        raise SubmissionError(
             "`{line}` is not understood: {error}. Types are int32, string<=10, float64[3], "
             "geometry_msgs/Point[], Num[<=5] and such; a value follows the name.",
             **{"line": line[:80], "error": str(error)[:200]},
-        )
+        ) from None
 
 
 def _slot(kind: Any) -> Any:

@@ -56,34 +56,11 @@ def capsule(kind: Any) -> Any:
     Raises:
         NotImplementedError: this release of ROS has other structs.
     """
-    make = _action
-    if hasattr(kind, "SLOT_TYPES") or hasattr(kind, "Request"):
-        make = _message if hasattr(kind, "SLOT_TYPES") else _service
-    return _new(make("::".join(kind.__module__.split(".")[:2]), kind.__name__), None, None)
-
-
-def _message(namespace: str, name: str) -> int:
-    from std_msgs.msg import Empty
-
-    handle, _, data = _copied(Empty, _Message, _Callbacks, namespace, name)
-    data.serialise = data.deserialise = cast(_refuse, c_void_p)
-    return addressof(handle)
-
-
-def _service(namespace: str, name: str) -> int:
-    from std_srvs.srv import Empty
-
-    handle, found, data = _copied(Empty, _Service, _Parts, namespace, name)
-    for part in ("request", "response", "event"):
-        address = _message(namespace, f"{name}_{part.capitalize()}")
-        setattr(handle, part, address)
-        setattr(found, part, address)
-        if part != "event":
-            setattr(data, part, _found(_Message.from_address(address), address))
-    return addressof(handle)
-
-
-def _action(namespace: str, name: str) -> int:
+    namespace, name = "::".join(kind.__module__.split(".")[:2]), kind.__name__
+    if hasattr(kind, "SLOT_TYPES"):
+        return _new(_message(namespace, name)[0], None, None)
+    if hasattr(kind, "Request"):
+        return _new(_service(namespace, name), None, None)
     from action_msgs.msg import GoalStatusArray
     from action_msgs.srv import CancelGoal
     from std_msgs.msg import Empty
@@ -93,38 +70,54 @@ def _action(namespace: str, name: str) -> int:
         _service(namespace, f"{name}_SendGoal"),
         _service(namespace, f"{name}_GetResult"),
         _address(CancelGoal),
-        _message(namespace, f"{name}_FeedbackMessage"),
+        _message(namespace, f"{name}_FeedbackMessage")[0],
         _address(GoalStatusArray),
         *(empty.hash, empty.description, empty.sources),
     )
     _kept.append(made)
-    return addressof(made)
+    return _new(addressof(made), None, None)
+
+
+def _message(namespace: str, name: str) -> tuple[int, int]:
+    """Make the handle of a message; return its address, and that of what it finds."""
+    from std_msgs.msg import Empty
+
+    handle, found, data = _copied(Empty, _Message, _Callbacks, namespace, name)
+    data.serialise = data.deserialise = cast(_refuse, c_void_p)
+    return addressof(handle), addressof(found)
+
+
+def _service(namespace: str, name: str) -> int:
+    from std_srvs.srv import Empty
+
+    handle, found, data = _copied(Empty, _Service, _Parts, namespace, name)
+    for part in ("request", "response", "event"):
+        address, own = _message(namespace, f"{name}_{part.capitalize()}")
+        setattr(handle, part, address)
+        setattr(found, part, address)
+        if part != "event":
+            setattr(data, part, own)
+    return addressof(handle)
 
 
 def _copied(empty: Any, form: Any, form_of_data: Any, namespace: str, name: str) -> Any:
     """Copy the handle of an empty type, what it finds for Fast DDS, and that one's data."""
     address = _address(empty)
     handle = form.from_buffer_copy(form.from_address(address))
-    found = form.from_buffer_copy(form.from_address(_found(handle, address)))
+    theirs = _Find(handle.find)
+    found = form.from_buffer_copy(form.from_address(theirs(address, _FASTRTPS)))
     data = form_of_data.from_buffer_copy(form_of_data.from_address(found.data))
     names = string_at(found.identifier), string_at(data.name)
     if names != (_FASTRTPS, b"Empty"):
         raise NotImplementedError(f"expected a type support of Empty, found {names}")
     texts = [create_string_buffer(text.encode()) for text in (namespace, name)]
     data.namespace, data.name = map(addressof, texts)
-    found.data, own, theirs = addressof(data), addressof(found), _Find(handle.find)
+    found.data, own = addressof(data), addressof(found)
     # Fast DDS also asks for the fields: they stay those of the empty one
     find = _Find(lambda _, wanted: own if wanted == _FASTRTPS else theirs(address, wanted))
     handle.find = found.find = cast(find, c_void_p)
     _kept.extend((handle, found, data, find, *texts))
     return handle, found, data
-
-
-def _found(handle: Any, address: int) -> int:
-    found: int | None = _Find(handle.find)(address, _FASTRTPS)
-    if found is None:
-        raise NotImplementedError("expected a type support for Fast DDS")
-    return found
 
 
 def _address(kind: Any) -> int:

@@ -11,7 +11,7 @@ from rclpy.type_support import NoTypeSupportImportedException
 
 from grader.errors import SubmissionError
 from grader.rosidl.cdr import deserialise, serialise
-from grader.rosidl.classes import described, parts, type_hash
+from grader.rosidl.classes import described, parts
 from grader.rosidl.definitions import DEEPEST, LONGEST, LONGEST_LINE, Definitions, parse
 
 
@@ -71,17 +71,20 @@ def test_services_and_actions_have_parts():
         ("int32 a\n\nint33 b", "Num.msg, line 3: `int33 b` is not understood: 'int33' is an inv"),
         ("int32", "line 1: found `int32`, expected a type and a name: int32 count."),
         (" int8 a", "line 1: found ` int8 a`, expected a type and a name"),
-        ("int32 Speed", "`Speed` is no name here. It is written as max_speed, and"),
-        ("int32 a__b", "`a__b` is no name here"),
         (
-            "int32 class",
-            "`class` is no name here. It is written as max_speed, and is no word of Python's.",
+            "int32 Speed",
+            "`Speed` is no name here, or is taken. A name is written as max",
         ),
+        ("int32 a__b", "`a__b` is no name here"),
+        ("int32 class", "`class` is no name here"),
         ("int32 check_fields", "`check_fields` is no name here"),
         ("int32 fields_and_field_types", "is no name here"),
-        ("int32 speed=5", "`speed` is no name here. It is written as MAX_SPEED, and"),
+        (
+            "int32 speed=5",
+            "`speed` is no name here, or is taken. A name is written as MAX",
+        ),
         ("Num A=5", "the constant type 'Num' must be a primitive type"),
-        ("int32 a\nfloat32 a", "line 2: `a` is there twice"),
+        ("int32 a\nfloat32 a", "line 2: `a` is no name here, or is taken"),
         ("int8 a 128", "value '128' can not be converted to type 'int8': must be a valid integer"),
         ("bool b yes", "must be either 'true' / '1' or 'false' / '0'"),
         ("float32 f nan", "expected a number"),
@@ -102,7 +105,6 @@ def test_services_and_actions_have_parts():
         ("int32 a\n---\nint32 b", "found 1 lines that are ---, expected 0"),
         # what would keep the adapter's expressions and its lists busy for ever
         ("int8 " + "A" * 90 + "_=1", "is no name here"),
-        ("string[] a [" + "'a'," * 9_999 + "]", f"more than {LONGEST_LINE:,} characters"),
         ("int32 a " + "9" * 1900, "is not understood"),
     ],
 )
@@ -202,10 +204,11 @@ def test_rclpy_refuses_them_with_an_exception(importable):
 def test_types_of_other_packages_are_those_that_are_installed():
     from geometry_msgs.msg import Point
 
-    kind = Definitions({"mine/msg/At": "geometry_msgs/Point at\n"}).type("mine/msg/At")
+    made = Definitions({"mine/msg/At": "geometry_msgs/Point at\n"})
+    kind = made.type("mine/msg/At")
     assert type(kind().at) is Point
     assert deserialise(serialise(kind(at=Point(x=1.0))), kind).at.x == 1.0
-    assert type_hash(kind).startswith("RIHS01_")
+    assert made.type_hash("mine/msg/At").startswith("RIHS01_")
 
 
 def test_an_unknown_type_is_told():
@@ -235,14 +238,17 @@ def test_messages_are_not_nested_without_end():
     names = [f"D{n:04}" for n in range(3000)]
     chain = {name: f"{deeper}[] a" for name, deeper in pairwise(names)}
     found = errors(**chain, D2999="")
-    assert len(found) == 3000 - DEEPEST
-    assert "32 messages within each other" in found[f"D{2999 - DEEPEST}"]
+    assert len(found) >= 3000 - DEEPEST and "D2999" not in found
+    assert any("32 messages within each other" in said for said in found.values())
+    upwards = errors(D2999="", **dict(reversed(chain.items())))
+    assert len(upwards) == 3000 - DEEPEST
 
 
 def test_definitions_without_end_are_refused():
     texts = {f"M{n}": "# nothing\n" * (LONGEST // 1000) for n in range(1000)}
     found = errors(**texts)
     assert "M99" not in found and "found more than 300,000 characters" in found["M100"]
+    assert f"{LONGEST_LINE:,} in a line" in errors(A="string[] a [" + "'a'," * 9_999 + "]")["A"]
 
 
 def test_a_default_is_made_anew():
