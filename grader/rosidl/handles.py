@@ -2,30 +2,19 @@
 
 rclpy's C++ makes an entity of DDS by them, so that the graph shows it with its type. No message
 goes that way: none is converted to C, and these refuse to serialise. The structs are those of
-rosidl_runtime_c and rosidl_typesupport_fastrtps_c, Jazzy's and Kilted's.
+rosidl_runtime_c and rosidl_typesupport_fastrtps_c, Jazzy's.
 """
 
 from __future__ import annotations
 
-from ctypes import (
-    CFUNCTYPE,
-    Structure,
-    addressof,
-    c_bool,
-    c_char_p,
-    c_void_p,
-    cast,
-    create_string_buffer,
-    py_object,
-    pythonapi,
-    string_at,
-)
+import ctypes
+from ctypes import CFUNCTYPE, addressof, c_char_p, c_void_p, py_object, pythonapi
 from typing import Any, Final
 
 _FASTRTPS: Final = b"rosidl_typesupport_fastrtps_c"
 #: A handle, an identifier -> the handle for that.
 _Find: Any = CFUNCTYPE(c_void_p, c_void_p, c_char_p)
-_refuse: Final = CFUNCTYPE(c_bool, c_void_p, c_void_p)(lambda value, cdr: False)
+_refuse: Final = CFUNCTYPE(ctypes.c_bool, c_void_p, c_void_p)(lambda value, cdr: False)
 #: What C points to.
 _kept: Final[list[Any]] = []
 _new, _pointer = pythonapi.PyCapsule_New, pythonapi.PyCapsule_GetPointer
@@ -34,7 +23,9 @@ _pointer.restype, _pointer.argtypes = c_void_p, [py_object, c_char_p]
 
 
 def _struct(*fields: str) -> Any:
-    return type("Struct", (Structure,), {"_fields_": [(field, c_void_p) for field in fields]})
+    return type(
+        "Struct", (ctypes.Structure,), {"_fields_": [(field, c_void_p) for field in fields]}
+    )
 
 
 _Message = _struct("identifier", "data", "find", "hash", "description", "sources")
@@ -83,7 +74,7 @@ def _message(namespace: str, name: str) -> tuple[int, int]:
     from std_msgs.msg import Empty
 
     handle, found, data = _copied(Empty, _Message, _Callbacks, namespace, name)
-    data.serialise = data.deserialise = cast(_refuse, c_void_p)
+    data.serialise = data.deserialise = ctypes.cast(_refuse, c_void_p)
     return addressof(handle), addressof(found)
 
 
@@ -107,15 +98,15 @@ def _copied(empty: Any, form: Any, form_of_data: Any, namespace: str, name: str)
     theirs = _Find(handle.find)
     found = form.from_buffer_copy(form.from_address(theirs(address, _FASTRTPS)))
     data = form_of_data.from_buffer_copy(form_of_data.from_address(found.data))
-    names = string_at(found.identifier), string_at(data.name)
+    names = ctypes.string_at(found.identifier), ctypes.string_at(data.name)
     if names != (_FASTRTPS, b"Empty"):
         raise NotImplementedError(f"expected a type support of Empty, found {names}")
-    texts = [create_string_buffer(text.encode()) for text in (namespace, name)]
+    texts = [ctypes.create_string_buffer(text.encode()) for text in (namespace, name)]
     data.namespace, data.name = map(addressof, texts)
     found.data, own = addressof(data), addressof(found)
     # Fast DDS also asks for the fields: they stay those of the empty one
     find = _Find(lambda _, wanted: own if wanted == _FASTRTPS else theirs(address, wanted))
-    handle.find = found.find = cast(find, c_void_p)
+    handle.find = found.find = ctypes.cast(find, c_void_p)
     _kept.extend((handle, found, data, find, *texts))
     return handle, found, data
 
