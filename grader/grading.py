@@ -237,6 +237,8 @@ def plan(
         setting=exercise.setting,
         looks_at_package=exercise.looks_at_package and submission.package is not None,
         inspections=exercise.inspections,
+        definitions=exercise.interfaces,
+        own=submission.interfaces,
         budget=budget,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
@@ -292,7 +294,7 @@ def start(
 
     def run_twice_at_most(plan: Plan) -> Recording:
         if plan.budget.is_spent:
-            return not_run(plan)
+            return not_run(plan, plan.budget.remark)
         show = progress if plan is plans[0] else None
         again = replace(plan, flags=(REPEATED, *plan.flags))
         try:

@@ -92,10 +92,11 @@ MAY_IMPORT: dict[str, set[str]] = {
         "grader.inspection.examining",
         "grader.message",
     },
-    # what an inspection answers, as data; the findings that its source shows, as they are recorded
+    # what an inspection answers, as data; what the source shows, as it is recorded; what CMake
+    # would generate, and what of that parses
     "grader.submission": GROUND
-    | below("grader.inspection", "answer", "error_texts", "trace")
-    | {"grader.recording.observations"},
+    | below("grader.inspection", "answer", "error_texts", "trace", "examining.cmake")
+    | below("grader", "recording.observations", "recording.recording", "rosidl.definitions"),
     "grader.run": GROUND
     | below("grader", "submission", "recording", "scenes", "inspection", "run"),
     "grader.run.limits": {"grader.message"},
@@ -119,7 +120,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "recording", "scenes", "run.lockstep", "run.processes", "run.handover")
     | below("grader", "run.limits", "run.simulator")
     | {"turtlesim_py.ros.program"},
-    "grader.exercise": GROUND | below("grader", "recording", "scenes.scene"),
+    "grader.exercise": GROUND | below("grader", "recording", "scenes.scene", "rosidl.definitions"),
     # columns with names, and nothing of turtles but how they move
     "grader.exercise.driven_path": GROUND
     | below("grader", "exercise", "recording", "scenes.scene")

@@ -5,6 +5,7 @@ All functions here raise a `Mistake`, which names the key, where a value cannot 
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Mapping
@@ -46,6 +47,9 @@ WORDS = ("title", "task", "starter", FITS, translated.PART)
 SETTING = "setting"
 #: It is sent from process to process [characters].
 LONGEST_SETTING = 50_000
+INTERFACES = "interfaces"
+#: As JSON, in an argument of each process [characters].
+LONGEST_INTERFACES = 40_000
 RUNS = "runs"
 #: A turtle that drives so many times as fast crosses the window in a tick or two.
 MOST_FACTOR = 100
@@ -58,6 +62,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     """Build an exercise from the values of its exercise.yaml and the checks beside it."""
     scene, subject = _subject(data.get("scene", DEFAULT_SCENE))
     setting = _setting(data.get("setting"), subject, place)
+    interfaces = _interfaces(data.get(INTERFACES), place)
     limits = _limits(data) if isinstance(subject, Scene) else _without_clock(data, scene)
     _check_words(data, scene, subject)
     varied = _varied(data)
@@ -88,11 +93,12 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         program=data.get("program", ""),
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
-        sha256=_sha256(data, setting, place.folder),
+        sha256=_sha256(data, {SETTING: setting, **interfaces}, place.folder),
         visible=policies.visible(data.get("visible"), checks, points),
         late=policies.late(data.get("late"), round(sum(points.values()), 2)),
         explained=words.tolerances,
         fits=_fits(data.get(FITS) or {}),
+        interfaces=interfaces,
         title=authored(str(data["title"]), words.title),
         task=authored(data.get("task", ""), words.task),
     )
@@ -140,15 +146,14 @@ def _without_clock(data: Mapping[str, Any], scene: str) -> Limits:
     return NO_LIMITS
 
 
-def _sha256(data: Mapping[str, Any], setting: str, folder: Path) -> str:
+def _sha256(data: Mapping[str, Any], texts: Mapping[str, str], folder: Path) -> str:
     """The hash of an exercise: comments do not count, and a copy without edits has the same."""
     judging = {key: value for key, value in data.items() if key not in WORDS}
     values = repr(judging).encode("utf-8", "surrogatepass")  # whatever YAML can hold; in its order
     packages = (folder, *(file.parent for file in folder.glob("*/__init__.py")))
     files = [path for package in packages for path in package.glob("*.py") if path.is_file()]
     code = {path.relative_to(folder).as_posix(): content.of_file(path) for path in files}
-    if setting:
-        code[SETTING] = content.of_bytes(setting.encode())
+    code |= {name: content.of_bytes(text.encode()) for name, text in texts.items() if text}
     return content.of_files({**code, DESCRIPTION: content.of_bytes(values)})
 
 
@@ -174,6 +179,34 @@ def _setting(where: Any, subject: Subject, place: Place) -> str:
     if why := subject.wrong_setting(setting):
         raise Mistake((SETTING,), why)
     return setting
+
+
+def _interfaces(where: Any, place: Place) -> dict[str, str]:
+    """Read the folder of packages with definitions, PACKAGE/msg/NAME.msg; {} for none."""
+    if where is None:
+        return {}
+    is_folder = isinstance(where, str) and (place.folder / where).is_dir()
+    expect(is_folder, (INTERFACES,), "expected a folder beside exercise.yaml, found {found}", where)
+    files = (place.folder / where).glob("*/*/*")
+    found = sorted(each for each in files if each.suffix == f".{each.parent.name}")
+    try:
+        texts = {
+            f"{each.parts[-3]}/{each.parts[-2]}/{each.stem}": each.read_text("utf-8")
+            for each in found
+        }
+    except ValueError as error:
+        raise Mistake((INTERFACES,), "{error}", error=str(error)) from None
+    from grader.rosidl.definitions import Definitions  # here: most exercises have none
+
+    for wrong in Definitions(texts).errors.values():
+        raise Mistake((INTERFACES,), wrong.message)
+    if not 0 < len(json.dumps(texts)) - 2 <= LONGEST_INTERFACES:
+        raise Mistake(
+            (INTERFACES,),
+            "expected definitions, PACKAGE/msg/NAME.msg, with {most} characters at most",
+            most=LONGEST_INTERFACES,
+        )
+    return texts
 
 
 def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:

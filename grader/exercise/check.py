@@ -144,7 +144,7 @@ def judge(
         CheckFailed: a check raised an exception, or returned no finding.
         KeyError: the exercise gives points to a check that does not exist.
     """
-    lacking = next((each.run for each in recordings.varied if each.run.outcome == "not_run"), None)
+    lacking = next((each.run for each in recordings if each.run.outcome == "not_run"), None)
     if lacking is None:
         (answered,) = answers(recordings, checks, points, tolerances)
         return judge_by(answered, checks, points)
@@ -152,6 +152,8 @@ def judge(
 
     def ask(name: str) -> Finding:
         try:
+            if recordings.nominal.run is lacking:
+                raise NotOver
             return answered(name)
         except NotOver:
             return Finding(0.0, msg("Not judged: {why}.", why=lacking.flags[0]), judged=False)

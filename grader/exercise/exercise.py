@@ -35,6 +35,7 @@ class Opening(TypedDict, total=False):
     usual: str
     inspections: tuple[str, ...] | None
     cpu_s: float
+    interfaces: Mapping[str, str]
 
 
 Range = tuple[float, float]
@@ -93,6 +94,7 @@ class Exercise:
             patterns of names, where it has no program; `publishes`, types of its topics.
         explained: tolerance -> language -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
+        interfaces: a type that it brings along, 'my_interfaces/msg/Num' -> its definition.
         setting: the text of the file that it is set up with; '' for none.
         looks_at_package: whether the package around what is started is inspected as well.
         inspections: the names of the inspectors that examine packages.
@@ -124,6 +126,7 @@ class Exercise:
     late: LatePolicy | None = None
     explained: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     fits: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    interfaces: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def subject(self) -> Subject:
@@ -142,6 +145,7 @@ class Exercise:
             "is_started": self.is_started,
             "inspections": self.inspections if self.looks_at_package else None,
             "cpu_s": self.cpu_s,
+            "interfaces": self.interfaces,
         }
         if self.program:
             opening["usual"] = self.program

@@ -12,7 +12,7 @@ from typing import Any
 
 from grader.errors import ExerciseError
 from grader.exercise import places, translated
-from grader.exercise.building import FITS, NAME, RUNS, build
+from grader.exercise.building import FITS, INTERFACES, NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.yaml_file import (
@@ -29,7 +29,7 @@ from grader.message import reason
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", INSPECTS, CPU),
-    INSPECTIONS,
+    *(INSPECTIONS, INTERFACES),
     *("points", "visible", "late", "tolerances", "starter", "program", FITS, translated.PART),
 )
 

@@ -5,7 +5,7 @@
 | metadata.yaml, recording.mcap | the bag: see `grader.recording.bag` | yes |
 | run.json | how the run went, where it started, what the submission published on | yes |
 | output.txt | what the submission printed | yes |
-| circumstances.json | what differs between equal runs: duration, provenance | if it is there |
+| circumstances.json | duration, provenance, definitions of interfaces | if it is there |
 | observations.json | what the submission's process reported, if anything | if it is there |
 | path.png, plan.png, window.png | the bag's pictures, for people, as many as its scene makes | no |
 | scenario.json | the inputs, for `python -m turtlesim_py.scenario` | no |
@@ -41,8 +41,8 @@ FILES = (
 )
 #: Fields of a `Run` that are chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
-#: The key beside them.
-PROVENANCE = "provenance"
+#: The keys beside them.
+PROVENANCE, INTERFACES = "provenance", "interfaces"
 
 
 def varied_in(folder: Path) -> set[int]:

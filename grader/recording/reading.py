@@ -20,6 +20,7 @@ from grader.recording.folder import (
     BAG,
     CIRCUMSTANCES,
     CIRCUMSTANCES_FILE,
+    INTERFACES,
     METADATA,
     OBSERVATIONS,
     OUTPUT,
@@ -31,7 +32,14 @@ from grader.recording.folder import (
     varied_in,
 )
 from grader.recording.observations import Observations
-from grader.recording.recording import Provenance, PublishedTopic, Recording, Recordings, Run
+from grader.recording.recording import (
+    Interfaces,
+    Provenance,
+    PublishedTopic,
+    Recording,
+    Recordings,
+    Run,
+)
 from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import (
     DEFAULT_SCENE,
@@ -171,6 +179,10 @@ def _facts(folder: Path) -> dict[str, Any]:
             place=error.json_path,
             message=error.message,
         )
+    with _refusing(path):
+        facts[INTERFACES] = strict_json.from_json(
+            Interfaces, circumstances.get(INTERFACES, {}), strict_json.OURS
+        )
     with _refusing(folder / RUN):
         facts["run"]["flags"] = tuple(map(Message.parse, facts["run"]["flags"]))
     return facts
@@ -276,6 +288,7 @@ def _recording(header: _Header, trace: Trace) -> Recording:
         provenance=strict_json.from_json(Provenance, origin, strict_json.OURS) if origin else None,
         observations=_observations(header.folder / OBSERVATIONS),
         package=_package(header.folder / PACKAGE),
+        interfaces=facts[INTERFACES],
     )
 
 

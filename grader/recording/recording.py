@@ -56,6 +56,26 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Interfaces:
+    """The interfaces that a submission's program gets: its own, and its exercise's.
+
+    Attributes:
+        texts: a type, 'my_interfaces/msg/Num' -> its definition, which may have a mistake.
+        faults: its own types that it cannot import -> why not, and what to do.
+        unlike: those that its exercise defines otherwise, or what is in them -> how.
+    """
+
+    texts: Mapping[str, str] = field(default_factory=dict)
+    faults: Mapping[str, Message] = field(default_factory=dict)
+    unlike: Mapping[str, Message] = field(default_factory=dict)
+
+    @property
+    def packages(self) -> set[str]:
+        """The names of their packages."""
+        return {name.partition("/")[0] for name in (*self.texts, *self.faults)}
+
+
+@dataclass(frozen=True)
 class PublishedTopic:
     """A topic that the submission published on, and its ROS type."""
 
@@ -112,6 +132,7 @@ class Recording:
         package: what an inspection of the submission's package found, in the nominal run's: a trace
             of the scene `package`; None where it is in none, or the exercise inspects none.
         provenance: when and with what it was made; only the nominal run has it, for all.
+        interfaces: those of the submission's program.
     """
 
     trace: Trace
@@ -123,6 +144,7 @@ class Recording:
     observations: Observations = field(default_factory=Observations)
     package: Trace | None = None
     provenance: Provenance | None = field(default=None, compare=False)
+    interfaces: Interfaces = field(default_factory=Interfaces, compare=False)
 
     @cached_property
     def pictures(self) -> Pictures:

@@ -15,6 +15,7 @@ from grader.recording.folder import (
     CIRCUMSTANCES,
     CIRCUMSTANCES_FILE,
     FILES,
+    INTERFACES,
     METADATA,
     NAME,
     OBSERVATIONS,
@@ -140,6 +141,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     if recording.provenance is not None:
         circumstances[PROVENANCE] = to_json(recording.provenance, OURS)
+    if recording.interfaces.packages:
+        circumstances[INTERFACES] = to_json(recording.interfaces, OURS)
     start = to_json(recording.start, OURS) if recording.start else None
     facts = {
         "schema": SCHEMA,

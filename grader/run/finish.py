@@ -114,9 +114,9 @@ def outcome(reason: Reason, exit_code: int | None) -> Outcome:
     return "finished" if reason in DONE else "exited"
 
 
-def not_run(plan: Plan) -> Recording:
-    """Return the recording of a run that was not started: the grading had used up its budget."""
-    ending = Ending(Run("virtual", "not_run", flags=(plan.budget.remark,)))
+def not_run(plan: Plan, why: Message) -> Recording:
+    """Return the recording of a run that was not started."""
+    ending = Ending(Run("virtual", "not_run", flags=(why,)))
     return record(plan, load_subject(plan.scene).untouched(plan.start), (), ending)
 
 
@@ -188,4 +188,7 @@ def record(
             seed=plan.seed,
             interfaces=plan.interfaces,
         )
-    return Recording(trace, run, topics, ending.output, plan.start, plan.scene, observations)
+    return Recording(
+        *(trace, run, topics, ending.output, plan.start, plan.scene, observations),
+        interfaces=plan.own,
+    )

@@ -9,10 +9,12 @@ launch files, so an inspection evaluates them first, in a process confined like 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from grader.message import NOTHING, Message
@@ -38,6 +40,7 @@ def open_submission(
     usual: str = USUAL_NAME,
     inspections: Sequence[str] | None = None,
     cpu_s: float = math.inf,
+    interfaces: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[Submission]:
     """Find what to start, in a copy that is removed when the context ends.
 
@@ -50,6 +53,7 @@ def open_submission(
         inspections: by which the whole package around what is started is inspected at the same
             time; None for not at all.
         cpu_s: the processor time that it may use [s].
+        interfaces: the exercise's, a type -> its definition.
 
     Raises:
         SubmissionError: there is nothing to start, no way to tell what, or too much to be read.
@@ -60,11 +64,13 @@ def open_submission(
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()
+        read = partial(reader.read, path, executable, scratch, usual=usual, interfaces=interfaces)
         try:
-            found = reader.read(path, executable, scratch, is_started=is_started, usual=usual)
+            found = read(is_started=is_started)
         except NotInspected as asked:
-            budget = CpuBudget(cpu_s)
-            found, copy = _inspected(path, executable, scratch, usual, asked, budget, inspections)
+            found, copy = _inspected(
+                path, scratch, read, asked, cpu_s, executable or usual, inspections
+            )
         else:
             copy = copy_privately(path, found.root, scratch)
         yield _in_private(found, copy)
@@ -78,22 +84,22 @@ def marks_of(path: Path) -> Marks:
 
 def _inspected(
     path: Path,
-    executable: str | None,
     scratch: Path,
-    usual: str,
+    read: Callable[..., Submission],
     asked: NotInspected,
-    budget: CpuBudget,
+    cpu_s: float,
+    program: str,
     inspections: Sequence[str] | None,
 ) -> tuple[Submission, PrivateCopy]:
     """Return a package as it is started according to an inspection, and its copy."""
     from grader.run import inspecting  # here: most submissions are a file
 
-    copy = copy_privately(path, asked.base, scratch)
+    copy, budget = copy_privately(path, asked.base, scratch), CpuBudget(cpu_s)
     everything = Submission(path.name, copy.of(asked.base), Whole(), NOTHING, copy=copy)
     inspection, remarks = inspecting.inspect(
-        everything, asked.folders, executable or usual, budget, inspections
+        everything, asked.folders, program, budget, inspections
     )
-    found = reader.read(path, executable, scratch, usual=usual, again=(asked, inspection))
+    found = read(again=(asked, inspection))
     notes = (*remarks, *found.notes)
     if inspections is None:  # else that is reported with the run
         notes = (*notes, *_by_itself(found, inspection.trace))

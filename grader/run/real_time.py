@@ -12,12 +12,12 @@ from pathlib import Path
 
 from grader import linux
 from grader.errors import GraderFailure, NotNow, SceneFailure
-from grader.message import Message
+from grader.message import Message, msg
 from grader.recording.recording import Recording
 from grader.run import handover, run_context
 from grader.run.environment import student_environment
 from grader.run.evidence import EvidencePage
-from grader.run.finish import SimulatorLost, ended, outcome, record
+from grader.run.finish import SimulatorLost, ended, not_run, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import FIRST_NODE_S
 from grader.run.processes.started_process import SubmissionProcess
@@ -37,6 +37,10 @@ Progress = Callable[[float], None]
 
 #: A program that used this share of the run's time on a processor has computed, not waited.
 COMPUTES = 0.5
+COMPILED = msg(
+    "interfaces of your own ({packages}) work in virtual time alone: have one program graded, "
+    "without --time real, and take out what virtual time cannot follow, which a remark names"
+)
 #: The folder of the program that runs as the submission's process.
 STUDENT = Path(__file__).with_name("student")
 #: The module that runs as the simulator's process.
@@ -60,6 +64,9 @@ def run(
         SceneFailure: the scene raised an exception.
         SimulatorLost: it died beside the submission.
     """
+    if submission.interfaces.texts:
+        packages = ", ".join(sorted(submission.interfaces.packages))
+        return not_run(plan, COMPILED.given(packages=packages))
     started = time.monotonic()
     scene = load_scene(plan.scene)
     with (

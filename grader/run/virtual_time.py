@@ -161,7 +161,9 @@ def command(
     submission: Submission, introduction: Introduction, link_fd: int, page: int
 ) -> list[str]:
     """Return the command of the submission's process."""
-    known = json.dumps([introduction.nodes, introduction.compares_stamps])
+    own = submission.interfaces
+    interfaces = own.texts, list(own.unlike)
+    known = json.dumps([introduction.nodes, introduction.compares_stamps, *interfaces])
     words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]
     return [*fork_servers.command(fork_servers.STUDENT), *words]
 

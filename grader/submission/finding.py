@@ -50,6 +50,7 @@ from grader.submission.folder import (
     shown,
     top_of,
 )
+from grader.submission.interfaces import find_interfaces
 from grader.submission.launching import find_launched, is_launch_file
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
@@ -154,6 +155,18 @@ def _in_folder(
         return _in_archive(submitted, archives, executable, unpacking)
     if inspection is None and (folders := _set_ups(submitted, files)):
         raise NotInspected(submitted.base, tuple(folders))
+    found = _among(submitted, files, executable, unpacking, inspection)
+    interfaces, notes = find_interfaces(submitted, files)
+    return replace(found, interfaces=interfaces, notes=(*found.notes, *notes))
+
+
+def _among(
+    submitted: SubmissionFolder,
+    files: list[Path],
+    executable: str | None,
+    unpacking: Unpacking,
+    inspection: Inspection | None,
+) -> Submission:
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
     if inspection and executable is None:
         launched = find_launched(submitted, packages, inspection)

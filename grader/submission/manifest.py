@@ -47,12 +47,19 @@ class Manifest:
         fault: why it is no ROS package for colcon, as what follows the file's name; '' where it
             is one.
         exercises: those that it names.
+        elements: those with a text: ("depend", "rclpy").
     """
 
     name: str
     build_type: str | None
     fault: Message
     exercises: tuple[str, ...] = ()
+    elements: frozenset[tuple[str, str]] = frozenset()
+
+    @property
+    def depends(self) -> set[str]:
+        """The packages that it depends on."""
+        return {text for tag, text in self.elements if tag.endswith("depend")}
 
 
 def read_manifest(file: Path) -> Manifest | None:
@@ -72,7 +79,8 @@ def read_manifest(file: Path) -> Manifest | None:
     conditional = any(node.attrib for node in types)
     build_type = None if conditional else "".join((types[0].text or "").split()) if types else ""
     named = (node.get("exercise", "").strip() for node in root.findall("export/grader"))
-    return Manifest(name, build_type, _fault(root, name), tuple(filter(None, named)))
+    elements = frozenset((node.tag, node.text.strip()) for node in root if node.text)
+    return Manifest(name, build_type, _fault(root, name), tuple(filter(None, named)), elements)
 
 
 def exercises_named(file: Path) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from grader import limited, strict_json
@@ -25,6 +26,7 @@ from grader.submission import folder, python_source, unpacking, whole
 from grader.submission.finding import find, find_inspected, may_be_node
 from grader.submission.folder import USUAL_NAME, is_source, shown
 from grader.submission.imports import read_imports
+from grader.submission.interfaces import completed, undeclared
 from grader.submission.lint import lint
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
@@ -145,11 +147,13 @@ def read(
     is_started: bool = True,
     usual: str = USUAL_NAME,
     again: tuple[NotInspected, Inspection] | None = None,
+    interfaces: Mapping[str, str] = MappingProxyType({}),
 ) -> Submission:
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
     Args:
         again: the first reading's request for an inspection, and that inspection.
+        interfaces: the exercise's, a type -> its definition.
 
     Raises:
         NotInspected: it is a package; read it again, with its inspection.
@@ -163,8 +167,10 @@ def read(
         if not is_started:
             return whole.find(path, executable, scratch)
         if again is None:
-            return _with_its_source(find(path, executable, scratch, usual), path)
-        return _with_its_source(find_inspected(*again, name, executable, scratch, usual), path)
+            started = find(path, executable, scratch, usual)
+        else:
+            started = find_inspected(*again, name, executable, scratch, usual)
+        return _with_its_source(started, path, interfaces)
 
     with mmap.mmap(-1, mmap.PAGESIZE) as place:  # shared with the copy
         try:
@@ -285,14 +291,20 @@ def _answer(found: Callable[[], Submission], path: Path) -> _Answer:
         return _Answer(failed=traceback.format_exc())
 
 
-def _with_its_source(found: Submission, path: Path) -> Submission:
-    """Add to a submission what its source shows: imports, faults and lint findings."""
+def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -> Submission:
+    """Add to a submission what its source shows: imports, interfaces, faults, lint findings."""
     only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
     assert not isinstance(found.start, Whole)
     imports = read_imports(found.root, found.start, only)
     refused = python_source.byte_faults(imports.files, found.root)
-    notes, shows = (*refused, *found.notes), lint(found.root, imports.files)
-    return replace(found, imports=imports, notes=notes, lint_findings=shows)
+    notes, shows = [*refused, *found.notes], lint(found.root, imports.files)
+    interfaces = completed(found.interfaces, theirs)
+    known = {*imports.surely, *imports.perhaps} & interfaces.packages
+    if found.package is not None:
+        notes += undeclared(found.package / MANIFEST, MANIFEST, known & found.interfaces.packages)
+    imports = imports.without(known)
+    found = replace(found, imports=imports, interfaces=interfaces)
+    return replace(found, notes=tuple(notes), lint_findings=shows)
 
 
 def _note_what_is_read(place: mmap.mmap, *folders: Path) -> None:

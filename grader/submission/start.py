@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
 from grader.message import Message
 from grader.recording.observations import LintFinding
+from grader.recording.recording import Interfaces
 from grader.strict_json import UNSTORED, not_empty
 from grader.submission.private_copy import PrivateCopy
 
@@ -75,6 +77,14 @@ class Imports:
     perhaps: dict[str, str] = field(default_factory=dict)
     files: tuple[Path, ...] = field(default=(), compare=False, metadata=UNSTORED)
 
+    def without(self, names: Collection[str]) -> Imports:
+        """Return those that do not have these names."""
+        surely, perhaps = (
+            {name: at for name, at in each.items() if name not in names}
+            for each in (self.surely, self.perhaps)
+        )
+        return Imports(surely, perhaps, self.files)
+
 
 @dataclass(frozen=True)
 class Submission:
@@ -89,6 +99,8 @@ class Submission:
     notes: tuple[Message, ...] = field(default=(), compare=False)
     #: of its source
     lint_findings: tuple[LintFinding, ...] = field(default=(), compare=False)
+    #: what its program gets beside those that are installed
+    interfaces: Interfaces = field(default_factory=Interfaces, compare=False)
     #: files that it lacked and that were added, below `root`
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none

@@ -1,11 +1,11 @@
-"""What a CMakeLists.txt installs, as far as its install() commands say it; it is not run."""
+"""What a CMakeLists.txt installs and generates, as far as its commands say it; it is not run."""
 
 from __future__ import annotations
 
 import fnmatch
 import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import islice
@@ -18,7 +18,10 @@ from grader.inspection.trace import Obstacle
 from grader.message import msg
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
-_COMMAND = re.compile(r"\b(project|set|file|install)\s*\(([^()]*)\)|\b(if|endif)\s*\(", re.I)
+_KEPT = ("find_package", "rosidl_generate_interfaces", "ament_python_install_package")
+_COMMAND = re.compile(
+    rf"\b(project|set|list|file|install|{'|'.join(_KEPT)})\s*\(([^()]*)\)|\b(if|endif)\s*\(", re.I
+)
 #: The innermost loop: its head, and its body.
 _LOOP = re.compile(
     r"\bforeach\s*\(([^()]*)\)((?:(?!\bforeach\s*\().)*?)\bendforeach\s*\([^()]*\)", re.I | re.S
@@ -49,6 +52,7 @@ class Read(NamedTuple):
         absent: what it installs, and is not there.
         programs: what is compiled and installed: 'lib/NAME/PROGRAM'.
         problems: what ended its evaluation; commands that nobody can follow here.
+        calls: commands by which interfaces are generated, each with its words.
     """
 
     project: str
@@ -56,19 +60,24 @@ class Read(NamedTuple):
     absent: list[str]
     programs: list[str]
     problems: list[Obstacle]
+    calls: Sequence[list[str]] = ()
 
 
 def read(folder: Path) -> Read:
     """What the CMakeLists.txt of a package says."""
     text = paths.read(folder / FILE, _MOST_CHARACTERS).decode("utf-8", "replace")
     variables = {**dict.fromkeys(_HERE, "."), "CMAKE_INSTALL_PREFIX": ""}
-    made = Read("", [], [], [], [])
+    made, calls = Read("", [], [], [], []), list[list[str]]()
     depth = 0  # of if()
     for found in _COMMAND.finditer(_unrolled(_COMMENT.sub("", text))):
         if found[3]:
             depth += 1 if found[3].lower() == "if" else -1
             continue
         words = [_filled(a or b, variables) for a, b in _WORD.findall(found[2])]
+        if found[1].lower() in _KEPT:
+            words = [each for word in words for each in word.split(";") if each]
+            calls.append([found[1].lower(), *words])
+            continue
         known = len(made.absent)
         try:
             attempt(partial(_follow, folder, found[1].lower(), words, variables, made))
@@ -77,7 +86,7 @@ def read(folder: Path) -> Read:
             made.problems.append(replace(ended.problem, file=FILE, line=line))
         if depth > 0:  # on a condition, mostly that it is there
             del made.absent[known:]
-    return made._replace(project=variables.get("PROJECT_NAME", ""))
+    return made._replace(project=variables.get("PROJECT_NAME", ""), calls=calls)
 
 
 def _follow(
@@ -88,6 +97,9 @@ def _follow(
             variables["PROJECT_NAME"] = words[0]
         case "set" if words:
             variables[words[0]] = ";".join(words[1:])[:_MOST_CHARACTERS]
+        case "list" if len(words) > 2 and words[0].upper() == "APPEND":
+            before = filter(None, [variables.get(words[1], "")])
+            variables[words[1]] = ";".join([*before, *words[2:]])[:_MOST_CHARACTERS]
         case "file" if len(words) > 2 and words[0].upper() in ("GLOB", "GLOB_RECURSE"):
             variables[words[1]] = ";".join(_globbed(folder, words))
         case "install":

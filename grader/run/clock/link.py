@@ -343,7 +343,7 @@ class SimulatorLink(EndpointRegistry):
             return
         self.changed = False
         self._connect_anew()
-        topics = {(w.name, w.type) for w in self.writers if w.kind == "topic"}
+        topics = {(w.name, w.type.rstrip()) for w in self.writers if w.kind == "topic"}
         reads = {reader.channel for reader in self.readers if reader.kind != "request"}
         interests = Interests(tuple(sorted(reads)), tuple(sorted(topics)))
         if interests != self._interests:

@@ -32,6 +32,8 @@ _serialize, _deserialize = _rclpy.rclpy_serialize, _rclpy.rclpy_deserialize
 
 REGISTRY: EndpointRegistry
 KINDS = ("msg", "srv", "action")
+#: Types of this process that the other has otherwise.
+UNLIKE: set[str] = set()
 #: Interfaces that every node of rclpy's needs.
 EVERY_NODE = ("rcl_interfaces", "type_description_interfaces")
 
@@ -46,15 +48,17 @@ def install(registry: EndpointRegistry) -> None:
     _rclpy.rclpy_deserialize = deserialized
 
 
-def make_importable(texts: Mapping[str, str]) -> Definitions:
-    """Have this process import classes of definitions, where no others have their names.
+def make_importable(texts: Mapping[str, str], unlike: Iterable[str] = ()) -> Definitions:
+    """Have this process import classes of definitions; what is loaded already stays.
 
     Args:
         texts: a type's name, `my_interfaces/msg/Num` -> its definition.
+        unlike: the names of those that the other process has otherwise: the two exchange nothing.
     """
     classes.make_support = handles.capsule
     made = Definitions(texts)
-    sys.meta_path.append(made)
+    UNLIKE.update(unlike)
+    sys.meta_path.insert(0, made)  # a folder of the same name would be a package, too
     return made
 
 
@@ -66,7 +70,9 @@ def profile(c_qos: Any) -> QoSProfile:
 def ros_type(python_type: type) -> str:
     """Return the ROS name of a message or service class: "geometry_msgs/msg/Twist"."""
     package, kind, *_ = python_type.__module__.split(".")
-    return f"{package}/{kind}/{python_type.__name__}"
+    name = python_type.__name__
+    is_unlike = f"{package}/{kind}/{name.partition('_')[0]}" in UNLIKE
+    return f"{package}/{kind}/{name}{' ' if is_unlike else ''}"  # a name that meets no other
 
 
 def serialized(message: Any) -> bytes:

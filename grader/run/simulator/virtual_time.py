@@ -79,6 +79,8 @@ class Lockstep:
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, link.flag)
         endpoints.install(self._registry)
         actions.install()
+        if plan.definitions:
+            endpoints.make_importable(plan.definitions)
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
         assert STEP_NS == TICK_NS

@@ -5,7 +5,8 @@
     python virtual_main.py --fork-server SOCKET MESSAGES
 
 FD is the link to the simulator, EVIDENCE the page of the submission's account, SCENE a JSON list of
-the simulator's nodes, with names and namespaces, and of whether two stamps have to differ.
+the simulator's nodes, with names and namespaces, of whether two stamps have to differ, of the
+definitions of interfaces, and of those that the simulator has otherwise.
 Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
 the same. Everything of ours is imported before the submission is, and then forgotten by the import
 system.
@@ -132,6 +133,7 @@ def install(
 
     from grader.run.clock import rclpy_time
     from grader.run.clock.link import SimulatorLink
+    from grader.run.lockstep import endpoints
 
     link = SimulatorLink(scheduler, connection, page, refuse)
     main = scheduler.main.ident
@@ -140,7 +142,9 @@ def install(
         is_stuck = witness.ending.deadlocked([each.ident for each in scheduler.runners], main)
         link.note(Kind.STUCK if is_stuck else Kind.WAITING)
 
-    nodes, compares_stamps = json.loads(introduction)
+    nodes, compares_stamps, texts, unlike = json.loads(introduction)
+    if texts:
+        endpoints.make_importable(texts, unlike)
     known = [(name, namespace) for name, namespace in nodes]
     rclpy_time.install(
         scheduler, link, known, compares_stamps=compares_stamps, on_deadlock=on_deadlock

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.message import msg, plain_text
+from grader.recording.recording import Interfaces
 from grader.recording.subject import Start
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
@@ -45,6 +46,8 @@ def test_every_field_and_its_type_survive():
         "s",
         True,
         ("robot_description",),
+        {"demo/msg/Num": "int8 num\n"},
+        Interfaces({"demo/msg/Num": "int64 num\n"}),
     )
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))
