@@ -134,6 +134,21 @@ def misses_what_it_hears(case: Case) -> Diagnosis | None:
     return hears_nobody(case) or (standstill.is_deaf(case) if is_spinless else None)
 
 
+def is_defined_otherwise(case: Case) -> Diagnosis | None:
+    """A type of the program's own has the name of one of the exercise's, and other fields."""
+    keys: dict[EndKind, str] = {"publisher": "publishes_to_nobody", "subscription": "hears_nobody"}
+    for end in case.ends:
+        if not end.is_met and (how := case.recording.interfaces.unlike.get(end.type)):
+            cause = msg(
+                "Your {type} is not the exercise's, and the two exchange nothing: {how}{where}.",
+                **{"type": excerpt(end.type), "how": how, "where": line(end.place)},
+            )
+            help_ = msg("Define it as the exercise does, or leave the package out.")
+            key = keys.get(end.kind, "calls_nobody")
+            return Diagnosis(key, cause, help_, place=end.place)
+    return None
+
+
 def is_of_another_type(case: Case) -> Diagnosis | None:
     """The program crashed by what it sent: its publisher or client was made for another type."""
     raised = case.raised

@@ -37,6 +37,7 @@ RULES: Final[tuple[Rule, ...]] = (
     imports.not_importable,
     crash.wrong_value,
     lint_findings.ends_before_spin,
+    connections.is_defined_otherwise,
     connections.misses_what_it_hears,
     crash.ended_itself,
     connections.is_of_another_type,

@@ -7,8 +7,9 @@ import sys
 
 from grader.diagnosis.case import Case, excerpt, line, of_kind
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.message import Message, msg
+from grader.message import NOTHING, Message, msg
 from grader.recording.observations import Raised
+from grader.text import misspelt
 
 #: Python's suffix to some errors, which helps nobody.
 _PATH = re.compile(r" \((/[^()]*|unknown location)\)$")
@@ -30,6 +31,8 @@ _WHERE = {
     "Node": "rclpy.node",
     "MultiThreadedExecutor": "rclpy.executors",
 }
+_WORD = re.compile(r"\w{1,100}")
+_OF_PYTHON = ("cannot", "import", "name", "from", "No", "module", "named", "as")
 _FROM = re.compile(
     r"cannot import name '\w{1,60}' from (?:partially initialized module )?'(\w{1,60})'"
 )
@@ -41,6 +44,7 @@ def not_importable(case: Case) -> Diagnosis | None:
     if raised is None or raised.type not in ("ModuleNotFoundError", "ImportError"):
         return None
     hidden = _hides_package(raised) or _lies_beside(case, raised) or _circular(case, raised)
+    hidden = hidden or _not_generated(case, raised)
     if hidden is not None:
         return hidden
     text = _PATH.sub("", excerpt(raised.text))
@@ -57,9 +61,9 @@ def not_importable(case: Case) -> Diagnosis | None:
     )
     if _INTERFACES.match(text):
         help_ = msg(
-            "Compare the name. If it is right, this package is not installed where "
-            "your node was graded: take std_msgs, std_srvs or geometry_msgs "
-            "instead, or ask whoever runs the grader to install it."
+            "Compare the name. A package of interfaces of your own has to be in what you hand "
+            "in, beside your node's, with CMakeLists.txt and package.xml. Any other is not "
+            "installed where your node was graded: take std_msgs, std_srvs or geometry_msgs."
         )
     elif advice := _of_own_module(case, raised) or _elsewhere(case, raised) or _better(text):
         help_ = advice
@@ -100,6 +104,37 @@ def _elsewhere(case: Case, raised: Raised) -> Message | None:
                 near=excerpt(finding.near),
             )
     return None
+
+
+def _not_generated(case: Case, raised: Raised) -> Diagnosis | None:
+    """An interface of the hand-in's that is not generated, or has another name or module."""
+    known = case.recording.interfaces
+    texts = raised.text[:1000], raised.place.text if raised.place else ""
+    words = [each for each in _WORD.findall(" ".join(texts)) if each not in _OF_PYTHON]
+    own = [name for name in {**known.faults, **known.texts} if name.partition("/")[0] in words]
+    if not own:
+        return None
+    types = {name.rpartition("/")[2]: name for name in reversed(own)}
+    named = (types[each] for word in words for each in types if misspelt(word, each))
+    meant = alike = next(named, "")
+    meant = meant or own[0]
+    said = known.faults.get(meant, NOTHING)
+    for inner in _WORD.findall(str(said)):  # what the mistake is in
+        others = (types[each] for each in types if each.lower() == inner.lower())
+        meant = next((each for each in others if known.faults.get(each, said) != said), meant)
+    module, _, name = meant.replace("/", ".").rpartition(".")
+    where, help_ = line(raised.place), msg("Write `from {m} import {n}`.", m=module, n=name)
+    cause = msg("Your program cannot import {type}{where}.", type=f"{module}.{name}", where=where)
+    if why := known.faults.get(meant):
+        help_ = msg("`colcon build` refuses it, too: build your packages before you hand them in.")
+        values = {**cause.values, "why": why}
+        cause = msg("Your program cannot import {type}{where}: {why}", **values)
+    elif name not in words:
+        cause = msg(
+            "Your program imports what your {m} does not have{where}.", m=module, where=where
+        )
+        help_ = help_ if alike else msg("It has: {names}.", names=", ".join(types)[:200])
+    return Diagnosis("not_importable", cause, help_, place=raised.place)
 
 
 def _of_own_module(case: Case, raised: Raised) -> Message | None:

@@ -33,6 +33,7 @@ _AWAITED = re.compile(r"object (\w{1,60}) can't be used in 'await' expression")
 _NO_FILE = re.compile(r"\[Errno \d+\] [^:]{1,60}: '([^'\n]{1,300})")
 _UNPACKED = re.compile(r"values to unpack \(expected \d{1,3}")
 _SUBSCRIPTED = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
+_QUOTED_TYPE = re.compile(r"\((?:self, *)?['\"][\w/.]*?([A-Z]\w{0,60})['\"]")
 _CREATES = re.compile(r"\b(create_(?:publisher|subscription|client|service))\(")
 _IN_ORDER = {
     "create_publisher": "create_publisher(Twist, '/topic', 10)",
@@ -311,6 +312,11 @@ def _arguments(_: str, text: str, place: SourceLine | None) -> Hint | None:
     line = place.text if place is not None else ""
     is_of_rclpy = "incompatible function arguments" in text
     is_text_for_type = "'str' has no attribute '_TYPE_SUPPORT'" in text
+    if is_text_for_type and (quoted := _QUOTED_TYPE.search(line)):
+        return Hint(
+            msg("Import {type}, and write it there without quotes.", type=excerpt(quoted[1])),
+            msg("a type is given as a text"),
+        )
     if (is_of_rclpy or is_text_for_type) and (found := _CREATES.search(line)):
         return Hint(
             msg("Compare the order: {in_order}.", in_order=_IN_ORDER[found[1]]),

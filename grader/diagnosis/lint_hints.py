@@ -21,6 +21,8 @@ from grader.text import misspelt
 _LONGEST = 1000
 _GIVEN = re.compile(r"(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w")
 _VARIABLE = re.compile(r"variable '(\w{1,60})'")
+_NO_FIELD = re.compile(r"(?:has no attribute '|passed to constructor: )(\w{1,60})")
+_FIELD = re.compile(r"^[ \t]*[\w/\[\]<=]{1,100}[ \t]+([a-z]\w{0,60})", re.MULTILINE)
 _NO_ATTRIBUTE = re.compile(r"has no attribute '(\w{1,60})'")
 _OF_A_SERVICE = re.compile(r"(\w{1,60})(?:\.__init__)?\(\) (?:got an unexpected k|takes no arg)")
 #: What an exception shows not to have been begun -> what the source lacks.
@@ -254,6 +256,20 @@ def _service_for_request(case: Case, raised: Raised) -> Hint | None:
     )
 
 
+def _misspelt_field(case: Case, raised: Raised) -> Hint | None:
+    """A field of an interface of the hand-in's, with the name that it has there."""
+    found = _NO_FIELD.search(raised.text[:_LONGEST])
+    for name, text in case.recording.interfaces.texts.items() if found is not None else ():
+        for field in _FIELD.findall(text):
+            if found is not None and field != found[1] and misspelt(field, found[1]):
+                words = {"field": field, "name": excerpt(found[1]), "type": name}
+                return Hint(
+                    msg("Write {field} there.", field=field),
+                    msg("{type} has no field {name}; it has {field}", **words),
+                )
+    return None
+
+
 def _misspelt(case: Case, raised: Raised) -> Hint | None:
     """An attribute that is set under another name, or nowhere."""
     found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
@@ -449,7 +465,8 @@ def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
 
 _RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
     *(_called_callback, _misnamed, _not_global, _without_self, _hidden_method, _class_given),
-    *(_service_for_request, _hidden_class, _misplaced, _misspelt, _wrong_callback, _class_kept),
+    *(_service_for_request, _hidden_class, _misplaced, _misspelt_field, _misspelt),
+    *(_wrong_callback, _class_kept),
     *(_not_begun, _calls_itself, _none_for_a_value, _lacks_entry, _is_zero, _ends),
     _in_other_order,
 )

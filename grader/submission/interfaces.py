@@ -20,7 +20,7 @@ KINDS: Final = ("msg", "srv", "action")
 #: So many definitions are read, and so much of them as JSON: an argument of a process holds it.
 MOST, LONGEST = 100, 40_000
 _GENERATE: Final = "rosidl_generate_interfaces"
-_GENERATORS: Final = "rosidl_default_generators"
+_RUNTIME: Final = "rosidl_default_runtime"
 _GROUP: Final = ("member_of_group", "rosidl_interface_packages")
 _OPTIONS: Final = (
     "LIBRARY_NAME",
@@ -29,26 +29,9 @@ _OPTIONS: Final = (
     "ADD_LINTER_TESTS",
 )
 #: The packages whose types are used; a constant, which is no field.
-_USED: Final = re.compile(r"^[ \t]*([a-z]\w*)/", re.MULTILINE)
+_USED: Final = re.compile(r"^[ \t]*([a-z]\w{0,100})/", re.MULTILINE)
 _CONSTANT: Final = re.compile(r"\S+ \w+ ?=")
 _LACKS: Final = msg("{file} lacks {line}: without it {what} is not generated. Add it.")
-
-
-@dataclass(frozen=True)
-class _Package:
-    """A package as its set-up has it.
-
-    Attributes:
-        listed: the files of which it generates interfaces.
-        needed: the packages that it finds, and names as dependencies of these.
-        fault: why nothing of it is generated; NOTHING where something is.
-    """
-
-    manifest: Manifest
-    called: str = cmake.FILE
-    listed: tuple[str, ...] = ()
-    needed: frozenset[str] = frozenset()
-    fault: Message = NOTHING
 
 
 def find_interfaces(
@@ -56,38 +39,31 @@ def find_interfaces(
 ) -> tuple[Interfaces, list[Message]]:
     """Return the interfaces that the packages of a hand-in generate, and remarks on these."""
     packages: dict[Path, _Package] = {}
-    texts: dict[str, str] = {}
-    faults: dict[str, Message] = {}
-    notes: dict[Message, None] = {}
-    left = LONGEST
+    texts, faults = dict[str, str](), dict[str, Message]()
+    notes, left = list[Message](), LONGEST
     for file in (each for each in files if each.suffix[1:] in KINDS):
         inside = takewhile(lambda each: each.is_relative_to(submitted.base), file.parents)
         marks = (FILE, cmake.FILE)
         folder = next((each for each in inside if any((each / m).is_file() for m in marks)), None)
         if folder is None:
             continue
-        if folder not in packages:
-            packages[folder] = _read(submitted, folder)
-        package, kind = packages[folder], file.suffix[1:]
         submitted.must_hold(file)
-        data = read_bounded(file) or b""
-        text = data.decode("utf-8", "replace")
-        name = f"{package.manifest.name}/{kind}/{file.stem}"
+        text = (read_bounded(file) or b"").decode("utf-8", "replace")
         left -= len(json.dumps(text))
-        fault = package.fault or _fault(package, kind, submitted.called(file), file, folder, text)
-        if not fault and (left < 0 or len(texts) >= MOST):
-            fault = msg(
-                "{file} is one too many: {most} definitions with {n:,} characters are taken.",
-                **{"file": submitted.called(file), "most": MOST, "n": LONGEST},
-            )
-        if fault:
+        if left < 0 or len(texts) + len(faults) >= MOST:
+            words = {"most": MOST, "n": LONGEST}
+            notes.append(msg("Of its interfaces {most} with {n:,} characters are used", **words))
+            break
+        if folder not in packages:
+            packages[folder] = _Package.read(submitted, folder)
+        package = packages[folder]
+        name = f"{package.name}/{file.suffix[1:]}/{file.stem}"
+        if fault := package.fault or package.lacks(file, submitted.called(file), text):
             faults[name] = fault
-            continue
-        texts[name] = text
-        needs = {*_USED.findall(text), "rosidl_default_runtime"} - {package.manifest.name}
-        for need in sorted(needs - package.manifest.depends):
-            notes[_undeclared(submitted.called(folder / FILE), need)] = None
-    return Interfaces(texts, faults), list(notes)
+        else:
+            texts[name] = text
+            notes += undeclared(folder / FILE, {*_USED.findall(text), _RUNTIME})
+    return Interfaces(texts, faults), list(dict.fromkeys(notes))
 
 
 def completed(found: Interfaces, theirs: Mapping[str, str]) -> Interfaces:
@@ -112,124 +88,133 @@ def completed(found: Interfaces, theirs: Mapping[str, str]) -> Interfaces:
     return Interfaces(texts, faults, unlike)
 
 
-def undeclared(file: Path, called: str, imported: set[str]) -> list[Message]:
-    """Return remarks on packages of interfaces that a program's package.xml does not name."""
+def undeclared(file: Path, packages: set[str]) -> list[Message]:
+    """Return remarks on packages that a package.xml does not name."""
     manifest = read_manifest(file) if file.is_file() else None
     if manifest is None or manifest.fault:
         return []
-    return [_undeclared(called, each) for each in sorted(imported - manifest.depends)]
-
-
-def _undeclared(file: str, package: str) -> Message:
-    return msg(
-        "{file} does not name {package}: add <depend>{package}</depend>, or colcon may build it "
-        "too late, or not find it",
-        file=file,
-        package=shown(package),
-    )
-
-
-def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
-    """Read the package.xml and the CMakeLists.txt of a package with interfaces."""
-    no_manifest = Manifest("", "", msg("is not there"))
-    is_there = (folder / FILE).is_file()
-    manifest = (read_manifest(folder / FILE) if is_there else None) or no_manifest
-    name = manifest.name or folder.name
-    package = _Package(replace(manifest, name=name))
-    setup, called = submitted.called(folder / FILE), submitted.called(folder / cmake.FILE)
-    if not (folder / cmake.FILE).is_file() or manifest.build_type == "ament_python":
-        why = msg(
-            "The package {name} is built by setup.py, which generates no interfaces. Put them "
-            "into a package of their own: ros2 pkg create --build-type ament_cmake my_interfaces.",
-            name=shown(name),
-        )
-        return replace(package, fault=why)
-    if manifest.fault:
-        why = msg("{file} {fault}. Correct it.", file=setup, fault=manifest.fault)
-        return replace(package, fault=why)
-    submitted.must_hold(folder / cmake.FILE)
-    read = cmake.read(folder)
-    found = {words[1] for words in read.calls if words[0] == "find_package" and words[1:]}
-    listed, needed = list[str](), list[str]()
-    calls = [words[2:] for words in read.calls if words[0] == _GENERATE]
-    for words in calls:
-        into = listed
-        for word in words:
-            if word == "DEPENDENCIES" or word in _OPTIONS:
-                into = needed if word == "DEPENDENCIES" else []
-            else:
-                into.append(word)
-    lacks = [
-        (called, f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', bool(calls)),
-        *((called, f"find_package({each} REQUIRED)", each in found) for each in needed),
-        (called, f"find_package({_GENERATORS} REQUIRED)", _GENERATORS in found),
-        (setup, "<{0}>{1}</{0}>".format(*_GROUP), _GROUP in manifest.elements),
+    sentence = msg("{file} does not name {package}, so that colcon may not find it: add {line}")
+    where, lacking = shown(f"{file.parent.name}/{FILE}"), packages - manifest.depends
+    return [
+        sentence.given(file=where, package=each, line=f"<depend>{each}</depend>")
+        for each in sorted(lacking - {manifest.name})
     ]
-    why = next(
-        (
-            _LACKS.given(file=f, line=line, what=shown(name))
-            for f, line, is_in in lacks
-            if not is_in
-        ),
-        NOTHING,
-    )
-    absent = [each for each in listed if not (folder / each).is_file()]
-    if read.project != name:
-        why = msg(
-            "{file} calls the project {project}, and {setup} the package {name}: colcon refuses "
-            "that. Give both the same name.",
-            **{"file": called, "project": shown(read.project), "setup": setup, "name": shown(name)},
+
+
+@dataclass(frozen=True)
+class _Package:
+    """A package with definitions.
+
+    Attributes:
+        called: its CMakeLists.txt.
+        listed: the files of which it generates interfaces.
+        needed: what it names as dependencies of these.
+        fault: why nothing of it is generated; NOTHING where something is.
+    """
+
+    folder: Path
+    name: str
+    called: str
+    listed: tuple[str, ...] = ()
+    needed: tuple[str, ...] = ()
+    fault: Message = NOTHING
+
+    @classmethod
+    def read(cls, submitted: SubmissionFolder, folder: Path) -> _Package:
+        """Read its package.xml and its CMakeLists.txt."""
+        has_manifest, has_cmake = ((folder / each).is_file() for each in (FILE, cmake.FILE))
+        manifest = (read_manifest(folder / FILE) if has_manifest else None) or Manifest(
+            "", "", msg("is not there")
         )
-    elif ["ament_python_install_package", name] in [words[:2] for words in read.calls]:
-        why = msg(
-            "{file} makes a package of Python's and one of interfaces, both called {name}, which "
-            "colcon refuses. Put the interfaces into a package of their own.",
-            **{"file": called, "name": shown(name)},
-        )
-    elif absent and not why:
-        there = [
-            f"{kind}/{each.name}" for kind in KINDS for each in folder.glob(f"{kind}/*.{kind}")
+        setup, called = submitted.called(folder / FILE), submitted.called(folder / cmake.FILE)
+        package = cls(folder, (manifest.name or folder.name)[:100], called)
+        words = {"file": called, "name": package.name, "setup": setup, "fault": manifest.fault}
+        if not has_cmake or manifest.build_type == "ament_python":
+            why = msg(
+                "The package {name} is built by setup.py, which generates no interfaces. Put them "
+                "into one of their own: ros2 pkg create --build-type ament_cmake my_interfaces.",
+                **words,
+            )
+            return replace(package, fault=why)
+        if manifest.fault:
+            return replace(package, fault=msg("{setup} {fault}. Correct it.", **words))
+        submitted.must_hold(folder / cmake.FILE)
+        read = cmake.read(folder)
+        found = [words[1] for words in read.calls if words[0] == "find_package" and words[1:]]
+        calls = [words[2:] for words in read.calls if words[0] == _GENERATE]
+        listed, needed = list[str](), list[str]()
+        for call in calls:
+            into = listed
+            for word in call:
+                if word == "DEPENDENCIES" or word in _OPTIONS:
+                    into = needed if word == "DEPENDENCIES" else []
+                else:
+                    into.append(word)
+        absent = next((each for each in listed if not (folder / each).is_file()), "")
+        lines = [
+            (called, f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', bool(calls)),
+            *(
+                (called, f"find_package({each} REQUIRED)", each in found)
+                for each in (*needed, "rosidl_default_generators")
+            ),
+            (setup, "<{0}>{1}</{0}>".format(*_GROUP), _GROUP in manifest.elements),
         ]
-        meant = near(absent[0], there)
-        why = msg(
-            "{file} lists {path}, and there is no such file{near}. Correct its name.",
-            **{"file": called, "path": shown(absent[0])},
-            near=msg("; there is {near}", near=shown(meant[0])) if meant else NOTHING,
-        )
-    return replace(
-        package, called=called, listed=tuple(listed), needed=frozenset(needed), fault=why
-    )
+        lacking = next(((file, line) for file, line, is_there in lines if not is_there), None)
+        why = NOTHING
+        if read.project != package.name:
+            why = msg(
+                "{file} calls the project {project}, and {setup} the package {name}. Give both "
+                "the same name.",
+                **{**words, "project": shown(read.project)},
+            )
+        elif ["ament_python_install_package", package.name] in [each[:2] for each in read.calls]:
+            why = msg(
+                "{file} makes a package of Python's and one of interfaces, both called {name}, "
+                "which colcon refuses. Put the interfaces into a package of their own.",
+                **words,
+            )
+        elif lacking:
+            why = _LACKS.given(file=lacking[0], line=shown(lacking[1]), what=package.name)
+        elif absent:
+            there = [each.relative_to(folder).as_posix() for each in folder.glob("*/*")]
+            meant = near(absent, sorted(there)[:1000])
+            why = msg(
+                "{file} lists {path}, and there is no such file{near}. Correct its name.",
+                **{"file": called, "path": shown(absent)},
+                near=msg("; there is {near}", near=shown(meant[0])) if meant else NOTHING,
+            )
+        return replace(package, listed=tuple(listed), needed=tuple(needed), fault=why)
 
-
-def _fault(
-    package: _Package, kind: str, called: str, file: Path, folder: Path, text: str
-) -> Message:
-    """Return why a definition of a package is not generated; NOTHING where it is."""
-    path = file.relative_to(folder).as_posix()
-    if path != f"{kind}/{file.name}":
-        return msg("{file} lies in the wrong place. Move it to {to}.", file=called, to=f"{kind}/")
-    if path not in package.listed:
-        return msg(
-            '{file} is not listed in {cmake}, so that it is not generated: add "{path}" to {call}.',
-            **{"file": called, "cmake": package.called, "path": path, "call": f"{_GENERATE}()"},
-        )
-    for used in _USED.findall(text):
-        if used not in (*package.needed, package.manifest.name):
-            line = f"find_package({used} REQUIRED), {_GENERATE}(... DEPENDENCIES {used})"
-            return _LACKS.given(file=package.called, line=line, what=called)
-    return NOTHING
+    def lacks(self, file: Path, called: str, text: str) -> Message:
+        """Return why one of its definitions is not generated; NOTHING where it is."""
+        path, kind = file.relative_to(self.folder).as_posix(), file.suffix[1:]
+        if path != f"{kind}/{file.name}":
+            return msg(
+                "{file} is in the wrong folder. Move it to {to}.", file=called, to=f"{kind}/"
+            )
+        if path not in self.listed:
+            return msg(
+                "{file} is not listed in {cmake}, so that it is not generated: add {path} to "
+                "{call}.",
+                **{"file": called, "cmake": self.called},
+                **{"path": f'"{path}"', "call": f"{_GENERATE}()"},
+            )
+        for used in _USED.findall(text):
+            if used not in (*self.needed, self.name):
+                line = f"DEPENDENCIES {used} in {_GENERATE}()"
+                return _LACKS.given(file=self.called, line=line, what=called)
+        return NOTHING
 
 
 def _difference(name: str, own: str, theirs: str) -> Message:
     """Say how a type is defined otherwise than its exercise has it."""
     package, kind, stem = name.split("/")
     words = {"package": package, "file": f"{stem}.{kind}"}
-    for mine, other in zip_longest(_fields(own), _fields(theirs)):
+    for mine, other in zip_longest(_fields(own), _fields(theirs), fillvalue="---"):
         if mine != other:
-            forms = [f"`{each}`" if each else msg("nothing") for each in (mine, other)]
             return msg(
-                "{file} of {package} has {own} where the exercise's has {theirs}",
-                **{**words, "own": forms[0], "theirs": forms[1]},
+                "{file} of {package} has `{own}` where the exercise's has `{theirs}`",
+                **{**words, "own": mine, "theirs": other},
             )
     return msg("{file} of {package} contains a type that the exercise has otherwise", **words)
 

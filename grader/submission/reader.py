@@ -301,7 +301,7 @@ def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -
     interfaces = completed(found.interfaces, theirs)
     known = {*imports.surely, *imports.perhaps} & interfaces.packages
     if found.package is not None:
-        notes += undeclared(found.package / MANIFEST, MANIFEST, known & found.interfaces.packages)
+        notes += undeclared(found.package / MANIFEST, known & found.interfaces.packages)
     imports = imports.without(known)
     found = replace(found, imports=imports, interfaces=interfaces)
     return replace(found, notes=tuple(notes), lint_findings=shows)
