@@ -238,7 +238,6 @@ def plan(
         looks_at_package=exercise.looks_at_package and submission.package is not None,
         inspections=exercise.inspections,
         definitions=exercise.interfaces,
-        own=submission.interfaces,
         budget=budget,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]

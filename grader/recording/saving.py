@@ -136,7 +136,7 @@ def _withdraw(folder: Path) -> None:
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     scene = load_subject(recording.scene)
-    mcap = bag().write(recording.trace, scene, folder)
+    mcap = bag().write(recording.trace, scene, folder, recording.interfaces.texts)
     run = to_json(recording.run, OURS)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     if recording.provenance is not None:

@@ -188,7 +188,4 @@ def record(
             seed=plan.seed,
             interfaces=plan.interfaces,
         )
-    return Recording(
-        *(trace, run, topics, ending.output, plan.start, plan.scene, observations),
-        interfaces=plan.own,
-    )
+    return Recording(trace, run, topics, ending.output, plan.start, plan.scene, observations)

@@ -18,7 +18,7 @@ from grader import strict_json
 from grader.errors import GraderFailure, SceneFailure
 from grader.message import Message, msg
 from grader.recording import transfer
-from grader.recording.recording import Interfaces, PublishedTopic
+from grader.recording.recording import PublishedTopic
 from grader.recording.subject import Start, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
 from grader.scenes.scene import Limits, Scene
@@ -40,7 +40,6 @@ class Plan:
         looks_at_package: whether the package around the submission's program is inspected as well.
         inspections: the names of the inspectors that examine a package.
         definitions: the exercise's interfaces: a type -> its definition.
-        own: those of the submission's program, which the simulator's process does not know.
         budget: that of the whole grading, which the simulator's process does not know.
     """
 
@@ -55,9 +54,6 @@ class Plan:
     inspections: tuple[str, ...] = ()
     definitions: Mapping[str, str] = field(
         default_factory=dict, hash=False, metadata=strict_json.SPARSE
-    )
-    own: Interfaces = field(
-        default_factory=Interfaces, compare=False, metadata=strict_json.UNSTORED
     )
     budget: CpuBudget = field(
         default_factory=CpuBudget, compare=False, metadata=strict_json.UNSTORED

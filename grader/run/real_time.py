@@ -38,8 +38,8 @@ Progress = Callable[[float], None]
 #: A program that used this share of the run's time on a processor has computed, not waited.
 COMPUTES = 0.5
 COMPILED = msg(
-    "interfaces of your own ({packages}) work in virtual time alone: have one program graded, "
-    "without --time real, and take out what virtual time cannot follow, which a remark names"
+    "the interfaces of {packages} work in virtual time alone: have one program graded, without "
+    "--time real, and take out what virtual time cannot follow, which a remark names"
 )
 #: The folder of the program that runs as the submission's process.
 STUDENT = Path(__file__).with_name("student")

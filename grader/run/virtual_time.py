@@ -154,7 +154,7 @@ def _try(
     computes = message["silence"] in COMPUTES
     observations = account.observations(submission, message["reached_s"], computes=computes)
     recording = record(plan, trace, topics, ending(how, exit_code, tuple(flags)), observations)
-    return recording, NOTHING
+    return replace(recording, interfaces=submission.interfaces), NOTHING
 
 
 def command(
