@@ -115,25 +115,30 @@ def _not_generated(case: Case, raised: Raised) -> Diagnosis | None:
     if not own:
         return None
     types = {name.rpartition("/")[2]: name for name in reversed(own)}
-    named = (types[each] for word in words for each in types if misspelt(word, each))
-    meant = alike = next(named, "")
-    meant = meant or own[0]
-    said = known.faults.get(meant, NOTHING)
+    found, where = _OTHER_MODULE.search(raised.text), line(raised.place)
+    asked = words if found is None else [found[1]]
+    alike = ((word, each) for word in asked for each in types if misspelt(word, each))
+    word, near = next(alike, ("", "" if found else own[0].rpartition("/")[2]))
+    said = known.faults.get(types.get(near, ""), NOTHING)
     for inner in _WORD.findall(str(said)):  # what the mistake is in
-        others = (types[each] for each in types if each.lower() == inner.lower())
-        meant = next((each for each in others if known.faults.get(each, said) != said), meant)
-    module, _, name = meant.replace("/", ".").rpartition(".")
-    where, help_ = line(raised.place), msg("Write `from {m} import {n}`.", m=module, n=name)
-    cause = msg("Your program cannot import {type}{where}.", type=f"{module}.{name}", where=where)
-    if why := known.faults.get(meant):
+        others = (each for each in types if each.lower() == inner.lower())
+        near = next((e for e in others if known.faults.get(types[e], said) != said), near)
+    module, _, name = types.get(near, own[0]).replace("/", ".").rpartition(".")
+    help_ = msg("Write `from {m} import {n}`.", m=module, n=name)
+    if why := known.faults.get(types.get(near, "")):
         help_ = msg("`colcon build` refuses it, too: build your packages before you hand them in.")
-        values = {**cause.values, "why": why}
-        cause = msg("Your program cannot import {type}{where}: {why}", **values)
-    elif name not in words:
+        words_ = {"type": f"{module}.{name}", "where": where, "why": why}
+        cause = msg("Your program cannot import {type}{where}: {why}", **words_)
+    elif word == near != "":
         cause = msg(
-            "Your program imports what your {m} does not have{where}.", m=module, where=where
+            "Your program cannot import {type}{where}.", type=f"{module}.{name}", where=where
         )
-        help_ = help_ if alike else msg("It has: {names}.", names=", ".join(types)[:200])
+    else:
+        package = own[0].partition("/")[0]
+        cause = msg(
+            "Your program imports what your {m} does not have{where}.", m=package, where=where
+        )
+        help_ = help_ if near else msg("It has: {names}.", names=", ".join(sorted(types))[:200])
     return Diagnosis("not_importable", cause, help_, place=raised.place)
 
 

@@ -182,30 +182,27 @@ def _setting(where: Any, subject: Subject, place: Place) -> str:
 
 
 def _interfaces(where: Any, place: Place) -> dict[str, str]:
-    """Read the folder of packages with definitions, PACKAGE/msg/NAME.msg; {} for none."""
+    """Read the definitions in a folder of packages, PACKAGE/msg/NAME.msg; {} for none."""
     if where is None:
         return {}
-    is_folder = isinstance(where, str) and (place.folder / where).is_dir()
-    expect(is_folder, (INTERFACES,), "expected a folder beside exercise.yaml, found {found}", where)
-    files = (place.folder / where).glob("*/*/*")
-    found = sorted(each for each in files if each.suffix == f".{each.parent.name}")
-    try:
-        texts = {
-            f"{each.parts[-3]}/{each.parts[-2]}/{each.stem}": each.read_text("utf-8")
-            for each in found
-        }
-    except ValueError as error:
-        raise Mistake((INTERFACES,), "{error}", error=str(error)) from None
     from grader.rosidl.definitions import Definitions  # here: most exercises have none
 
+    files = sorted((place.folder / str(where)).glob("*/*/*"))
+    texts = {
+        f"{each.parts[-3]}/{each.parts[-2]}/{each.stem}": each.read_text("utf-8", "replace")
+        for each in files
+        if each.suffix == f".{each.parent.name}"
+    }
+    fits = 0 < len(json.dumps(texts)) - 2 <= LONGEST_INTERFACES
+    expect(
+        fits,
+        (INTERFACES,),
+        "expected a folder with PACKAGE/msg/NAME.msg, with {most} characters; found {found}",
+        where,
+        most=LONGEST_INTERFACES,
+    )
     for wrong in Definitions(texts).errors.values():
         raise Mistake((INTERFACES,), wrong.message)
-    if not 0 < len(json.dumps(texts)) - 2 <= LONGEST_INTERFACES:
-        raise Mistake(
-            (INTERFACES,),
-            "expected definitions, PACKAGE/msg/NAME.msg, with {most} characters at most",
-            most=LONGEST_INTERFACES,
-        )
     return texts
 
 

@@ -7,7 +7,6 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from turtlesim.msg import Pose
 from turtlesim.srv import SetPen
-
 from tutorial_interfaces.action import Fibonacci
 from tutorial_interfaces.msg import Num, Sphere
 from tutorial_interfaces.srv import AddThreeInts
@@ -56,7 +55,11 @@ class TurtleController(Node):
             self.counter.send_goal_async(goal, self.on_feedback).add_done_callback(self.on_goal)
         if self.commands % 10 == 0:
             self.spheres.publish(
-                Sphere(center=Point(x=MIDDLE, y=MIDDLE), radius=self.speed, nums=[Num(num=self.commands)])
+                Sphere(
+                    center=Point(x=MIDDLE, y=MIDDLE),
+                    radius=self.speed,
+                    nums=[Num(num=self.commands)],
+                )
             )
 
     def on_sphere(self, sphere):

@@ -1,0 +1,138 @@
+"""Hand-ins with interfaces of their own: they work as in ROS, and what is wrong is said first."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+
+import pytest
+import yaml
+
+from grader import grading
+from grader.diagnosis.diagnose import diagnose
+from grader.exercise.verdict import Verdict
+from grader.message import msg, plain_text
+from grader.recording import reading, saving
+from grader.recording.recording import Interfaces, Recordings
+from grader.run import real_time, virtual_time
+from grader.run.handover import Plan
+from grader.run.opening import open_submission
+from grader.scenes.scene import Limits
+from tests import runs
+from tests.grader.languages.holes import holes
+from turtlesim_py.world.events import CmdVel
+
+FOLDER = runs.SUBMISSIONS / "interfaces"
+WRONG = yaml.safe_load((FOLDER / "wrong.yaml").read_text(encoding="utf-8"))
+PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=6))
+LOST = [Verdict("check", plain_text("Check"), "failed", 0, 20, plain_text("It lacks something."))]
+#: What each says once it has used its interfaces.
+SAID = {
+    "workspace": ("The sum is 6", "All: [0, 1, 1, 2, 3, 5, 8, 13]", "[tutorial_interfaces.msg.Num"),
+    "one_package": ("done 4 True", "turtle_spiral.msg.Colour(r=255, g=255, b=255) driving False"),
+    "beside": ("crossed 32", "driven for 52.0 s"),
+}
+
+
+def test_a_zip_of_a_workspace_is_one(tmp_path):
+    file = shutil.make_archive(str(tmp_path / "alice"), "zip", FOLDER, "workspace")
+    with open_submission(tmp_path / file) as zipped, open_submission(FOLDER / "workspace") as it:
+        assert zipped.interfaces == it.interfaces
+        assert sorted(it.interfaces.texts) == [
+            *("tutorial_interfaces/action/Fibonacci", "tutorial_interfaces/msg/Num"),
+            *("tutorial_interfaces/msg/Sphere", "tutorial_interfaces/srv/AddThreeInts"),
+        ]
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_a_program_uses_its_own_messages_services_and_actions(name):
+    result = runs.graded(FOLDER / name)
+    recording = runs.recordings(FOLDER / name).nominal
+    assert (result.score, recording.run.flags) == (100.0, ())
+    for text in SAID[name]:
+        assert text in recording.output
+    assert recording.interfaces.texts
+    assert recording.interfaces.faults == recording.interfaces.unlike == {}
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_each_grading_is_the_same(name):
+    hashes = [
+        [each.run.trace_sha256 for each in runs.recordings(FOLDER / name, number=number)]
+        for number in (1, 2, 3)
+    ]
+    assert hashes[0] == hashes[1] == hashes[2]
+
+
+def run(path, interfaces=None):
+    with open_submission(path) as submission:
+        if interfaces is not None:
+            submission = replace(submission, interfaces=interfaces)
+        return virtual_time.run(submission, PLAN)
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_the_first_lines_say_what_is_wrong(name, tmp_path):
+    place = shutil.copytree(FOLDER / "workspace", tmp_path / "it")
+    package = place / "src" / "tutorial_interfaces"
+    for file, old, new in WRONG[name].get("changes", ()):
+        (path,) = place.glob(f"src/*/*/{file}") if file.endswith(".py") else [package / file]
+        text = path.read_text()
+        assert text.count(old) == 1
+        path.write_text(text.replace(old, new))
+    for file, to in WRONG[name].get("moves", {}).items():
+        path = package / file
+        if to is None:
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+        else:
+            path.rename(package / to)
+    found = diagnose(Recordings(run(place)), LOST)
+    assert found is not None
+    said, begin = f"{found.cause!s} {found.help!s}", 0
+    for piece in WRONG[name]["says"]:
+        assert piece in said[begin:], said
+        begin = said.index(piece, begin)
+    for language in ("fr", "zh"):
+        assert holes(found.cause, language) == holes(found.help, language) == []
+
+
+def test_a_package_that_package_xml_does_not_name_is_remarked(tmp_path):
+    place = shutil.copytree(FOLDER / "workspace", tmp_path / "it")
+    for file, line in (
+        ("turtle_tutorial", "  <exec_depend>tutorial_interfaces</exec_depend>\n"),
+        ("tutorial_interfaces", "  <exec_depend>rosidl_default_runtime</exec_depend>\n"),
+    ):
+        path = place / "src" / file / "package.xml"
+        path.write_text(path.read_text().replace(line, ""))
+    with open_submission(place) as submission:
+        notes = [str(note) for note in submission.notes]
+    assert [note.partition(",")[0] for note in notes] == [
+        "tutorial_interfaces/package.xml does not name rosidl_default_runtime",
+        "turtle_tutorial/package.xml does not name tutorial_interfaces",
+    ]
+
+
+def test_types_that_the_two_sides_define_otherwise_exchange_nothing():
+    unlike = {"geometry_msgs/msg/Twist": msg("Twist.msg of geometry_msgs has other fields")}
+    interfaces = Interfaces({"demo/msg/Num": "int8 num\n"}, {}, unlike)
+    recording = run(runs.REFERENCE, interfaces)
+    assert not recording.trace.of_kind(CmdVel)
+    (topic,) = (each for each in recording.topics if each.topic == "/turtle1/cmd_vel")
+    assert topic.type == "geometry_msgs/msg/Twist"
+    found = diagnose(Recordings(recording), LOST)
+    assert found is not None
+    assert found.key == "publishes_to_nobody"
+    assert found.place is not None
+    assert "create_publisher(Twist" in found.place.text
+    assert "not the exercise's, and the two exchange nothing: Twist.msg" in str(found.cause)
+
+
+def test_in_real_time_they_are_not_judged(tmp_path):
+    with open_submission(FOLDER / "beside") as submission:
+        plans = grading.plan(submission, runs.CHALLENGE)[:1]
+        with grading.start(submission, plans, real_time.run) as made:
+            recordings = grading.gather(made)
+    saving.save_all(recordings, tmp_path / "recording")
+    verdicts = grading.judge(reading.load_all(tmp_path / "recording"), runs.CHALLENGE).verdicts
+    assert {verdict.status for verdict in verdicts} == {"not_judged"}
+    assert "custom_action_interfaces work in virtual time alone" in str(verdicts[0].rationale)
