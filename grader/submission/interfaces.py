@@ -222,7 +222,7 @@ def _difference(name: str, own: str, theirs: str) -> Message:
         if mine != other:
             return msg(
                 "{file} of {package} has `{own}` where the exercise's has `{theirs}`",
-                **{**words, "own": mine, "theirs": other},
+                **{**words, "own": shown(mine), "theirs": shown(other)},
             )
     return msg("{file} of {package} contains a type that the exercise has otherwise", **words)
 

@@ -147,3 +147,33 @@ def test_an_alias_is_read_as_yaml_says(tmp_path):
 
 def test_a_copy_of_an_exercise_in_a_folder_must_lie_there(tmp_path):
     assert "must lie in that exercise's own folder" in message_of(tmp_path, "exercise: corner\n")
+
+
+def with_interfaces(tmp_path, text="int8 num\n", where="interfaces"):
+    tmp_path.mkdir(exist_ok=True)
+    folder = exercises.write(tmp_path / "ahead", interfaces="interfaces")
+    package = folder / where / "course_interfaces" / "msg"
+    package.mkdir(parents=True)
+    (package / "Num.msg").write_text(text)
+    return folder
+
+
+def test_an_exercise_brings_interfaces_along_and_is_another_with_others(tmp_path):
+    one, other = (with_interfaces(tmp_path / text, f"{text} num\n") for text in ("int8", "int16"))
+    exercise = load_exercise(one)
+    assert exercise.interfaces == {"course_interfaces/msg/Num": "int8 num\n"}
+    assert exercise.opening["interfaces"] == exercise.interfaces
+    assert load_exercise(other).sha256 != exercise.sha256
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "said"),
+    [
+        ("int8 num\nint other\n", "interfaces", r"exercise\.yaml.*Num\.msg, line 2: `int other`"),
+        ("int8 num\n", "elsewhere", r"expected a folder with PACKAGE/msg/NAME\.msg"),
+        ("int8 num\n" + "# more\n" * 6000, "interfaces", r"with 40,?000 characters"),
+    ],
+)
+def test_interfaces_that_cannot_be_used_are_named(tmp_path, text, where, said):
+    with pytest.raises(ExerciseError, match=said):
+        load_exercise(with_interfaces(tmp_path, text, where))

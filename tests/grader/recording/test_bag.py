@@ -19,6 +19,8 @@ from grader.recording import bag, saving
 from grader.recording.bag import types_of
 from grader.recording.recording import Recording, Recordings
 from grader.recording.rosbag2_writer import Rosbag2Writer
+from grader.rosidl.cdr import serialise
+from grader.rosidl.definitions import Definitions
 from grader.scenes import load_scene
 from grader.scenes.turtlesim import messages as bag_messages
 from tests.grader.driving import drive, pen, twist
@@ -300,3 +302,31 @@ def test_writing_alone_makes_the_same_bag(recorded, folder, tmp_path):
     assert (tmp_path / "recording" / "metadata.yaml").read_bytes() == (
         folder / "metadata.yaml"
     ).read_bytes()
+
+
+def test_a_channel_may_have_a_type_of_a_hand_ins(recorded, tmp_path):
+    texts = {
+        "mine/msg/Num": "int8 num\nstring<=5 name\n",
+        "mine/msg/Nums": "std_msgs/Header header\nNum[<=3] nums\ngeometry_msgs/Point at\n",
+        "mine/srv/Add": "Num a\n---\nNum b\n",
+        "mine/msg/Wrong": "what is this\n",
+    }
+    own = Definitions(texts)
+    number, numbers = own.type("mine/msg/Num"), own.type("mine/msg/Nums")
+    data = serialise(numbers(nums=[number(num=7, name="seven")]))
+
+    class Listening(type(load_scene("turtlesim"))):
+        def bag_topics(self, trace):
+            return [("/nums", "mine/msg/Nums")]
+
+        def to_messages(self, trace):
+            return [*super().to_messages(trace), (10**9, "/nums", "mine/msg/Nums", data)]
+
+    bag.write(recorded.trace, Listening(), tmp_path / "recording", texts)
+    with (tmp_path / "recording" / "recording.mcap").open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        ((_, channel, _, message),) = reader.iter_decoded_messages(topics=["/nums"])
+    assert (message.nums[0].num, message.nums[0].name, message.at.x) == (7, "seven", 0.0)
+    assert channel.metadata["topic_type_hash"] == own.type_hash("mine/msg/Nums")
+    with AnyReader([tmp_path / "recording"]) as reader:
+        assert reader.topics["/nums"].msgtype == "mine/msg/Nums"

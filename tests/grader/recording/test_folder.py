@@ -17,10 +17,11 @@ from rosbags.typesys import Stores, get_typestore
 from grader import cli, content
 from grader.errors import RecordingError
 from grader.inspection.trace import PackageTrace
+from grader.message import msg
 from grader.recording import bag, reading, saving
 from grader.recording.folder import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.observations import End, Observations, SourceLine, Standstill
-from grader.recording.recording import Provenance, Recording, Recordings
+from grader.recording.recording import Interfaces, Provenance, Recording, Recordings
 from grader.scenes.turtlesim.trace import Log
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
@@ -516,4 +517,24 @@ def test_observations_of_another_form_are_refused_by_name(folder):
     change(folder / "observations.json", spun_s="soon")
     damage = r"observations\.json is damaged: spun_s: expected a number, found 'soon'"
     with pytest.raises(RecordingError, match=damage):
+        reading.load(folder)
+
+
+INTERFACES = Interfaces(
+    {"mine/msg/Num": "int8 num\n"},
+    {"mine/msg/Nums": msg("{file} is missing", file="Nums.msg")},
+    {"mine/msg/Num": msg("Num.msg has other fields")},
+)
+
+
+def test_the_interfaces_of_a_submission_are_a_circumstance_and_come_back(recorded, tmp_path):
+    saving.save_all(Recordings(replace(recorded, interfaces=INTERFACES)), tmp_path)
+    assert reading.load(tmp_path).interfaces == INTERFACES
+
+
+@pytest.mark.parametrize("wrong", [[], {"texts": {"mine/msg/Num": 3}}, {"more": {}}])
+def test_interfaces_of_another_form_are_refused_by_name(folder, wrong):
+    path = folder / CIRCUMSTANCES
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"interfaces": wrong}))
+    with pytest.raises(RecordingError, match=r"circumstances\.json is damaged"):
         reading.load(folder)
