@@ -115,7 +115,7 @@ def _not_generated(case: Case, raised: Raised) -> Diagnosis | None:
     if not own:
         return None
     types = {name.rpartition("/")[2]: name for name in reversed(own)}
-    found, where = _OTHER_MODULE.search(raised.text), line(raised.place)
+    found = _OTHER_MODULE.search(raised.text)
     asked = words if found is None else [found[1]]
     alike = ((word, each) for word in asked for each in types if misspelt(word, each))
     word, near = next(alike, ("", "" if found else own[0].rpartition("/")[2]))
@@ -124,21 +124,22 @@ def _not_generated(case: Case, raised: Raised) -> Diagnosis | None:
         others = (each for each in types if each.lower() == inner.lower())
         near = next((e for e in others if known.faults.get(types[e], said) != said), near)
     module, _, name = types.get(near, own[0]).replace("/", ".").rpartition(".")
-    help_ = msg("Write `from {m} import {n}`.", m=module, n=name)
-    if why := known.faults.get(types.get(near, "")):
+    values = {
+        "m": module,
+        "n": name,
+        "where": line(raised.place),
+        "package": own[0].partition("/")[0],
+    }
+    why = known.faults.get(types.get(near, ""), NOTHING)
+    cause = msg("Your program imports what your {package} does not have{where}.", **values)
+    help_ = msg("Write `from {m} import {n}`.", **values)
+    if why:
+        cause = msg("Your program cannot import {m}.{n}{where}: {why}", **values, why=why)
         help_ = msg("`colcon build` refuses it, too: build your packages before you hand them in.")
-        words_ = {"type": f"{module}.{name}", "where": where, "why": why}
-        cause = msg("Your program cannot import {type}{where}: {why}", **words_)
-    elif word == near != "":
-        cause = msg(
-            "Your program cannot import {type}{where}.", type=f"{module}.{name}", where=where
-        )
-    else:
-        package = own[0].partition("/")[0]
-        cause = msg(
-            "Your program imports what your {m} does not have{where}.", m=package, where=where
-        )
-        help_ = help_ if near else msg("It has: {names}.", names=", ".join(sorted(types))[:200])
+    elif near and word == near:
+        cause = msg("Your program cannot import {m}.{n}{where}.", **values)
+    elif not near:
+        help_ = msg("It has: {names}.", names=", ".join(sorted(types))[:200])
     return Diagnosis("not_importable", cause, help_, place=raised.place)
 
 

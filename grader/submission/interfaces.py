@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from itertools import takewhile, zip_longest
-from pathlib import Path
-from typing import Final
+from pathlib import Path, PurePath
+from typing import Final, NamedTuple
 
 from grader.inspection.examining import cmake
 from grader.inspection.examining.known import DESKTOP
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Interfaces
-from grader.submission.folder import SubmissionFolder, near, read_bounded, shown
+from grader.submission.folder import SubmissionFolder, read_bounded, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
 
 KINDS: Final = ("msg", "srv", "action")
@@ -23,7 +24,7 @@ MOST, LONGEST = 100, 40_000
 #: Packages that are ROS's, even where a copy of them is handed in.
 _OF_ROS: Final = DESKTOP | {"turtlesim_msgs", "unique_identifier_msgs", "service_msgs"}
 _GENERATE: Final = "rosidl_generate_interfaces"
-_RUNTIME: Final = "rosidl_default_runtime"
+_MAKERS, _RUNTIME = "rosidl_default_generators", "rosidl_default_runtime"
 _GROUP: Final = ("member_of_group", "rosidl_interface_packages")
 _OPTIONS: Final = (
     "LIBRARY_NAME",
@@ -53,7 +54,7 @@ def find_interfaces(
         if folder is None:
             continue
         if folder not in packages:
-            packages[folder] = _Package.read(submitted, folder)
+            packages[folder] = _read(submitted, folder)
         package = packages[folder]
         if package.name in _OF_ROS:
             continue
@@ -65,7 +66,8 @@ def find_interfaces(
             notes.append(msg("Of its interfaces {most} with {n:,} characters are used", **words))
             break
         name = f"{package.name}/{file.suffix[1:]}/{file.stem}"
-        if fault := package.fault or package.lacks(file, submitted.called(file), text):
+        path = file.relative_to(folder)
+        if fault := package.fault or _lack(package, path, submitted.called(file), text):
             faults[name] = fault
         else:
             texts[name] = text
@@ -108,110 +110,85 @@ def undeclared(file: Path, packages: set[str]) -> list[Message]:
     ]
 
 
-@dataclass(frozen=True)
-class _Package:
+class _Package(NamedTuple):
     """A package with definitions.
 
     Attributes:
-        called: its CMakeLists.txt.
+        cmake: its CMakeLists.txt.
         listed: the files of which it generates interfaces.
         needed: what it names as dependencies of these.
         fault: why nothing of it is generated; NOTHING where something is.
     """
 
-    folder: Path
     name: str
-    called: str
-    listed: tuple[str, ...] = ()
-    needed: tuple[str, ...] = ()
+    cmake: str
     fault: Message = NOTHING
+    listed: Sequence[str] = ()
+    needed: Sequence[str] = ()
 
-    @classmethod
-    def read(cls, submitted: SubmissionFolder, folder: Path) -> _Package:
-        """Read its package.xml and its CMakeLists.txt."""
-        has_manifest, has_cmake = ((folder / each).is_file() for each in (FILE, cmake.FILE))
-        manifest = (read_manifest(folder / FILE) if has_manifest else None) or Manifest(
-            "", "", msg("is not there")
+
+def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
+    """Read the package.xml and the CMakeLists.txt of a package."""
+    manifest = read_manifest(folder / FILE) if (folder / FILE).is_file() else None
+    manifest = manifest or Manifest("", "", msg("is not there"))
+    setup, file = submitted.called(folder / FILE), submitted.called(folder / cmake.FILE)
+    name = (manifest.name or folder.name)[:100]
+    if not (folder / cmake.FILE).is_file() or manifest.build_type == "ament_python":
+        why = msg(
+            "The package {name} is built by setup.py, which generates no interfaces. Put them "
+            "into one of their own: ros2 pkg create --build-type ament_cmake my_interfaces.",
+            name=name,
         )
-        setup, called = submitted.called(folder / FILE), submitted.called(folder / cmake.FILE)
-        package = cls(folder, (manifest.name or folder.name)[:100], called)
-        words = {"file": called, "name": package.name, "setup": setup, "fault": manifest.fault}
-        if not has_cmake or manifest.build_type == "ament_python":
-            why = msg(
-                "The package {name} is built by setup.py, which generates no interfaces. Put them "
-                "into one of their own: ros2 pkg create --build-type ament_cmake my_interfaces.",
-                **words,
-            )
-            return replace(package, fault=why)
-        if manifest.fault:
-            return replace(package, fault=msg("{setup} {fault}. Correct it.", **words))
-        submitted.must_hold(folder / cmake.FILE)
-        read = cmake.read(folder)
-        found = [words[1] for words in read.calls if words[0] == "find_package" and words[1:]]
-        calls = [words[2:] for words in read.calls if words[0] == _GENERATE]
-        listed, needed = list[str](), list[str]()
-        for call in calls:
-            into = listed
-            for word in call:
-                if word == "DEPENDENCIES" or word in _OPTIONS:
-                    into = needed if word == "DEPENDENCIES" else []
-                else:
-                    into.append(word)
-        known = [each for each in listed if _UNKNOWN not in each]
-        absent = next((each for each in known if not (folder / each).is_file()), "")
-        lines = [
-            (called, f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', bool(calls)),
-            *(
-                (called, f"find_package({each} REQUIRED)", each in found)
-                for each in (*needed, "rosidl_default_generators")
-            ),
-            (setup, "<{0}>{1}</{0}>".format(*_GROUP), _GROUP in manifest.elements),
-        ]
-        lacking = next(((file, line) for file, line, is_there in lines if not is_there), None)
-        why = NOTHING
-        if read.project != package.name:
-            why = msg(
-                "{file} calls the project {project}, and {setup} the package {name}. Give both "
-                "the same name.",
-                **{**words, "project": shown(read.project)},
-            )
-        elif ["ament_python_install_package", package.name] in [each[:2] for each in read.calls]:
-            why = msg(
-                "{file} makes a package of Python's and one of interfaces, both called {name}, "
-                "which colcon refuses. Put the interfaces into a package of their own.",
-                **words,
-            )
-        elif lacking:
-            why = _LACKS.given(file=lacking[0], line=shown(lacking[1]), what=package.name)
-        elif absent:
-            there = [each.relative_to(folder).as_posix() for each in folder.glob("*/*")]
-            meant = near(absent, sorted(there)[:1000])
-            why = msg(
-                "{file} lists {path}, and there is no such file{near}. Correct its name.",
-                **{"file": called, "path": shown(absent)},
-                near=msg("; there is {near}", near=shown(meant[0])) if meant else NOTHING,
-            )
-        return replace(package, listed=tuple(listed), needed=tuple(needed), fault=why)
+        return _Package(name, file, why)
+    submitted.must_hold(folder / cmake.FILE)
+    read = cmake.read(folder)
+    parts: dict[str, list[str]] = defaultdict(list)
+    part = ""
+    for word in (word for call in read.calls if call[0] == _GENERATE for word in ["", *call[2:]]):
+        part = word if word in ("", "DEPENDENCIES", *_OPTIONS) else part
+        parts[part].append(word)
+    listed, needed = parts[""][1:], parts["DEPENDENCIES"][1:]
+    found = [call[1] for call in read.calls if call[0] == "find_package" and call[1:]]
+    known = [each for each in listed if each and _UNKNOWN not in each]
+    absent = next((each for each in known if not (folder / each).is_file()), "")
+    lines = [
+        (file, f"project({name})", read.project == name),
+        (file, f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', bool(parts[""])),
+        *((file, f"find_package({each} REQUIRED)", each in found) for each in (*needed, _MAKERS)),
+        (setup, "<{0}>{1}</{0}>".format(*_GROUP), _GROUP in manifest.elements),
+    ]
+    words = {"file": file, "setup": setup, "name": name, "path": shown(absent)}
+    both = ["ament_python_install_package", name]
+    twice = msg(
+        "{file} makes a package of Python's and one of interfaces, both called {name}, which "
+        "colcon refuses. Put the interfaces into a package of their own.",
+        **words,
+    )
+    unlisted = msg("{file} lists {path}, and there is no such file. Correct its name.", **words)
+    faults = [
+        (manifest.fault, msg("{setup} {fault}. Correct it.", **words, fault=manifest.fault)),
+        (both in [call[:2] for call in read.calls], twice),
+        *((not is_in, _LACKS.given(file=f, line=shown(x), what=name)) for f, x, is_in in lines),
+        (absent, unlisted),
+    ]
+    why = next((why for is_so, why in faults if is_so), NOTHING)
+    return _Package(name, file, why, listed, needed)
 
-    def lacks(self, file: Path, called: str, text: str) -> Message:
-        """Return why one of its definitions is not generated; NOTHING where it is."""
-        path, kind = file.relative_to(self.folder).as_posix(), file.suffix[1:]
-        if path != f"{kind}/{file.name}":
-            return msg(
-                "{file} is in the wrong folder. Move it to {to}.", file=called, to=f"{kind}/"
-            )
-        if path not in self.listed and not any(_UNKNOWN in each for each in self.listed):
-            return msg(
-                "{file} is not listed in {cmake}, so that it is not generated: add {path} to "
-                "{call}.",
-                **{"file": called, "cmake": self.called},
-                **{"path": f'"{path}"', "call": f"{_GENERATE}()"},
-            )
-        for used in _USED.findall(text):
-            if used not in (*self.needed, self.name):
-                line = f"DEPENDENCIES {used} in {_GENERATE}()"
-                return _LACKS.given(file=self.called, line=line, what=called)
-        return NOTHING
+
+def _lack(package: _Package, path: PurePath, called: str, text: str) -> Message:
+    """Return why a definition of a package is not generated; NOTHING where it is."""
+    kind = path.suffix[1:]
+    if path.parent.as_posix() != kind:
+        return msg("{file} is in the wrong folder. Move it to {to}.", file=called, to=f"{kind}/")
+    if str(path) not in package.listed and not any(_UNKNOWN in each for each in package.listed):
+        return msg(
+            "{file} is not listed in {cmake}, so that it is not generated: add {path} to {call}.",
+            **{"file": called, "cmake": package.cmake},
+            **{"path": f'"{path}"', "call": f"{_GENERATE}()"},
+        )
+    used = set(_USED.findall(text)) - {package.name, *package.needed}
+    line = f"DEPENDENCIES {min(used, default='')} in {_GENERATE}()"
+    return _LACKS.given(file=package.cmake, line=line, what=called) if used else NOTHING
 
 
 def _difference(name: str, own: str, theirs: str) -> Message:

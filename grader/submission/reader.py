@@ -304,7 +304,9 @@ def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -
     interfaces = interfaces if known else Interfaces()
     if found.package is not None:
         notes += undeclared(found.package / MANIFEST, known & found.interfaces.packages)
-    imports = imports.without(known)
+    for name in known:
+        imports.surely.pop(name, None)
+        imports.perhaps.pop(name, None)
     found = replace(found, imports=imports, interfaces=interfaces)
     return replace(found, notes=tuple(notes), lint_findings=shows)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
@@ -76,14 +75,6 @@ class Imports:
     surely: dict[str, str] = field(default_factory=dict)
     perhaps: dict[str, str] = field(default_factory=dict)
     files: tuple[Path, ...] = field(default=(), compare=False, metadata=UNSTORED)
-
-    def without(self, names: Collection[str]) -> Imports:
-        """Return those that do not have these names."""
-        surely, perhaps = (
-            {name: at for name, at in each.items() if name not in names}
-            for each in (self.surely, self.perhaps)
-        )
-        return Imports(surely, perhaps, self.files)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from grader.recording.observations import (
     TimerLine,
     Wait,
 )
-from grader.recording.recording import PublishedTopic, Recordings
+from grader.recording.recording import Interfaces, PublishedTopic, Recordings
 from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
 
 
@@ -249,6 +249,14 @@ CAUSES = {
         "publishes_to_nobody",
         "You publish geometry_msgs/msg/TwistStamped on /turtle1/cmd_vel, but the turtle listens "
         "to geometry_msgs/msg/Twist there (drive.py, line 39",
+    ),
+    "a type that the exercise has otherwise": (
+        replace(
+            run_of(said(end("publisher", "/nums", "mine/msg/Num"), VELOCITY), "time_limit"),
+            interfaces=Interfaces({}, {}, {"mine/msg/Num": plain_text("Num.msg has more")}),
+        ),
+        "publishes_to_nobody",
+        "Your mine/msg/Num is not the exercise's, and the two exchange nothing: Num.msg has more",
     ),
     "the same, known from the topics alone": (
         run_of(topics=(PublishedTopic("/turtle1/cmd_vel", STAMPED.type),)),
