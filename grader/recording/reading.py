@@ -33,7 +33,7 @@ from grader.recording.folder import (
 )
 from grader.recording.observations import Observations
 from grader.recording.recording import (
-    Interfaces,
+    OwnInterfaces,
     Provenance,
     PublishedTopic,
     Recording,
@@ -181,7 +181,7 @@ def _facts(folder: Path) -> dict[str, Any]:
         )
     with _refusing(path):
         facts[INTERFACES] = strict_json.from_json(
-            Interfaces, circumstances.get(INTERFACES, {}), strict_json.OURS
+            OwnInterfaces, circumstances.get(INTERFACES, {}), strict_json.OURS
         )
     with _refusing(folder / RUN):
         facts["run"]["flags"] = tuple(map(Message.parse, facts["run"]["flags"]))

@@ -56,7 +56,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Interfaces:
+class OwnInterfaces:
     """The interfaces that a submission's program gets: its own, and its exercise's.
 
     Attributes:
@@ -144,7 +144,7 @@ class Recording:
     observations: Observations = field(default_factory=Observations)
     package: Trace | None = None
     provenance: Provenance | None = field(default=None, compare=False)
-    interfaces: Interfaces = field(default_factory=Interfaces, compare=False)
+    interfaces: OwnInterfaces = field(default_factory=OwnInterfaces, compare=False)
 
     @cached_property
     def pictures(self) -> Pictures:

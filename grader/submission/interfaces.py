@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 from grader.inspection.examining import cmake
 from grader.inspection.examining.known import DESKTOP
 from grader.message import NOTHING, Message, msg
-from grader.recording.recording import Interfaces
+from grader.recording.recording import OwnInterfaces
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
 
@@ -42,7 +42,7 @@ _LACKS: Final = msg("{file} lacks {line}: without it {what} is not generated. Ad
 
 def find_interfaces(
     submitted: SubmissionFolder, files: Iterable[Path]
-) -> tuple[Interfaces, list[Message]]:
+) -> tuple[OwnInterfaces, list[Message]]:
     """Return the interfaces that the packages of a hand-in generate, and remarks on these."""
     packages: dict[Path, _Package] = {}
     texts, faults = dict[str, str](), dict[str, Message]()
@@ -72,10 +72,10 @@ def find_interfaces(
         else:
             texts[name] = text
             notes += undeclared(folder / FILE, {*_USED.findall(text), _RUNTIME})
-    return Interfaces(texts, faults), list(dict.fromkeys(notes))
+    return OwnInterfaces(texts, faults), list(dict.fromkeys(notes))
 
 
-def completed(found: Interfaces, theirs: Mapping[str, str]) -> Interfaces:
+def completed(found: OwnInterfaces, theirs: Mapping[str, str]) -> OwnInterfaces:
     """Add what parsing shows, and an exercise's interfaces, but those of packages handed in."""
     others = {n: text for n, text in theirs.items() if n.partition("/")[0] not in found.packages}
     texts = {**others, **found.texts}
@@ -87,14 +87,14 @@ def completed(found: Interfaces, theirs: Mapping[str, str]) -> Interfaces:
     faults = {**found.faults, **{name: error.message for name, error in own.errors.items()}}
     both = [name for name in texts if name in theirs and name not in own.errors]
     if all(texts[name] == theirs[name] for name in both):
-        return Interfaces(texts, faults)
+        return OwnInterfaces(texts, faults)
     known = Definitions(theirs)
     unlike = {
         name: _difference(name, texts[name], theirs[name])
         for name in both
         if own.type_hash(name) != known.type_hash(name)
     }
-    return Interfaces(texts, faults, unlike)
+    return OwnInterfaces(texts, faults, unlike)
 
 
 def undeclared(file: Path, packages: set[str]) -> list[Message]:

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from grader import limited, strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
-from grader.recording.recording import Interfaces
+from grader.recording.recording import OwnInterfaces
 from grader.submission import folder, python_source, unpacking, whole
 from grader.submission.finding import find, find_inspected, may_be_node
 from grader.submission.folder import USUAL_NAME, is_source, shown
@@ -301,7 +301,7 @@ def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -
     notes, shows = [*refused, *found.notes], lint(found.root, imports.files)
     interfaces = completed(found.interfaces, theirs)
     known = {*imports.surely, *imports.perhaps} & interfaces.packages
-    interfaces = interfaces if known else Interfaces()
+    interfaces = interfaces if known else OwnInterfaces()
     if found.package is not None:
         notes += undeclared(found.package / MANIFEST, known & found.interfaces.packages)
     for name in known:

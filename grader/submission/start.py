@@ -8,7 +8,7 @@ from typing import Annotated
 
 from grader.message import Message
 from grader.recording.observations import LintFinding
-from grader.recording.recording import Interfaces
+from grader.recording.recording import OwnInterfaces
 from grader.strict_json import UNSTORED, not_empty
 from grader.submission.private_copy import PrivateCopy
 
@@ -91,7 +91,7 @@ class Submission:
     #: of its source
     lint_findings: tuple[LintFinding, ...] = field(default=(), compare=False)
     #: what its program gets beside those that are installed
-    interfaces: Interfaces = field(default_factory=Interfaces, compare=False)
+    interfaces: OwnInterfaces = field(default_factory=OwnInterfaces, compare=False)
     #: files that it lacked and that were added, below `root`
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none

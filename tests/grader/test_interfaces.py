@@ -13,7 +13,7 @@ from grader.diagnosis.diagnose import diagnose
 from grader.exercise.verdict import Verdict
 from grader.message import msg, plain_text
 from grader.recording import reading, saving
-from grader.recording.recording import Interfaces, Recordings
+from grader.recording.recording import OwnInterfaces, Recordings
 from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
@@ -114,7 +114,7 @@ def test_a_package_that_package_xml_does_not_name_is_remarked(tmp_path):
 
 def test_types_that_the_two_sides_define_otherwise_exchange_nothing():
     unlike = {"geometry_msgs/msg/Twist": msg("Twist.msg of geometry_msgs has other fields")}
-    interfaces = Interfaces({"demo/msg/Num": "int8 num\n"}, {}, unlike)
+    interfaces = OwnInterfaces({"demo/msg/Num": "int8 num\n"}, {}, unlike)
     recording = run(runs.REFERENCE, interfaces)
     assert not recording.trace.of_kind(CmdVel)
     (topic,) = (each for each in recording.topics if each.topic == "/turtle1/cmd_vel")

@@ -21,7 +21,7 @@ from grader.recording.observations import (
     TimerLine,
     Wait,
 )
-from grader.recording.recording import Interfaces, PublishedTopic, Recordings
+from grader.recording.recording import OwnInterfaces, PublishedTopic, Recordings
 from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
 
 
@@ -253,7 +253,7 @@ CAUSES = {
     "a type that the exercise has otherwise": (
         replace(
             run_of(said(end("publisher", "/nums", "mine/msg/Num"), VELOCITY), "time_limit"),
-            interfaces=Interfaces({}, {}, {"mine/msg/Num": plain_text("Num.msg has more")}),
+            interfaces=OwnInterfaces({}, {}, {"mine/msg/Num": plain_text("Num.msg has more")}),
         ),
         "publishes_to_nobody",
         "Your mine/msg/Num is not the exercise's, and the two exchange nothing: Num.msg has more",

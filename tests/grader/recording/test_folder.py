@@ -21,7 +21,7 @@ from grader.message import msg
 from grader.recording import bag, reading, saving
 from grader.recording.folder import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.observations import End, Observations, SourceLine, Standstill
-from grader.recording.recording import Interfaces, Provenance, Recording, Recordings
+from grader.recording.recording import OwnInterfaces, Provenance, Recording, Recordings
 from grader.scenes.turtlesim.trace import Log
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
@@ -520,7 +520,7 @@ def test_observations_of_another_form_are_refused_by_name(folder):
         reading.load(folder)
 
 
-INTERFACES = Interfaces(
+INTERFACES = OwnInterfaces(
     {"mine/msg/Num": "int8 num\n"},
     {"mine/msg/Nums": msg("{file} is missing", file="Nums.msg")},
     {"mine/msg/Num": msg("Num.msg has other fields")},

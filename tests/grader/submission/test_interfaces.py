@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.errors import SubmissionError
-from grader.recording.recording import Interfaces
+from grader.recording.recording import OwnInterfaces
 from grader.run.opening import open_submission
 from grader.submission.interfaces import MOST, completed
 from tests import runs
@@ -53,7 +53,7 @@ def test_they_are_no_missing_modules():
 
 def test_a_program_that_imports_none_has_none(tmp_path):
     package(tmp_path / "others", {"Num": "int8 num\n"}, "others")
-    assert read(tmp_path)[0] == Interfaces()
+    assert read(tmp_path)[0] == OwnInterfaces()
 
 
 def test_a_copy_of_a_package_of_ros_is_none(tmp_path):
@@ -97,7 +97,7 @@ THEIRS = {
 
 def test_a_single_file_gets_those_of_the_exercise(tmp_path):
     found, _ = read(tmp_path, THEIRS)
-    assert found == Interfaces(THEIRS)
+    assert found == OwnInterfaces(THEIRS)
 
 
 def test_what_the_exercise_has_otherwise_is_named_with_both_forms():
@@ -106,7 +106,7 @@ def test_what_the_exercise_has_otherwise_is_named_with_both_forms():
         "mine/msg/Nums": "Num[] nums\n",
         "mine/msg/Name": "# the name\nstring    name\n",
     }
-    found = completed(Interfaces(own), THEIRS)
+    found = completed(OwnInterfaces(own), THEIRS)
     assert found.texts == {"course/msg/Hint": "string text\n", **own}
     assert {name: str(how) for name, how in found.unlike.items()} == {
         "mine/msg/Num": "Num.msg of mine has `int64 num` where the exercise's has `int32 num`",
@@ -115,6 +115,6 @@ def test_what_the_exercise_has_otherwise_is_named_with_both_forms():
 
 
 def test_a_package_that_is_handed_in_takes_the_place_of_the_whole_one():
-    found = completed(Interfaces({"mine/msg/Num": "int32 num\n"}), THEIRS)
+    found = completed(OwnInterfaces({"mine/msg/Num": "int32 num\n"}), THEIRS)
     assert sorted(found.texts) == ["course/msg/Hint", "mine/msg/Num"]
     assert found.unlike == {}
