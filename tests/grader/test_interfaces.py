@@ -20,6 +20,7 @@ from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.grader.languages.holes import holes
+from tests.grader.testing import exercises
 from turtlesim_py.world.events import CmdVel
 
 FOLDER = runs.SUBMISSIONS / "interfaces"
@@ -136,3 +137,28 @@ def test_in_real_time_they_are_not_judged(tmp_path):
     verdicts = grading.judge(reading.load_all(tmp_path / "recording"), runs.CHALLENGE).verdicts
     assert {verdict.status for verdict in verdicts} == {"not_judged"}
     assert "custom_action_interfaces work in virtual time alone" in str(verdicts[0].rationale)
+
+
+HINTS = """import rclpy
+from course_interfaces.msg import Hint
+from geometry_msgs.msg import Twist
+
+rclpy.init()
+node = rclpy.create_node("node")
+node.create_subscription(Hint, "hints", lambda hint: print(hint.text, flush=True), 10)
+hints = node.create_publisher(Hint, "hints", 10)
+velocity = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+node.create_timer(0.5, lambda: (hints.publish(Hint(text="left")), velocity.publish(Twist())))
+rclpy.spin(node)
+"""
+
+
+def test_a_program_has_the_interfaces_that_its_exercise_brings_along(tmp_path):
+    folder = exercises.write(tmp_path / "ahead", interfaces="given")
+    package = folder / "given" / "course_interfaces" / "msg"
+    package.mkdir(parents=True)
+    (package / "Hint.msg").write_text("string text\n")
+    (tmp_path / "node.py").write_text(HINTS)
+    recording = grading.record(tmp_path / "node.py", folder).nominal
+    assert recording.output.startswith("left\nleft\n")
+    assert recording.interfaces == OwnInterfaces({"course_interfaces/msg/Hint": "string text\n"})
