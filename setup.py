@@ -152,8 +152,8 @@ def ros_dependent() -> dict[str, Any]:
             "packages": OWN_PACKAGES,
         }
     sys.path.insert(0, str(ROOT))
+    from grader.rosidl.compiler import complaint
     from interfaces.build import BuildInterfaces, extensions
-    from interfaces.compiler import complaint
 
     if COMPILING.intersection(sys.argv) and (line := complaint()):
         sys.exit(line)

@@ -316,7 +316,10 @@ def start(
     try:
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
         inspection = pool.submit(_inspect_twice_at_most, submission, plans[0]) if inspects else None
-        over = ((numbers[future], future.result()) for future in as_completed(numbers))
+        over = (
+            (numbers[future], replace(future.result(), interfaces=submission.interfaces))
+            for future in as_completed(numbers)
+        )
         yield ((n, r if n else _nominal(r, origin, inspection)) for n, r in over)
     finally:
         pool.shutdown(cancel_futures=True)

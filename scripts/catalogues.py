@@ -32,7 +32,7 @@ _PAIR_IN_TEMPLATE = re.compile(rf"\btr_many\(\s*{_STRING},\s*{_STRING}")
 _IN_SCRIPT = re.compile(rf"\b(?:t|key)\(\s*{_STRING}")
 #: The argument of an error is a sentence, too, if there are values for it.
 ERRORS = ("UsageError", "SubmissionError", "ExerciseError", "CheckFailed", "RecordingError")
-ERRORS += ("GraderFailure", "NotNow", "NotOffered", "SceneFailure")
+ERRORS += ("GraderFailure", "NotCompiled", "NotNow", "NotOffered", "SceneFailure")
 #: Folders of students' programs, and of no sources.
 NOT_OURS = ("starter", "reference", "right", "__pycache__")
 

@@ -71,7 +71,7 @@ if [ -n "${ROS_DISTRO:-}" ]; then
     "$python" -c 'import rclpy' 2>/dev/null ||
         fail "ROS 2 $ROS_DISTRO is sourced, but $python cannot import its rclpy: take the Python that ROS was built for (Ubuntu 24.04: PYTHON=/usr/bin/python3)."
 else
-    "$python" "${0%/*}/../interfaces/compiler.py" || exit 1
+    "$python" "${0%/*}/../grader/rosidl/compiler.py" || exit 1
 fi
 
 echo "$python"

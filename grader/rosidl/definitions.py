@@ -49,6 +49,15 @@ _CONSTANT: Final = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 _TAKEN: Final = (
     *("check_fields", "fields_and_field_types", "get_fields_and_field_types", "SLOT_TYPES"),
 )
+#: Words of C and C++, which colcon compiles, besides those of Python.
+_OF_C: Final = (
+    *("alignas", "alignof", "asm", "auto", "bool", "case", "catch", "char", "compl", "const"),
+    *("constexpr", "decltype", "default", "delete", "do", "double", "enum", "explicit", "export"),
+    *("extern", "float", "friend", "goto", "inline", "int", "long", "mutable", "namespace", "new"),
+    *("noexcept", "nullptr", "operator", "private", "protected", "public", "register", "restrict"),
+    *("short", "signed", "sizeof", "static", "struct", "switch", "template", "this", "throw"),
+    *("typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile"),
+)
 #: What stands between a file's lines of ---.
 _PARTS: Final = {
     "msg": ("",),
@@ -328,10 +337,10 @@ def _parse_line(package: str, line: str, taken: Set[str]) -> Any:
         what = msg("found `{line}`, expected a type and a name: int32 count.", line=line[:80])
         raise SubmissionError(what)
     pattern, example = (_CONSTANT, "MAX_SPEED") if is_constant else (_NAME, "max_speed")
-    if not pattern.fullmatch(name) or keyword.iskeyword(name) or name in {*_TAKEN, *taken}:
+    if not pattern.fullmatch(name) or keyword.iskeyword(name) or name in {*_TAKEN, *_OF_C, *taken}:
         raise SubmissionError(
             "`{name}` is no name here, or is taken. A name is written as {example}, and is no word "
-            "of Python's.",
+            "of Python or C++.",
             **{"name": name[:80], "example": example},
         )
     try:

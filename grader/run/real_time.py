@@ -6,15 +6,16 @@ import json
 import sys
 import time
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import ExitStack, closing
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from grader import linux
 from grader.errors import GraderFailure, NotNow, SceneFailure
-from grader.message import Message, msg
+from grader.message import Message
 from grader.recording.recording import Recording
-from grader.run import handover, run_context
+from grader.run import compiling, handover, run_context
 from grader.run.environment import student_environment
 from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, ended, not_run, outcome, record
@@ -37,10 +38,6 @@ Progress = Callable[[float], None]
 
 #: A program that used this share of the run's time on a processor has computed, not waited.
 COMPUTES = 0.5
-COMPILED = msg(
-    "the interfaces of {packages} work in virtual time alone: have one program graded, without "
-    "--time real, and take out what virtual time cannot follow, which a remark names"
-)
 #: The folder of the program that runs as the submission's process.
 STUDENT = Path(__file__).with_name("student")
 #: The module that runs as the simulator's process.
@@ -64,23 +61,29 @@ def run(
         SceneFailure: the scene raised an exception.
         SimulatorLost: it died beside the submission.
     """
-    if submission.interfaces.texts:
-        packages = ", ".join(sorted(submission.interfaces.packages))
-        return not_run(plan, COMPILED.given(packages=packages))
     started = time.monotonic()
     scene = load_scene(plan.scene)
     with (
         run_context.open_context(plan.budget) as context,
         closing(EvidencePage()) as account,
         live_feed(audience, plan, "real") as feed,
-        start_simulator(MODULE, context, plan, (), str(FIRST_NODE_S), feed=feed) as simulator,
+        ExitStack() as stack,
     ):
+        try:
+            ours, theirs = compiling.compile_all(plan.definitions, submission.interfaces, context)
+        except compiling.NotCompiled as why:
+            return not_run(plan, why.message)
+        its = replace(context, env={**context.env, **ours.env})
+        simulator = stack.enter_context(
+            start_simulator(MODULE, its, plan, (), str(FIRST_NODE_S), feed=feed)
+        )
         simulator.expect("ready")
         submission, student = context.start(
             submission,
             lambda private: command(private, scene.introduction, account.page),
             (account.page,),
-            student_environment({}),
+            student_environment(theirs.env),
+            more=theirs.folders,
         )
         ending = partial(ended, "real", submission, student, context.isolation, started)
         began_s = time.monotonic()

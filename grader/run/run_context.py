@@ -53,6 +53,8 @@ class RunContext:
         fds: tuple[int, ...],
         env: Mapping[str, str],
         server: ForkServer | None = None,
+        *,
+        more: Sequence[Path] = (),
     ) -> tuple[Submission, SubmissionProcess]:
         """Start the submission's process; return it after the submission's copy for this run.
 
@@ -61,9 +63,12 @@ class RunContext:
             fds: descriptors that it inherits.
             env: environment variables beside those of both processes.
             server: the server that it is forked from, if possible; None for a cold start.
+            more: folders that it may read besides.
         """
         is_apart = bool(self.namespaces)
-        confinement = levels.prepare(self.level, submission.folder, self.folder, is_apart=is_apart)
+        confinement = levels.prepare(
+            self.level, submission.folder, self.folder, is_apart=is_apart, more=more
+        )
         submission = submission.moved(confinement.copy)
         env = {**self.env, **env, **confinement.env}
         command = ProcessCommand(

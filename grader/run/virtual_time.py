@@ -153,8 +153,7 @@ def _try(
     flags += map(Message.parse, message["flags"])
     computes = message["silence"] in COMPUTES
     observations = account.observations(submission, message["reached_s"], computes=computes)
-    recording = record(plan, trace, topics, ending(how, exit_code, tuple(flags)), observations)
-    return replace(recording, interfaces=submission.interfaces), NOTHING
+    return record(plan, trace, topics, ending(how, exit_code, tuple(flags)), observations), NOTHING
 
 
 def command(

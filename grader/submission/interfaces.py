@@ -37,6 +37,9 @@ _USED: Final = re.compile(r"^[ \t]*([a-z]\w{0,100})/", re.MULTILINE)
 _CONSTANT: Final = re.compile(r"\S+ \w+ ?=")
 #: In a word of CMake's with a variable that nobody knows here: it may be any.
 _UNKNOWN: Final = "${"
+_TWICE: Final = msg(
+    "two packages are called {name}: {places}, and colcon builds neither. Remove one of them."
+)
 _LACKS: Final = msg("{file} lacks {line}: without it {what} is not generated. Add it.")
 
 
@@ -44,17 +47,17 @@ def find_interfaces(
     submitted: SubmissionFolder, files: Iterable[Path]
 ) -> tuple[OwnInterfaces, list[Message]]:
     """Return the interfaces that the packages of a hand-in generate, and remarks on these."""
-    packages: dict[Path, _Package] = {}
-    texts, faults = dict[str, str](), dict[str, Message]()
-    notes, left = list[Message](), LONGEST
+    places: dict[Path, Path] = {}
     for file in (each for each in files if each.suffix[1:] in KINDS):
         inside = takewhile(lambda each: each.is_relative_to(submitted.base), file.parents)
         marks = (FILE, cmake.FILE)
         folder = next((each for each in inside if any((each / m).is_file() for m in marks)), None)
-        if folder is None:
-            continue
-        if folder not in packages:
-            packages[folder] = _read(submitted, folder)
+        if folder is not None:
+            places[file] = folder
+    packages = {folder: _read(submitted, folder) for folder in dict.fromkeys(places.values())}
+    texts, faults = dict[str, str](), dict[str, Message]()
+    notes, left = list[Message](), LONGEST
+    for file, folder in places.items():
         package = packages[folder]
         if package.name in _OF_ROS:
             continue
@@ -67,7 +70,11 @@ def find_interfaces(
             break
         name = f"{package.name}/{file.suffix[1:]}/{file.stem}"
         path = file.relative_to(folder)
-        if fault := package.fault or _lack(package, path, submitted.called(file), text):
+        same = [submitted.called(each) for each in packages if packages[each].name == package.name]
+        twice = (
+            _TWICE.given(name=package.name, places=", ".join(same)) if len(same) > 1 else NOTHING
+        )
+        if fault := package.fault or twice or _lack(package, path, submitted.called(file), text):
             faults[name] = fault
         else:
             texts[name] = text

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import shutil
+import subprocess
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 import yaml
@@ -12,18 +15,20 @@ from grader import grading
 from grader.diagnosis.diagnose import diagnose
 from grader.exercise.verdict import Verdict
 from grader.message import msg, plain_text
-from grader.recording import reading, saving
 from grader.recording.recording import OwnInterfaces, Recordings
-from grader.run import real_time, virtual_time
+from grader.run import virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
 from tests import runs
+from tests.docs.test_examples import environment_with
 from tests.grader.languages.holes import holes
 from tests.grader.testing import exercises
 from turtlesim_py.world.events import CmdVel
 
 FOLDER = runs.SUBMISSIONS / "interfaces"
+LIGHT = Path(__file__).with_name("scenes") / "light"
+JUDGED = yaml.safe_load((FOLDER / "judged.yaml").read_text(encoding="utf-8"))
 WRONG = yaml.safe_load((FOLDER / "wrong.yaml").read_text(encoding="utf-8"))
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=6))
 LOST = [Verdict("check", plain_text("Check"), "failed", 0, 20, plain_text("It lacks something."))]
@@ -56,20 +61,86 @@ def test_a_program_uses_its_own_messages_services_and_actions(name):
     assert recording.interfaces.faults == recording.interfaces.unlike == {}
 
 
-@pytest.mark.parametrize("name", SAID)
-def test_each_grading_is_the_same(name):
-    hashes = [
-        [each.run.trace_sha256 for each in runs.recordings(FOLDER / name, number=number)]
-        for number in (1, 2, 3)
+@pytest.fixture(scope="module")
+def grade(tmp_path_factory):
+    """Grade a workspace that was judged by hand, where a scene of others is installed.
+
+    A part of `LIGHT`, the exercise's scene, is found by its entry point.
+    """
+    place = tmp_path_factory.mktemp("judged")
+    shutil.copytree(LIGHT, place / "light")
+    python = environment_with(place / "light", place / "venv")
+
+    def graded(name):
+        case = JUDGED[name]
+        made = changed(FOLDER / case["of"], case, place / name)
+        words = [str(python), "-m", "grader", "run", str(made), "--out", str(place / "out")]
+        if "exercise" in case:
+            words += ["--exercise", str(place / "light" / case["exercise"])]
+        subprocess.run(words, check=True, cwd=place, capture_output=True)
+        result = json.loads((place / "out" / "result.json").read_text())
+        shutil.rmtree(place / "out")
+        shutil.rmtree(place / name)
+        return result
+
+    return graded
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", JUDGED)
+def test_a_workspace_gets_what_was_judged_by_hand(grade, name):
+    result = grade(name)
+    assert result["score"] == JUDGED[name]["score"]
+    assert ("diagnosis" in result) == ("says" in JUDGED[name])
+    found = result.get("diagnosis", {"cause": "", "help": ""})
+    is_in_order(JUDGED[name].get("says", []), f"{found['cause']} {found['help']}")
+
+
+@pytest.mark.more("three gradings each")
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", JUDGED)
+def test_each_grading_of_a_workspace_is_the_same(grade, name):
+    results = [grade(name) for _ in range(3)]
+    same = [
+        (
+            result["verdicts"],
+            [run["trace_sha256"] for run in (result["run"], *result["varied_runs"])],
+        )
+        for result in results
     ]
-    assert hashes[0] == hashes[1] == hashes[2]
+    assert same[0] == same[1] == same[2]
 
 
 def run(path, interfaces=None):
     with open_submission(path) as submission:
         if interfaces is not None:
             submission = replace(submission, interfaces=interfaces)
-        return virtual_time.run(submission, PLAN)
+        return replace(virtual_time.run(submission, PLAN), interfaces=submission.interfaces)
+
+
+def changed(original, case, place):
+    """Copy a hand-in with changes; see the files that list these."""
+    if original.is_file():
+        place.mkdir()
+        return Path(shutil.copy(original, place))
+    shutil.copytree(original, place)
+    for file, to in case.get("copies", {}).items():
+        shutil.copytree(place / file, place / to)
+    for file, old, new in case.get("changes", ()):
+        (path,) = place.rglob(file) if "/" not in file else [place / file]
+        text = path.read_text()
+        assert text.count(old) == 1
+        path.write_text(text.replace(old, new))
+    for file in case.get("without", "").split():
+        shutil.rmtree(place / file) if (place / file).is_dir() else (place / file).unlink()
+    return place
+
+
+def is_in_order(pieces, text):
+    begin = 0
+    for piece in pieces:
+        assert piece in text[begin:], text
+        begin = text.index(piece, begin)
 
 
 @pytest.mark.parametrize("name", WRONG)
@@ -89,10 +160,7 @@ def test_the_first_lines_say_what_is_wrong(name, tmp_path):
             path.rename(package / to)
     found = diagnose(Recordings(run(place)), LOST)
     assert found is not None
-    said, begin = f"{found.cause!s} {found.help!s}", 0
-    for piece in WRONG[name]["says"]:
-        assert piece in said[begin:], said
-        begin = said.index(piece, begin)
+    is_in_order(WRONG[name]["says"], f"{found.cause!s} {found.help!s}")
     for language in ("fr", "zh"):
         assert holes(found.cause, language) == holes(found.help, language) == []
 
@@ -126,17 +194,6 @@ def test_types_that_the_two_sides_define_otherwise_exchange_nothing():
     assert found.place is not None
     assert "create_publisher(Twist" in found.place.text
     assert "not the exercise's, and the two exchange nothing: Twist.msg" in str(found.cause)
-
-
-def test_in_real_time_they_are_not_judged(tmp_path):
-    with open_submission(FOLDER / "beside") as submission:
-        plans = grading.plan(submission, runs.CHALLENGE)[:1]
-        with grading.start(submission, plans, real_time.run) as made:
-            recordings = grading.gather(made)
-    saving.save_all(recordings, tmp_path / "recording")
-    verdicts = grading.judge(reading.load_all(tmp_path / "recording"), runs.CHALLENGE).verdicts
-    assert {verdict.status for verdict in verdicts} == {"not_judged"}
-    assert "custom_action_interfaces work in virtual time alone" in str(verdicts[0].rationale)
 
 
 HINTS = """import rclpy

@@ -15,6 +15,7 @@ from setuptools import Distribution
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError
 
+from grader.rosidl import building
 from interfaces import build
 
 #: The build forks; a worker of pytest-xdist has a thread.
@@ -33,9 +34,9 @@ def built(monkeypatch, tmp_path) -> Callable[[], list[str]]:
         module.parent.mkdir(parents=True, exist_ok=True)
         module.touch()
 
-    monkeypatch.setattr(build, "generate", lambda *arguments: arguments[-1].mkdir(parents=True))
+    monkeypatch.setattr(building, "generate", lambda *words: words[-1].mkdir(parents=True))
     monkeypatch.setattr(build, "_ros_version", lambda: "0.22.2")
-    monkeypatch.setattr(build, "_configure", lambda *_: None)
+    monkeypatch.setattr(building, "configure", lambda *_: None)
     monkeypatch.setattr(build_ext, "build_extension", compile_nothing)
     monkeypatch.chdir(tmp_path)
     return lambda: sorted(log.read_text().split())
@@ -75,7 +76,7 @@ def test_packages_that_are_built_side_by_side_share_no_source_and_so_no_object_f
     sources = []
     for extension, package in zip(build.extensions(), build.PACKAGES, strict=True):
         (tmp_path / package).mkdir()
-        build._configure(extension, package, tmp_path / package)
+        building.configure(extension, tmp_path / package, build.DEPENDENCIES, "", package)
         sources += extension.sources
     assert len(sources) == len(set(sources)) >= 3 * len(build.PACKAGES)
 

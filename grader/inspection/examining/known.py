@@ -51,7 +51,8 @@ DESKTOP: Final = frozenset(
         *("std_msgs", "sensor_msgs", "geometry_msgs", "nav_msgs", "visualization_msgs"),
         *("std_srvs", "builtin_interfaces", "rosgraph_msgs", "trajectory_msgs", "turtlesim"),
         *("action_msgs", "rosbag2_py", "rosidl_runtime_py", "composition_interfaces"),
-        *("lifecycle_msgs", "common_interfaces", "rclcpp_components", "teleop_twist_keyboard"),
+        *("example_interfaces", "action_tutorials_interfaces", "lifecycle_msgs"),
+        *("common_interfaces", "rclcpp_components", "teleop_twist_keyboard"),
         *("teleop_twist_joy", "joy", "demo_nodes_cpp", "demo_nodes_py", "rqt_graph", "rqt_gui"),
     )
 )

@@ -21,7 +21,7 @@ import random
 import stat
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -122,7 +122,9 @@ class Confinement:
     copy: Path
 
 
-def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> Confinement:
+def prepare(
+    level: Level, submission: Path, folder: Path, *, is_apart: bool, more: Sequence[Path] = ()
+) -> Confinement:
     """Prepare a submission's confinement in a run, with the copy that this run may write into.
 
     At `namespaces` the process makes that copy itself, in memory, under the same path. Elsewhere it
@@ -132,12 +134,13 @@ def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> 
         submission: all of it, without symbolic links in its path; it is only read.
         folder: that of the run; `tmp` is in it.
         is_apart: whether the run has a network of its own.
+        more: folders that this process may read besides.
     """
     uid, user, copy, written = random.choice(USERS), level.user, submission, "/tmp"
     if level.level != NAMESPACES:
         copy, written = folder / "submission" / submission.name, str(folder / "tmp")
         copy.mkdir(parents=True)
-        if user == SEPARATE and not _is_reachable(copy):
+        if user == SEPARATE and not all(map(_is_reachable, (copy, *more))):
             user = SAME
     owner = uid if user == SEPARATE else -1
     if level.level != NAMESPACES:
@@ -147,10 +150,10 @@ def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> 
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
     order["rlimits"] = rlimits(is_alone=user != SAME)
     if level.level == NAMESPACES:
-        order["steps"] = view.steps(submission, uid, owner)
+        order["steps"] = view.steps(submission, uid, owner, more)
     elif level.level == LANDLOCK:
         settings = [str(path) for path in folder.glob("*.xml")]
-        read, listed = view.readable(copy)
+        read, listed = view.readable(copy, more)
         write = [written, str(copy), *DEVICES]
         order |= {"read": [*read, *settings], "listed": listed, "write": write}
         if user == SEPARATE:

@@ -23,7 +23,7 @@ import os
 import site
 import sys
 import sysconfig
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path, PurePosixPath
@@ -112,12 +112,16 @@ def system_view() -> SystemView:
     return SystemView(frozenset(outer), frozenset(hidden), frozenset(host), links)
 
 
-def readable(submission: Path) -> tuple[list[str], list[str]]:
+def readable(submission: Path, more: Sequence[Path] = ()) -> tuple[list[str], list[str]]:
     """Return, for `.landlock`, what may be read and run, and folders whose names may be listed.
 
     The latter are only partly readable, and Python searches them for modules.
+
+    Args:
+        more: folders that this process sees beside it.
     """
     found, listed = map(list, _always_readable())
+    found += [real for path in more for real in _follow(str(path), {})]
     for real in _follow(str(submission), {}):
         found += _without(real, system_view().hidden - {real}, listed)
     return found, listed
@@ -151,18 +155,20 @@ def _without(path: str, hidden: Collection[str], listed: list[str]) -> Iterator[
                 yield from _without(entry.path, hidden, listed)
 
 
-def steps(submission: Path, uid: int, owner: int = -1) -> list[Step]:
+def steps(submission: Path, uid: int, owner: int = -1, more: Sequence[Path] = ()) -> list[Step]:
     """Return, for `.filesystem`, the root of a process that runs this submission as this user.
 
     Args:
         submission: all of it; a writable copy comes into the new root.
         owner: the user that is to own the copy; -1: the process's user.
+        more: folders that this process sees beside it.
     """
     always = system_view()
     links = always.links | LINKS
     copied = set(_follow(str(submission), links))
     wanted = dict.fromkeys(always.hidden, "hide")
-    wanted |= dict.fromkeys((*always.shown, *always.host), "bind")
+    seen = (real for path in more for real in _follow(str(path), links))
+    wanted |= dict.fromkeys((*always.shown, *always.host, *seen), "bind")
     wanted |= dict.fromkeys(copied, "copy")
     wanted |= {f"/dev/{name}": "bind" for name in DEVICES if os.path.exists(f"/dev/{name}")}
     wanted |= {"/proc": "proc", **dict.fromkeys(SCRATCH, "scratch")}

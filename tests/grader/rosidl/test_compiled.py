@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
 import random
-import shutil
 from importlib import metadata
 from pathlib import Path
 
 import pytest
 from ament_index_python import get_search_paths
-from setuptools import Distribution
 
+from grader.rosidl import building
 from grader.rosidl.cdr import installed
 from grader.rosidl.definitions import Definitions, slot_of
-from interfaces import build
+from grader.run import compiling
 from tests.grader.rosidl.comparing import differences
 from tests.grader.rosidl.drawing import package
 
@@ -23,8 +21,6 @@ KINDS = ("msg", "srv", "action")
 pytestmark = [
     # other releases write classes a little differently
     pytest.mark.applies(metadata.version("rclpy").startswith("7."), reason="Jazzy's"),
-    # the build forks; a worker of pytest-xdist has a thread
-    pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning"),
 ]
 
 
@@ -73,31 +69,13 @@ def test_made_classes_are_as_those_that_are_installed(name):
 
 
 @pytest.mark.more("minutes to compile")
-@pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="nothing is built there")
 @pytest.mark.timeout(1200)
 @pytest.mark.parametrize("number", range(5))
 def test_made_classes_are_as_those_that_are_compiled(number, tmp_path, monkeypatch):
     """100 definitions that are drawn."""
     name = f"drawn_{number}"
     texts = package(random.Random(number), name, 100)
-    compile_package(name, texts, tmp_path, monkeypatch)
-    compare(texts, [tmp_path / "temporary" / "rosidl" / name / "share"])
-
-
-def compile_package(name: str, texts: dict[str, str], folder: Path, monkeypatch) -> None:
-    """Build a package of interfaces as those of the project are, and make it importable."""
-    root = folder / "interfaces"
-    for path, text in texts.items():
-        file = root / "packages" / f"{path}.{path.split('/')[1]}"
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
-    (root / "packages" / name / "package.xml").write_text("<package/>")
-    shutil.copyfile(build.HERE / "dispatch.c", root / "dispatch.c")
-    (folder / "pyproject.toml").touch()
-    monkeypatch.setattr(build, "HERE", root)
-    monkeypatch.setattr(build, "PACKAGES", {name: name})
-    command = build.BuildInterfaces(Distribution({"ext_modules": build.extensions()}))
-    command.build_lib, command.build_temp = str(folder / "built"), str(folder / "temporary")
-    command.ensure_finalized()
-    command.run()
-    monkeypatch.syspath_prepend(folder / "built")
+    built = compiling.Built(**building.build(texts, tmp_path / "place"))
+    compiling._keep(built, {name}, tmp_path / "kept")
+    monkeypatch.syspath_prepend(tmp_path / "kept")
+    compare(texts, [tmp_path / "place" / "generated" / "share"])

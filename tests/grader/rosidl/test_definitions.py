@@ -77,6 +77,7 @@ def test_services_and_actions_have_parts():
         ),
         ("int32 a__b", "`a__b` is no name here"),
         ("int32 class", "`class` is no name here"),
+        ("float64 long", "`long` is no name here"),
         ("int32 check_fields", "`check_fields` is no name here"),
         ("int32 fields_and_field_types", "is no name here"),
         (

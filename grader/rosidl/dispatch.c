@@ -3,7 +3,7 @@
  * ROS's own librosidl_typesupport_c opens a library "lib<package>__<type support>.so" for each
  * kind of type support, which must lie in LD_LIBRARY_PATH. Our extension module holds all kinds of
  * its package, so the symbol is looked up right here, in the same map that rosidl_typesupport_c
- * generates. build.py renames the two functions per package by macros, so that they never stand
+ * generates. building.py renames the two functions per package by macros, so that they never stand
  * in for ROS's own in the same process. */
 #define _GNU_SOURCE
 #include <dlfcn.h>

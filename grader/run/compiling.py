@@ -1,0 +1,199 @@
+"""Compiles interfaces for a run in real time, where DDS itself carries their messages.
+
+The generators of ROS and a compiler work in a process that is confined as a submission's is, and
+what it leaves is decoded strictly. It is kept for later runs, in a folder that submissions cannot
+write into; where nothing keeps them from it, for one run.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from importlib import metadata
+from pathlib import Path
+from typing import Final
+
+from grader import scratch, strict_json
+from grader.errors import GraderFailure
+from grader.message import NOTHING, msg
+from grader.recording.recording import OwnInterfaces
+from grader.removal import remove
+from grader.rosidl import compiler
+from grader.run import handover, run_context
+from grader.run.limits import CpuBudget
+from grader.run.run_context import RunContext
+from grader.run.sandbox.confinement import LANDLOCK, NAMESPACES
+from grader.submission.start import Submission, Whole
+
+#: The program that compiles.
+PROGRAM: Final = Path(compiler.__file__).with_name("building.py")
+#: Its processor time, and how long it may take on a busy machine [s].
+CPU_S, LONGEST_S = 120.0, 900.0
+#: What it leaves [bytes].
+BUILT_BYTES: Final = 32_000_000
+#: So many sets of interfaces are kept: those used last.
+MOST_KEPT: Final = 100
+#: Why nothing was run.
+NOT_COMPILED: Final = msg(
+    "in real time the interfaces of {packages} have to be compiled, and {why}. In virtual time "
+    "they need not: have one program graded, without --time real, and take out what virtual time "
+    "cannot follow, which a remark names"
+)
+UNLIKE: Final = msg(
+    "they are not the exercise's, so that DDS would take the messages of one for those of the "
+    "other: {difference}"
+)
+_MODULE: Final = re.compile(r"([a-z][a-z0-9_]*)/((msg|srv|action)/)?_*[a-z][a-z0-9_]*\.py")
+_lock: Final = threading.Lock()
+
+
+class NotCompiled(GraderFailure):
+    """Interfaces could not be compiled; the message says why nothing was run."""
+
+
+@dataclass(frozen=True)
+class Built:
+    """What the program leaves.
+
+    Attributes:
+        modules: a path -> the text of a module of Python.
+        library: the extension module of all packages, in Base64.
+    """
+
+    modules: Mapping[str, str]
+    library: str
+
+
+@dataclass(frozen=True)
+class Importable:
+    """What a process needs in order to import interfaces.
+
+    Attributes:
+        folders: those to be read, which Python searches first.
+        env: the environment variable that has it do so.
+    """
+
+    folders: tuple[Path, ...] = ()
+    env: Mapping[str, str] = field(default_factory=dict)
+
+
+def compile_all(
+    theirs: Mapping[str, str], own: OwnInterfaces, context: RunContext
+) -> tuple[Importable, Importable]:
+    """Return what the simulator's process needs in a run, and what the submission's.
+
+    Args:
+        theirs: the exercise's: a type, `my_interfaces/msg/Num` -> its definition.
+        own: the submission's.
+
+    Raises:
+        NotCompiled: there is no compiler, it fails, or the two would mistake each other's messages.
+        GraderFailure: its process could not be started.
+    """
+    found = []
+    try:
+        if unlike := next(iter(own.unlike.values()), NOTHING):
+            raise NotCompiled(UNLIKE.given(difference=unlike))
+        right = {name: text for name, text in own.texts.items() if name not in own.faults}
+        for texts in (theirs, right):
+            if texts:
+                place, rest = _compiled(texts, context), context.env.get("PYTHONPATH")
+                path = os.pathsep.join(filter(None, [str(place), rest]))
+                found.append(Importable((place,), {"PYTHONPATH": path}))
+            else:
+                found.append(Importable())
+    except NotCompiled as error:
+        names = sorted({name.partition("/")[0] for name in {**theirs, **own.texts}})
+        words = {"packages": ", ".join(names), "why": error.message}
+        raise NotCompiled(NOT_COMPILED.given(**words)) from error
+    return found[0], found[1]
+
+
+def _compiled(texts: Mapping[str, str], context: RunContext) -> Path:
+    """Return a folder with the packages of definitions, which nobody can change."""
+    if missing := compiler.missing():
+        raise NotCompiled("{names} is missing here", names=", ".join(missing))
+    is_apart = context.level.level in (NAMESPACES, LANDLOCK)
+    home = scratch.home() if is_apart else context.folder
+    facts = [sorted(texts.items()), context.isolation, *_versions()]
+    key = hashlib.sha256(json.dumps(facts).encode()).hexdigest()
+    place = home / f"interfaces-{key[:32]}"
+    with _lock:
+        if not place.is_dir():
+            _keep(_built(texts), {name.partition("/")[0] for name in texts}, place)
+    os.utime(place)
+    kept = sorted(home.glob("interfaces-*"), key=lambda each: each.stat().st_mtime)
+    for each in kept[:-MOST_KEPT]:
+        remove(each)
+    return place
+
+
+def _versions() -> list[str]:
+    """Return what the result depends on beside the definitions."""
+    command = [os.environ.get("CC", "gcc"), "--version"]
+    ours = [PROGRAM.read_text("utf-8"), PROGRAM.with_name("dispatch.c").read_text("utf-8")]
+    return [
+        *(subprocess.run(command, capture_output=True, text=True, check=False).stdout, *ours),
+        *(sys.version, metadata.version("numpy"), metadata.version("rosidl-generator-py")),
+        *(os.environ.get("ROS_DISTRO", ""), sys.prefix),
+    ]
+
+
+def _built(texts: Mapping[str, str]) -> Built:
+    """Compile definitions in a process of its own."""
+    with run_context.open_context(CpuBudget(CPU_S)) as context:
+        nothing = context.folder / "interfaces"
+        nothing.mkdir()
+        order = {"texts": dict(texts), "leaves": context.recording}
+        command = [sys.executable, str(PROGRAM), json.dumps(order)]
+        _, process = context.start(
+            Submission(nothing.name, nothing, Whole(), NOTHING),
+            *(lambda _: command, (context.recording,), {}),
+        )
+        with process.ended_at_exit(gently=False):
+            end = time.monotonic() + LONGEST_S
+            while process.poll() is None and time.monotonic() < end:
+                process.wait(0.5)
+            code = process.poll()
+        if code is None or process.excess:
+            raise NotCompiled(msg("that takes more time or memory than is allowed"))
+        if code:
+            lines = [line for line in process.output().splitlines() if "rror: " in line]
+            raise NotCompiled("the compiler says: {line}", line=lines[0][:300] if lines else code)
+        try:
+            data = handover.read_bounded(context.recording, BUILT_BYTES)
+            return strict_json.from_json(Built, json.loads(data), strict_json.OURS)
+        except (OSError, ValueError, RecursionError) as error:
+            raise NotCompiled(
+                "it left nothing that can be read: {why}", why=str(error)[:200]
+            ) from error
+
+
+def _keep(built: Built, packages: set[str], place: Path) -> None:
+    """Write what was built to a place, at once."""
+    with scratch.make_folder() as folder:
+        whole = folder / "built"
+        suffix = sysconfig.get_config_var("EXT_SUFFIX")
+        for path, text in built.modules.items():
+            found = _MODULE.fullmatch(path)
+            if found is None or found[1] not in packages:
+                raise NotCompiled("it left a module {path}", path=path[:100])
+            (whole / path).parent.mkdir(parents=True, exist_ok=True)
+            (whole / path).write_text(text, encoding="utf-8")
+        (whole / f"own{suffix}").write_bytes(base64.b64decode(built.library, validate=True))
+        for package in packages:
+            link = whole / package / f"{package}_s__rosidl_typesupport_c{suffix}"
+            link.symlink_to(f"../own{suffix}")
+        with suppress(OSError):  # another grader was first
+            whole.rename(place)

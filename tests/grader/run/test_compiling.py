@@ -1,0 +1,202 @@
+"""Interfaces compiled for a run in real time: what DDS carries, and who may touch it."""
+
+from __future__ import annotations
+
+import base64
+import os
+import random
+import sys
+from contextlib import contextmanager
+from dataclasses import replace
+from importlib import metadata
+
+import pytest
+
+from grader import scratch
+from grader.message import msg
+from grader.recording.recording import OwnInterfaces
+from grader.rosidl import compiler
+from grader.rosidl.cdr import installed
+from grader.rosidl.definitions import Definitions, slot_of
+from grader.run import compiling, real_time, run_context
+from grader.run.handover import Plan
+from grader.run.opening import open_submission
+from grader.run.processes import levels, network
+from grader.scenes.scene import Limits
+from tests import runs
+from tests.grader.rosidl.comparing import differences
+
+FOLDER = runs.SUBMISSIONS / "interfaces"
+PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=4))
+
+SENDS = """
+import os
+
+import demo_interfaces
+import rclpy
+from demo_interfaces.msg import Num
+
+folder = os.path.dirname(demo_interfaces.__path__[0])
+for path in (folder, f"{folder}/demo_interfaces", f"{folder}/demo_interfaces/msg"):
+    try:
+        open(f"{path}/__init__.py", "a").close()
+        print("written into", path)
+    except OSError as error:
+        print("refused")
+rclpy.init()
+node = rclpy.create_node("node")
+node.create_subscription(Num, "num", lambda num: print(num, flush=True), 10)
+publisher = node.create_publisher(Num, "num", 10)
+node.create_timer(0.2, lambda: publisher.publish(Num(num=[2.5], name="it")))
+rclpy.spin(node)
+"""
+NUM = OwnInterfaces({"demo_interfaces/msg/Num": "string<=4 name\nfloat64[<=3] num\n"})
+HEARD = "demo_interfaces.msg.Num(name='it', num=[2.5])"
+
+
+def run(path, interfaces=None, plan=PLAN):
+    with open_submission(path) as submission:
+        return real_time.run(
+            replace(submission, interfaces=interfaces or submission.interfaces), plan
+        )
+
+
+@pytest.fixture
+def sends(tmp_path):
+    path = tmp_path / "sends.py"
+    path.write_text(SENDS)
+    return path
+
+
+@contextmanager
+def at_level(level):
+    levels.only(level)
+    yield
+    levels.only("")
+
+
+def offered():
+    with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
+        return [level.level for level in levels.offered(isolated)]
+
+
+def test_dds_carries_messages_services_and_actions_of_ones_own():
+    recording = run(FOLDER / "workspace")
+    assert "The sum is 6" in recording.output  # a service's answer
+    assert "All: [0, 1, 1, 2, 3, 5, 8, 13]" in recording.output  # an action's result
+    assert recording.run.time == "real"
+    assert recording.run.outcome in ("finished", "time_limit")
+
+
+@pytest.mark.parametrize("level", levels.LEVELS)
+def test_at_each_level_they_can_be_imported_and_not_written_into(level, sends):
+    if level not in offered():
+        pytest.skip(f"no {level} here")
+    with at_level(level):
+        output = run(sends, NUM).output
+    assert HEARD in output
+    assert ("written into" in output) == (level == levels.LIMITS)
+
+
+def test_at_the_lowest_level_nothing_is_kept_for_another_run(sends):
+    before = set(scratch.home().glob("interfaces-*"))
+    with at_level(levels.LIMITS):
+        assert HEARD in run(sends, NUM).output
+    assert set(scratch.home().glob("interfaces-*")) == before
+
+
+def test_what_was_compiled_is_kept(sends, monkeypatch):
+    assert HEARD in run(sends, NUM).output
+    monkeypatch.setattr(compiling, "_built", None)
+    assert HEARD in run(sends, NUM).output
+
+
+def test_a_definition_with_a_mistake_leaves_the_others():
+    faults = {"demo_interfaces/msg/Bad": msg("it is wrong")}
+    interfaces = OwnInterfaces({**NUM.texts, "demo_interfaces/msg/Bad": "int count\n"}, faults)
+    with run_context.open_context() as context:
+        _, theirs = compiling.compile_all({}, interfaces, context)
+        (place,) = theirs.folders
+        assert sorted(each.name for each in (place / "demo_interfaces" / "msg").iterdir()) == [
+            "__init__.py",
+            "_num.py",
+        ]
+
+
+def test_without_a_compiler_nothing_is_judged_and_the_way_out_is_told(sends, monkeypatch):
+    monkeypatch.setattr(compiler, "missing", lambda: ["gcc", "Python.h of Python 3.12"])
+    recording = run(sends, NUM)
+    assert recording.run.outcome == "not_run"
+    (flag,) = recording.run.flags
+    assert str(flag) == (
+        "in real time the interfaces of demo_interfaces have to be compiled, and gcc, Python.h of "
+        "Python 3.12 is missing here. In virtual time they need not: have one program graded, "
+        "without --time real, and take out what virtual time cannot follow, which a remark names"
+    )
+
+
+def test_what_an_exercise_has_otherwise_is_not_judged(sends):
+    unlike = {"demo_interfaces/msg/Num": msg("Num.msg of demo_interfaces has `int8 num` where ...")}
+    recording = run(sends, replace(NUM, unlike=unlike))
+    assert recording.run.outcome == "not_run"
+    assert "take the messages of one for those of the other: Num.msg" in str(recording.run.flags[0])
+
+
+@pytest.mark.parametrize(
+    ("limit", "value", "told"),
+    [
+        ("CPU_S", 0.5, "that takes more time or memory than is allowed"),
+        ("LONGEST_S", 0.5, "that takes more time or memory than is allowed"),
+        ("BUILT_BYTES", 1000, "it left nothing that can be read: more than 1000 bytes"),
+    ],
+)
+def test_compiling_has_an_end(sends, monkeypatch, limit, value, told):
+    monkeypatch.setattr(compiling, limit, value)
+    unseen = OwnInterfaces({f"{limit.lower()}/msg/Num": "int8 num\n"})
+    recording = run(sends, unseen)
+    assert recording.run.outcome == "not_run"
+    assert told in str(recording.run.flags[0])
+
+
+@pytest.mark.parametrize("path", ["../x.py", "other/x.py", "demo/sub/x.py", "demo/x.pth", "demo/"])
+def test_what_is_left_in_another_place_is_refused(tmp_path, path):
+    built = compiling.Built({path: ""}, base64.b64encode(b"").decode())
+    with pytest.raises(compiling.NotCompiled, match="it left a module"):
+        compiling._keep(built, {"demo"}, tmp_path / "place")
+
+
+HOSTILE = r"""
+string A="\"; #include \"/etc/passwd\" //"
+string B='"; system(\"true\"); //'
+string C="??/??' %s %n {0} {{ @(1+1) $"
+string D='\\\' */ /* __attribute__((constructor))'
+string E="</verbatim> @verbatim(language=\"comment\", text=\"\")"
+wstring F="\" L\" é 雪"
+string attribute "\"; int main;"
+string main "'"
+string[] includes ["??/", "*/", "%s"]
+"""
+
+
+@pytest.mark.applies(metadata.version("rclpy").startswith("7."), reason="Jazzy's classes")
+def test_texts_names_and_comments_reach_the_compiler_as_nothing_else(monkeypatch):
+    text = HOSTILE.replace("#include", "include") + "int8 last # */ \" ' \\ ??/ #include <x>\n"
+    texts = {"hostile_interfaces/msg/Text": text}
+    with run_context.open_context() as context:
+        interfaces = OwnInterfaces(texts)
+        made = Definitions(texts)
+        assert not made.errors
+        _, theirs = compiling.compile_all({}, interfaces, context)
+    monkeypatch.syspath_prepend(str(theirs.folders[0]))
+    name = "hostile_interfaces/msg/Text"
+    real = installed(slot_of(name))
+    found = list(differences(real, made.type(name), random.Random(1), set()))
+    assert not found, found[:5]
+
+
+def test_the_import_path_of_ros_stays(tmp_path):
+    with run_context.open_context() as context:
+        there = replace(context, env={**context.env, "PYTHONPATH": "/opt/ros/x"})
+        _, theirs = compiling.compile_all({}, NUM, there)
+    assert theirs.env["PYTHONPATH"].split(os.pathsep)[1:] == ["/opt/ros/x"]
+    assert sys.path
