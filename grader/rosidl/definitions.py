@@ -9,7 +9,7 @@ from __future__ import annotations
 import array
 import ast
 import codecs
-import importlib.abc
+import importlib
 import importlib.machinery
 import json
 import keyword
@@ -21,7 +21,7 @@ from collections.abc import Mapping, Set
 from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 import rosidl_adapter.parser as adapter
@@ -73,7 +73,7 @@ _BASIC: Final = {
 _ESCAPES: Final = re.compile(r"\\[ntvbrfa\\'\"]|\\[0-7]{1,3}|\\x[0-9a-fA-F]{2}")
 
 
-class Definitions(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+class Definitions:
     """The classes of definitions; at the end of `sys.meta_path`, programs can import them.
 
     A definition with a mistake is left out, and what needs it. To import it is an ImportError that
@@ -167,7 +167,10 @@ class Definitions(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         if fullname not in self._modules:
             return None
         is_package = fullname.count(".") < 2
-        return importlib.machinery.ModuleSpec(fullname, self, is_package=is_package)
+        return importlib.machinery.ModuleSpec(fullname, cast("Any", self), is_package=is_package)
+
+    def create_module(self, spec: Any) -> None:
+        """Leave that to Python."""
 
     def exec_module(self, module: ModuleType) -> None:
         """Fill a module with its classes; `my_interfaces.msg`, when they are asked for."""

@@ -63,19 +63,6 @@ class NotCompiled(GraderFailure):
 
 
 @dataclass(frozen=True)
-class Built:
-    """What the program leaves.
-
-    Attributes:
-        modules: a path -> the text of a module of Python.
-        library: the extension module of all packages, in Base64.
-    """
-
-    modules: Mapping[str, str]
-    library: str
-
-
-@dataclass(frozen=True)
 class Importable:
     """What a process needs in order to import interfaces.
 
@@ -150,8 +137,8 @@ def _versions() -> list[str]:
     ]
 
 
-def _built(texts: Mapping[str, str]) -> Built:
-    """Compile definitions in a process of its own."""
+def _built(texts: Mapping[str, str]) -> dict[str, str]:
+    """Compile definitions in a process of its own; return what it leaves."""
     with run_context.open_context(CpuBudget(CPU_S)) as context:
         nothing = context.folder / "interfaces"
         nothing.mkdir()
@@ -173,25 +160,26 @@ def _built(texts: Mapping[str, str]) -> Built:
             raise NotCompiled("the compiler says: {line}", line=lines[0][:300] if lines else code)
         try:
             data = handover.read_bounded(context.recording, BUILT_BYTES)
-            return strict_json.from_json(Built, json.loads(data), strict_json.OURS)
+            return strict_json.from_json(dict[str, str], json.loads(data), strict_json.OURS)
         except (OSError, ValueError, RecursionError) as error:
             raise NotCompiled(
                 "it left nothing that can be read: {why}", why=str(error)[:200]
             ) from error
 
 
-def _keep(built: Built, packages: set[str], place: Path) -> None:
+def _keep(built: dict[str, str], packages: set[str], place: Path) -> None:
     """Write what was built to a place, at once."""
     with scratch.make_folder() as folder:
         whole = folder / "built"
         suffix = sysconfig.get_config_var("EXT_SUFFIX")
-        for path, text in built.modules.items():
+        library = base64.b64decode(built.pop("", ""), validate=True)
+        for path, text in built.items():
             found = _MODULE.fullmatch(path)
             if found is None or found[1] not in packages:
                 raise NotCompiled("it left a module {path}", path=path[:100])
             (whole / path).parent.mkdir(parents=True, exist_ok=True)
             (whole / path).write_text(text, encoding="utf-8")
-        (whole / f"own{suffix}").write_bytes(base64.b64decode(built.library, validate=True))
+        (whole / f"own{suffix}").write_bytes(library)
         for package in packages:
             link = whole / package / f"{package}_s__rosidl_typesupport_c{suffix}"
             link.symlink_to(f"../own{suffix}")

@@ -75,7 +75,7 @@ def test_made_classes_are_as_those_that_are_compiled(number, tmp_path, monkeypat
     """100 definitions that are drawn."""
     name = f"drawn_{number}"
     texts = package(random.Random(number), name, 100)
-    built = compiling.Built(**building.build(texts, tmp_path / "place"))
+    built = building.build(texts, tmp_path / "place")
     compiling._keep(built, {name}, tmp_path / "kept")
     monkeypatch.syspath_prepend(tmp_path / "kept")
     compare(texts, [tmp_path / "place" / "generated" / "share"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import os
 import random
 import sys
@@ -99,10 +98,11 @@ def test_at_each_level_they_can_be_imported_and_not_written_into(level, sends):
 
 
 def test_at_the_lowest_level_nothing_is_kept_for_another_run(sends):
-    before = set(scratch.home().glob("interfaces-*"))
+    sends.write_text(SENDS.replace("demo_interfaces", "lowest_interfaces"))
+    texts = {"lowest_interfaces/msg/Num": NUM.texts["demo_interfaces/msg/Num"]}
     with at_level(levels.LIMITS):
-        assert HEARD in run(sends, NUM).output
-    assert set(scratch.home().glob("interfaces-*")) == before
+        assert HEARD.replace("demo", "lowest") in run(sends, OwnInterfaces(texts)).output
+    assert not list(scratch.home().glob("interfaces-*/lowest_interfaces"))
 
 
 def test_what_was_compiled_is_kept(sends, monkeypatch):
@@ -160,9 +160,8 @@ def test_compiling_has_an_end(sends, monkeypatch, limit, value, told):
 
 @pytest.mark.parametrize("path", ["../x.py", "other/x.py", "demo/sub/x.py", "demo/x.pth", "demo/"])
 def test_what_is_left_in_another_place_is_refused(tmp_path, path):
-    built = compiling.Built({path: ""}, base64.b64encode(b"").decode())
     with pytest.raises(compiling.NotCompiled, match="it left a module"):
-        compiling._keep(built, {"demo"}, tmp_path / "place")
+        compiling._keep({path: ""}, {"demo"}, tmp_path / "place")
 
 
 HOSTILE = r"""
