@@ -99,7 +99,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"grader.inspection.examining.known"}
     | below("grader", "recording.observations", "recording.recording", "rosidl.definitions"),
     "grader.run": GROUND
-    | below("grader", "submission", "recording", "scenes", "inspection", "run"),
+    | below("grader", "submission", "recording", "scenes", "inspection", "run", "rosidl.compiler"),
     "grader.run.limits": {"grader.message"},
     "grader.run.sandbox": GROUND | {"grader.run.limits"},
     "grader.run.processes": GROUND | below("grader.run", "limits", "sandbox"),
