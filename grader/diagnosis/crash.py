@@ -159,6 +159,10 @@ def _wanted(
     text = place.text if place is not None else ""
     literal = re.search(rf"\b{field}\s*=\s*([-+]?\d{{1,20}}(?:\.\d{{0,20}})?)(?![\w.])", text)
     number = literal[1] if literal else excerpt(number)
+    if (size := re.search(r"sequence with length (?:<= )?(\d{1,9})", what)) is not None:
+        is_most = "<=" in size[0]
+        listed = msg("a list of at most {n} values") if is_most else msg("a list of {n} values")
+        return listed.given(n=size[1]), msg("Look at how many there are, and at each of them.")
     if limits := _RANGE.search(what):
         low, high = limits.groups()
         return (

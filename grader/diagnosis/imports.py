@@ -70,6 +70,10 @@ def not_importable(case: Case) -> Diagnosis | None:
     return Diagnosis("not_importable", cause, help_, place=raised.place)
 
 
+#: In sentences about what is too large here, and not for colcon.
+_OUR_LIMITS = ("makes messages too large", "found more than", "characters in all are used")
+
+
 def _better(text: str) -> Message | None:
     """Return what to import instead, or that the module is not installed."""
     if _ROS_1.search(text):
@@ -135,7 +139,12 @@ def _not_generated(case: Case, raised: Raised) -> Diagnosis | None:
     help_ = msg("Write `from {m} import {n}`.", **values)
     if why:
         cause = msg("Your program cannot import {m}.{n}{where}: {why}", **values, why=why)
-        help_ = msg("`colcon build` refuses it, too: build your packages before you hand them in.")
+        is_ours = any(limit in str(why) for limit in _OUR_LIMITS)
+        help_ = msg("Make them shorter, or fewer.")
+        if not is_ours:
+            help_ = msg(
+                "`colcon build` refuses it, too: build your packages before you hand them in."
+            )
     elif near and word == near:
         cause = msg("Your program cannot import {m}.{n}{where}.", **values)
     elif not near:

@@ -138,7 +138,7 @@ def _message(message: idl.Message, find: Find) -> tuple[dict[str, Any], dict[str
         "__slots__": [*(f"_{name}" for name in fields), "_check_fields"],
         "_fields_and_field_types": {name: described(slot) for name, slot in fields.items()},
         "SLOT_TYPES": tuple(fields.values()),
-        "__init__": _constructor(firsts),
+        "__init__": _constructor(message.structure.namespaced_type.name, firsts),
         "__repr__": _repr,
         "__eq__": _equal,
         "get_fields_and_field_types": classmethod(lambda cls: copy(cls._fields_and_field_types)),
@@ -172,7 +172,7 @@ def _python_type(value: Any) -> Any:
     return str if is_text else _PYTHON.get(value.typename, int)
 
 
-def _constructor(firsts: list[tuple[str, Any, str | None]]) -> Callable[..., None]:
+def _constructor(name: str, firsts: list[tuple[str, Any, str | None]]) -> Callable[..., None]:
     """Return `__init__`, by each field's name, what makes its value, and its array's code."""
     are_checked = os.getenv("ROS_PYTHON_CHECK_FIELDS", "") == "1"
 
@@ -185,6 +185,7 @@ def _constructor(firsts: list[tuple[str, Any, str | None]]) -> Callable[..., Non
             value = kwargs[name] if name in kwargs else first()
             setattr(self, name, array.array(code, value) if code else value)
 
+    construct.__name__, construct.__qualname__ = "__init__", f"{name}.__init__"
     return construct
 
 

@@ -58,6 +58,13 @@ _OF_C: Final = (
     *("short", "signed", "sizeof", "static", "struct", "switch", "template", "this", "throw"),
     *("typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile"),
 )
+#: Packages whose types stand in a definition without them; types of other languages.
+_USUAL: Final = ("std_msgs", "geometry_msgs", "sensor_msgs", "builtin_interfaces", "nav_msgs")
+_MEANT: Final = {
+    **{"double": "float64", "float": "float32 or float64", "int": "int32 or int64"},
+    **{"boolean": "bool", "str": "string", "text": "string", "list": "float64[] or such"},
+    **{"long": "int64", "unsigned": "uint32", "integer": "int32"},
+}
 #: What stands between a file's lines of ---.
 _PARTS: Final = {
     "msg": ("",),
@@ -89,6 +96,8 @@ class Definitions:
 
     def __init__(self, texts: Mapping[str, str]) -> None:
         self.errors: dict[str, SubmissionError] = {}
+        #: of those whose mistake is another's: that one
+        self._roots: dict[str, Message] = {}
         self._elements: dict[str, Any] = {}
         self._classes: dict[str, Mapping[str, Any]] = {}
         #: size of a message before anything is assigned, how many messages are within each other
@@ -221,6 +230,8 @@ class Definitions:
             except SubmissionError as error:
                 line = field.get_annotation_value("line")
                 self.errors[name] = mistake(name, line, error.message)
+                if isinstance(root := error.message.values.get("why"), Message):
+                    self._roots[name] = root
                 raise self.errors[name] from None
         self._extents[name] = size, deep
         return size, deep
@@ -236,10 +247,18 @@ class Definitions:
             try:
                 return self._extent(name, within) if len(within) < DEEPEST else (VALUE, DEEPEST)
             except SubmissionError:
-                what = msg("`{type}` has a mistake itself. Correct that first.", type=shown)
+                why = self._roots.get(name, self.errors[name].message)
+                what = msg("`{type}` has a mistake itself: {why}", type=shown, why=why)
                 raise SubmissionError(what) from None
         if _is_installed(slot):
             return INSTALLED, 1
+        title = name.rpartition("/")[2]
+        for package in _USUAL:
+            if _is_installed(idl.NamespacedType([package, "msg"], title)):
+                meant = f"{package}/{title}"
+                raise SubmissionError(
+                    "`{type}` is not known. Write {meant}.", type=shown, meant=meant
+                )
         raise SubmissionError(
             "`{type}` is not known. Check its name; a type of another package is written as "
             "geometry_msgs/Point.",
@@ -303,6 +322,9 @@ def parse(name: str, text: str) -> Any:
         )
         raise mistake(name, 0, what)
     package, kind, _ = named.groups()
+    if text.startswith("\ufeff"):
+        what = msg("it begins with a mark that nobody sees (BOM). Save it as UTF-8 without one.")
+        raise mistake(name, 1, what)
     lines, ends = text.splitlines(), _PARTS[kind]
     if lines.count("---") != len(ends) - 1:
         what = msg(
@@ -340,12 +362,25 @@ def _parse_line(package: str, line: str, taken: Set[str]) -> Any:
         what = msg("found `{line}`, expected a type and a name: int32 count.", line=line[:80])
         raise SubmissionError(what)
     pattern, example = (_CONSTANT, "MAX_SPEED") if is_constant else (_NAME, "max_speed")
-    if not pattern.fullmatch(name) or keyword.iskeyword(name) or name in {*_TAKEN, *_OF_C, *taken}:
+    if is_constant and _NAME.fullmatch(name):
         raise SubmissionError(
-            "`{name}` is no name here, or is taken. A name is written as {example}, and is no word "
-            "of Python or C++.",
+            "`{line}` has a = between name and default: write {right}. A constant's name is "
+            "written as MAX_SPEED.",
+            **{"line": line[:80], "right": f"{kind} {name} {value}"[:80]},
+        )
+    if name in taken:
+        raise SubmissionError("`{name}` is there twice. Give one another name.", name=name[:80])
+    if keyword.iskeyword(name) or name in {*_TAKEN, *_OF_C}:
+        raise SubmissionError(
+            "`{name}` is a word of Python, C++ or ROS itself. Give it another name.", name=name[:80]
+        )
+    if not pattern.fullmatch(name):
+        raise SubmissionError(
+            "`{name}` is no name here. A name is written as {example}.",
             **{"name": name[:80], "example": example},
         )
+    if meant := _MEANT.get(kind.partition("[")[0]):
+        raise SubmissionError("`{kind}` is no type. Write {meant}.", kind=kind[:80], meant=meant)
     try:
         if is_constant:
             constant = adapter.Constant(kind, name, value)

@@ -7,6 +7,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 from itertools import takewhile, zip_longest
 from pathlib import Path, PurePath
 from typing import Final, NamedTuple
@@ -37,6 +38,8 @@ _USED: Final = re.compile(r"^[ \t]*([a-z]\w{0,100})/", re.MULTILINE)
 _CONSTANT: Final = re.compile(r"\S+ \w+ ?=")
 #: In a word of CMake's with a variable that nobody knows here: it may be any.
 _UNKNOWN: Final = "${"
+#: colcon passes by a folder with this file.
+_IGNORE: Final = "COLCON_IGNORE"
 _TWICE: Final = msg(
     "two packages are called {name}: {places}, and colcon builds neither. Remove one of them."
 )
@@ -57,25 +60,28 @@ def find_interfaces(
     packages = {folder: _read(submitted, folder) for folder in dict.fromkeys(places.values())}
     texts, faults = dict[str, str](), dict[str, Message]()
     notes, left = list[Message](), LONGEST
+    words = {"most": MOST, "n": LONGEST}
+    many = msg("of its interfaces {most} with {n:,} characters in all are used.", **words)
     for file, folder in places.items():
         package = packages[folder]
         if package.name in _OF_ROS:
             continue
         submitted.must_hold(file)
-        text = (read_bounded(file) or b"").decode("utf-8", "replace")
+        called, data = submitted.called(file), read_bounded(file)
+        text = (data or b"").decode("utf-8", "replace")
         left -= len(json.dumps(text))
-        if left < 0 or len(texts) + len(faults) >= MOST:
-            words = {"most": MOST, "n": LONGEST}
-            notes.append(msg("Of its interfaces {most} with {n:,} characters are used", **words))
-            break
         name = f"{package.name}/{file.suffix[1:]}/{file.stem}"
         path = file.relative_to(folder)
         same = [submitted.called(each) for each in packages if packages[each].name == package.name]
         twice = (
             _TWICE.given(name=package.name, places=", ".join(same)) if len(same) > 1 else NOTHING
         )
-        if fault := package.fault or twice or _lack(package, path, submitted.called(file), text):
+        if data is None or left < 0 or len(texts) + len(faults) >= MOST:
+            faults[name] = many
+        elif fault := package.fault or twice or _lack(package, path, called, text):
             faults[name] = fault
+        elif text.encode() != data:
+            faults[name] = msg("{file} is not UTF-8: save it as UTF-8.", file=called)
         else:
             texts[name] = text
             notes += undeclared(folder / FILE, {*_USED.findall(text), _RUNTIME})
@@ -151,20 +157,31 @@ def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
     read = cmake.read(folder)
     parts: dict[str, list[str]] = defaultdict(list)
     part = ""
-    for word in (word for call in read.calls if call[0] == _GENERATE for word in ["", *call[2:]]):
+    asked = [call for call in read.calls if call[0] == _GENERATE]
+    for word in (word for call in asked for word in ["", *call[2:]]):
         part = word if word in ("", "DEPENDENCIES", *_OPTIONS) else part
-        parts[part].append(word)
-    listed, needed = parts[""][1:], parts["DEPENDENCIES"][1:]
+        parts[part] += [word] * (word != part)
+    listed, needed = parts[""], parts["DEPENDENCIES"]
+    commands = [call[0] for call in read.calls]
     found = [call[1] for call in read.calls if call[0] == "find_package" and call[1:]]
+    finds_all = _UNKNOWN in " ".join(found) or "ament_auto_find_build_dependencies" in commands
     known = [each for each in listed if each and _UNKNOWN not in each]
     absent = next((each for each in known if not (folder / each).is_file()), "")
+    absolute = next((each for each in known if each.startswith(("./", "/"))), "")
+    target = next((call[1] for call in asked if call[1:]), "")
+    is_late = "ament_package" in commands[: commands.index(_GENERATE)] if asked else False
     lines = [
         (file, f"project({name})", read.project == name),
-        (file, f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', bool(parts[""])),
-        *((file, f"find_package({each} REQUIRED)", each in found) for each in (*needed, _MAKERS)),
+        (file, f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', bool(asked)),
+        (file, f"${{PROJECT_NAME}} in {_GENERATE}()", target == name or "LIBRARY_NAME" in parts),
+        *(
+            (file, f"find_package({each} REQUIRED)", finds_all or each in found)
+            for each in (*needed, _MAKERS)
+        ),
         (setup, "<{0}>{1}</{0}>".format(*_GROUP), _GROUP in manifest.elements),
     ]
-    words = {"file": file, "setup": setup, "name": name, "path": shown(absent)}
+    words = {"file": file, "setup": setup, "name": name, "call": f"{_GENERATE}()"}
+    words["path"] = shown((absolute or absent).removeprefix("./"))
     both = ["ament_python_install_package", name]
     twice = msg(
         "{file} makes a package of Python's and one of interfaces, both called {name}, which "
@@ -172,14 +189,44 @@ def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
         **words,
     )
     unlisted = msg("{file} lists {path}, and there is no such file. Correct its name.", **words)
+    names = sorted(each.name for each in (folder / absent).parent.glob("*")) if absent else []
+    near = next(iter(get_close_matches(PurePath(absent).name, names, 1)), "")
+    if near:
+        unlisted = msg(
+            "{file} lists {path}, and there is no such file, only {near}. Correct the name.",
+            **words,
+            near=shown(near),
+        )
+    above = next((each for each in folder.parents if _is_hidden(each, submitted.base)), None)
+    elsewhere = msg(
+        "colcon does not look into {place}. Move the package {name} beside the others, below src/.",
+        **words,
+        place=submitted.called(above or folder),
+    )
+    as_path = msg(
+        '{file} lists the absolute path of {path}: write "{short}", or, in file(GLOB), RELATIVE '
+        "${{CMAKE_CURRENT_SOURCE_DIR}}.",
+        **words,
+        short=absolute.removeprefix("./"),
+    )
+    late = msg("{file} calls ament_package() before {call}: it has to be last.", **words)
     faults = [
+        (above is not None or (folder / _IGNORE).exists(), elsewhere),
         (manifest.fault, msg("{setup} {fault}. Correct it.", **words, fault=manifest.fault)),
         (both in [call[:2] for call in read.calls], twice),
         *((not is_in, _LACKS.given(file=f, line=shown(x), what=name)) for f, x, is_in in lines),
+        (is_late, late),
+        (absolute, as_path),
         (absent, unlisted),
     ]
     why = next((why for is_so, why in faults if is_so), NOTHING)
     return _Package(name, file, why, listed, needed)
+
+
+def _is_hidden(folder: Path, base: Path) -> bool:
+    """Whether colcon looks for no package below a folder of a hand-in: it is one itself."""
+    marks = (FILE, _IGNORE)
+    return folder.is_relative_to(base) and any((folder / mark).is_file() for mark in marks)
 
 
 def _lack(package: _Package, path: PurePath, called: str, text: str) -> Message:

@@ -18,7 +18,10 @@ from grader.inspection.trace import Obstacle
 from grader.message import msg
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
-_KEPT = ("find_package", "rosidl_generate_interfaces", "ament_python_install_package")
+_KEPT = (
+    *("find_package", "rosidl_generate_interfaces", "ament_python_install_package"),
+    *("ament_package", "ament_auto_find_build_dependencies"),
+)
 _COMMAND = re.compile(
     rf"\b(project|set|list|file|install|{'|'.join(_KEPT)})\s*\(([^()]*)\)|\b(if|endif)\s*\(", re.I
 )
@@ -109,18 +112,20 @@ def _follow(
 def _unrolled(text: str) -> str:
     """A text with its loops over words, and over lists of words, written out."""
 
+    def listed(variable: str) -> list[str]:
+        found = re.search(rf"\bset\s*\(\s*{re.escape(variable)}\s([^()]*)\)", text)
+        return found[1].split() if found else []
+
     def written_out(loop: re.Match[str]) -> str:
         name, *items = loop[1].split() or [""]
         kind = [each.upper() for each in items[:2]]
         if kind[:1] == ["RANGE"]:
             return ""
         if kind == ["IN", "LISTS"]:
-            lists = [
-                re.search(rf"\bset\s*\(\s*{re.escape(n)}\s([^()]*)\)", text) for n in items[2:]
-            ]
-            items = [word for each in lists if each for word in each[1].split()]
-        elif kind == ["IN", "ITEMS"]:
-            items = items[2:]
+            items = [word for each in items[2:] for word in listed(each)]
+        else:
+            items = items[2:] if kind == ["IN", "ITEMS"] else items
+            items = [word for each in items for word in listed(each[2:-1]) or [each]]
         return "\n".join(loop[2].replace(f"${{{name}}}", each) for each in items[:100])
 
     for _ in range(5):
@@ -129,9 +134,14 @@ def _unrolled(text: str) -> str:
 
 
 def _globbed(folder: Path, words: list[str]) -> list[str]:
-    """The files that patterns match: `*` within a name; of GLOB_RECURSE in folders below, too."""
+    """The files that patterns match: `*` within a name; of GLOB_RECURSE in folders below, too.
+
+    Without RELATIVE they are absolute paths, as ${CMAKE_CURRENT_SOURCE_DIR} is: ./NAME here.
+    """
     patterns = [each for each in words[2:] if each.upper() != "CONFIGURE_DEPENDS"]
+    here = "./"
     if patterns[:1] == ["RELATIVE"]:
+        here = ""
         if patterns[1:2] != ["."]:
             return []
         patterns = patterns[2:]
@@ -146,7 +156,7 @@ def _globbed(folder: Path, words: list[str]) -> list[str]:
             if words[0].upper() == "GLOB_RECURSE" and len(whole) > len(parts):
                 whole = [*whole[: len(parts) - 1], whole[-1]]
             if len(whole) == len(parts) and all(map(fnmatch.fnmatchcase, whole, parts)):
-                found.add(name)
+                found.add(here + name)
     return sorted(found)
 
 

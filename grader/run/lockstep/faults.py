@@ -21,6 +21,8 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 #: The folder of all our code that runs in a submission's process.
 OURS = str(Path(__file__).parents[1])
+#: That of the classes of a hand-in's messages, whose exceptions are the program's.
+_MESSAGES = str(Path(__file__).parents[2] / "rosidl")
 #: What loads a submission's program, in real time too.
 _LOADER = str(Path(OURS) / "student" / "loading.py")
 #: What depends on how much a program has used up, not on whose line is the last.
@@ -122,7 +124,7 @@ def _without_our_frames(trace: TracebackType | None) -> TracebackType | None:
     frames: list[TracebackType] = []
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename
-        if not is_ours(file) and (frames or not is_loader(file)):
+        if not file.startswith((OURS, _MESSAGES)) and (frames or not is_loader(file)):
             frames.append(trace)
         trace = trace.tb_next
     rest: TracebackType | None = None

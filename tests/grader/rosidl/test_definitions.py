@@ -73,19 +73,23 @@ def test_services_and_actions_have_parts():
         (" int8 a", "line 1: found ` int8 a`, expected a type and a name"),
         (
             "int32 Speed",
-            "`Speed` is no name here, or is taken. A name is written as max",
+            "`Speed` is no name here. A name is written as max",
         ),
         ("int32 a__b", "`a__b` is no name here"),
-        ("int32 class", "`class` is no name here"),
-        ("float64 long", "`long` is no name here"),
-        ("int32 check_fields", "`check_fields` is no name here"),
-        ("int32 fields_and_field_types", "is no name here"),
+        ("int32 class", "`class` is a word of Python, C++ or ROS itself"),
+        ("float64 long", "`long` is a word of Python, C++ or ROS itself"),
+        ("int32 check_fields", "`check_fields` is a word of Python, C++ or ROS itself"),
+        ("int32 fields_and_field_types", "is a word of Python, C++ or ROS itself"),
+        ("int64 a = 5", "`int64 a = 5` has a = between name and default: write int64 a 5."),
+        ("double a", "`double` is no type. Write float64."),
+        ("int[] a", "`int[]` is no type. Write int32 or int64."),
+        ("\ufeffint8 a", "line 1: it begins with a mark that nobody sees (BOM)"),
         (
             "int32 speed=5",
-            "`speed` is no name here, or is taken. A name is written as MAX",
+            "`int32 speed=5` has a = between name and default",
         ),
         ("Num A=5", "the constant type 'Num' must be a primitive type"),
-        ("int32 a\nfloat32 a", "line 2: `a` is no name here, or is taken"),
+        ("int32 a\nfloat32 a", "line 2: `a` is there twice"),
         ("int8 a 128", "value '128' can not be converted to type 'int8': must be a valid integer"),
         ("bool b yes", "must be either 'true' / '1' or 'false' / '0'"),
         ("float32 f nan", "expected a number"),
@@ -213,7 +217,10 @@ def test_types_of_other_packages_are_those_that_are_installed():
 
 
 def test_an_unknown_type_is_told():
-    assert "line 2: `mine/Header` is not known" in errors(A="int8 a\nHeader h")["A"]
+    assert (
+        "line 2: `mine/Header` is not known. Write std_msgs/Header."
+        in errors(A="int8 a\nHeader h")["A"]
+    )
     assert "`std_msgs/Nothing` is not known" in errors(A="std_msgs/Nothing h")["A"]
     # nothing is imported to look for it
     assert "is not known" in errors(A="antigravity/Nothing h")["A"]

@@ -66,16 +66,98 @@ def test_a_copy_of_a_package_of_ros_is_none(tmp_path):
 def test_they_are_bounded_in_number_and_length(tmp_path, count, each):
     text = f"int8 num\n{'# more' * (each // 6)}\n"
     package(tmp_path / "mine", {f"N{n:03}": text for n in range(count)})
-    found, notes = read(tmp_path)
-    assert len(found.texts) < count
+    found, _ = read(tmp_path)
+    assert len(found.texts) < count == len(found.texts) + len(found.faults)
     assert sum(map(len, found.texts.values())) <= 40_000
-    assert "Of its interfaces 100 with 40,000 characters are used" in notes
+    why = {str(fault) for fault in found.faults.values()}
+    assert why == {"of its interfaces 100 with 40,000 characters in all are used."}
 
 
-def test_a_file_that_is_no_text_is_a_mistake_in_its_line(tmp_path):
+def test_a_file_that_is_too_long_is_not_taken_for_an_empty_one(tmp_path):
+    package(tmp_path / "mine", {"Num": f"{'# more' * 500_000}\nint8 num\n"})
+    assert "mine/msg/Num" in read(tmp_path)[0].faults
+
+
+@pytest.mark.parametrize(
+    "data", [b"int8 num\n\xff\xfe\x00 a\n", "int8 num # Größe\n".encode("latin-1")]
+)
+def test_a_file_that_is_no_utf_8_is_refused_as_ros_does(tmp_path, data):
     package(tmp_path / "mine", {"Num": ""})
-    (tmp_path / "mine" / "msg" / "Num.msg").write_bytes(b"int8 num\n\xff\xfe\x00 a\n")
-    assert "Num.msg, line 2: " in str(read(tmp_path)[0].faults["mine/msg/Num"])
+    (tmp_path / "mine" / "msg" / "Num.msg").write_bytes(data)
+    why = str(read(tmp_path)[0].faults["mine/msg/Num"])
+    assert why == "mine/msg/Num.msg is not UTF-8: save it as UTF-8."
+
+
+FIND = "find_package(rosidl_default_generators REQUIRED)"
+GENERATE = 'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Num.msg")'
+IN_CMAKE = {
+    "a_loop_over_a_variable": (
+        f"{FIND}\nset(names Num)\nforeach(n ${{names}})\n  list(APPEND all msg/${{n}}.msg)\n"
+        "endforeach()\nrosidl_generate_interfaces(${PROJECT_NAME} ${all})",
+        "",
+    ),
+    "packages_in_a_loop": (
+        "set(all rosidl_default_generators)\nforeach(each ${all})\n  find_package(${each})\n"
+        f"endforeach()\n{GENERATE}",
+        "",
+    ),
+    "all_that_is_depended_upon": (f"ament_auto_find_build_dependencies()\n{GENERATE}", ""),
+    "dependencies_twice": (
+        f"{FIND}\nfind_package(std_msgs)\nfind_package(geometry_msgs)\n"
+        f"{GENERATE[:-1]} DEPENDENCIES std_msgs DEPENDENCIES geometry_msgs)",
+        "",
+    ),
+    "a_library_of_another_name": (
+        f'{FIND}\nrosidl_generate_interfaces(other "msg/Num.msg" LIBRARY_NAME ${{PROJECT_NAME}})',
+        "",
+    ),
+    "another_target": (
+        f'{FIND}\nrosidl_generate_interfaces(other "msg/Num.msg")',
+        "mine/CMakeLists.txt lacks ${PROJECT_NAME} in rosidl_generate_interfaces()",
+    ),
+    "no_target": (
+        f'{FIND}\nrosidl_generate_interfaces("msg/Num.msg")',
+        "mine/CMakeLists.txt lacks ${PROJECT_NAME} in rosidl_generate_interfaces()",
+    ),
+    "absolute_paths": (
+        f"{FIND}\nfile(GLOB all msg/*.msg)\nrosidl_generate_interfaces(${{PROJECT_NAME}} ${{all}})",
+        'lists the absolute path of msg/Num.msg: write "msg/Num.msg", or, in file(GLOB), RELATIVE',
+    ),
+    "an_absolute_path": (
+        f"{FIND}\n{GENERATE.replace('msg/', '${CMAKE_CURRENT_SOURCE_DIR}/msg/')}",
+        'lists the absolute path of msg/Num.msg: write "msg/Num.msg"',
+    ),
+    "the_end_before": (
+        f"{FIND}\nament_package()\n{GENERATE}",
+        "mine/CMakeLists.txt calls ament_package() before rosidl_generate_interfaces()",
+    ),
+    "a_name_that_is_nearly_right": (
+        f"{FIND}\n{GENERATE.replace('Num', 'num')}",
+        "mine/CMakeLists.txt lists msg/num.msg, and there is no such file, only Num.msg.",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", IN_CMAKE)
+def test_cmake_is_followed_as_far_as_colcon_would(tmp_path, name):
+    package(tmp_path / "mine", {"Num": "int8 num\n"})
+    text, fault = IN_CMAKE[name]
+    (tmp_path / "mine" / "CMakeLists.txt").write_text(f"project(mine)\n{text}\n")
+    found, _ = read(tmp_path)
+    assert fault in str(found.faults.get("mine/msg/Num", ""))
+    assert ("mine/msg/Num" in found.texts) == (fault == "")
+
+
+@pytest.mark.parametrize("how", ["in another package", "ignored", "in what is ignored"])
+def test_where_colcon_does_not_look_nothing_is_generated(tmp_path, how):
+    folder = tmp_path / "src" / "more" / "mine"
+    package(folder, {"Num": "int8 num\n"})
+    if how == "in another package":
+        (tmp_path / "src" / "more" / "package.xml").write_text(MANIFEST.format(name="more"))
+    else:
+        place = folder if how == "ignored" else tmp_path / "src"
+        (place / "COLCON_IGNORE").touch()
+    assert "colcon does not look into" in str(read(tmp_path)[0].faults["mine/msg/Num"])
 
 
 def test_a_link_to_elsewhere_is_refused(tmp_path):
