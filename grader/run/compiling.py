@@ -12,7 +12,7 @@ import hashlib
 import json
 import os
 import re
-import subprocess
+import shutil
 import sys
 import sysconfig
 import threading
@@ -128,12 +128,12 @@ def _compiled(texts: Mapping[str, str], context: RunContext) -> Path:
 
 def _versions() -> list[str]:
     """Return what the result depends on beside the definitions."""
-    command = [os.environ.get("CC", "gcc"), "--version"]
+    found = Path(shutil.which(os.environ.get("CC", "gcc")) or "").resolve()
     ours = [PROGRAM.read_text("utf-8"), PROGRAM.with_name("dispatch.c").read_text("utf-8")]
     return [
-        *(subprocess.run(command, capture_output=True, text=True, check=False).stdout, *ours),
-        *(sys.version, metadata.version("numpy"), metadata.version("rosidl-generator-py")),
-        *(os.environ.get("ROS_DISTRO", ""), sys.prefix),
+        *(str(found), str(found.stat().st_mtime_ns), *ours, sys.version, sys.prefix),
+        *(metadata.version("numpy"), metadata.version("rosidl-generator-py")),
+        os.environ.get("ROS_DISTRO", ""),
     ]
 
 

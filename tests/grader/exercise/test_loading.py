@@ -169,7 +169,11 @@ def test_an_exercise_brings_interfaces_along_and_is_another_with_others(tmp_path
 @pytest.mark.parametrize(
     ("text", "where", "said"),
     [
-        ("int8 num\nint other\n", "interfaces", r"exercise\.yaml.*Num\.msg, line 2: `int other`"),
+        (
+            "int8 num\nint other\n",
+            "interfaces",
+            r"exercise\.yaml.*Num\.msg, line 2: `int` is no type",
+        ),
         ("int8 num\n", "elsewhere", r"expected a folder with PACKAGE/msg/NAME\.msg"),
         ("int8 num\n" + "# more\n" * 6000, "interfaces", r"with 40,?000 characters"),
     ],
