@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import random
 from importlib import metadata
@@ -76,6 +77,7 @@ def test_made_classes_are_as_those_that_are_compiled(number, tmp_path, monkeypat
     name = f"drawn_{number}"
     texts = package(random.Random(number), name, 100)
     built = building.build(texts, tmp_path / "place")
-    compiling._keep(built, {name}, tmp_path / "kept")
+    library = base64.b64decode(built.pop(""))
+    compiling._keep(built, library, {name}, tmp_path / "kept")
     monkeypatch.syspath_prepend(tmp_path / "kept")
     compare(texts, [tmp_path / "place" / "generated" / "share"])

@@ -161,7 +161,7 @@ def test_compiling_has_an_end(sends, monkeypatch, limit, value, told):
 @pytest.mark.parametrize("path", ["../x.py", "other/x.py", "demo/sub/x.py", "demo/x.pth", "demo/"])
 def test_what_is_left_in_another_place_is_refused(tmp_path, path):
     with pytest.raises(compiling.NotCompiled, match="it left a module"):
-        compiling._keep({path: ""}, {"demo"}, tmp_path / "place")
+        compiling._keep({path: ""}, b"", {"demo"}, tmp_path / "place")
 
 
 HOSTILE = r"""
@@ -199,3 +199,16 @@ def test_the_import_path_of_ros_stays(tmp_path):
         _, theirs = compiling.compile_all({}, NUM, there)
     assert theirs.env["PYTHONPATH"].split(os.pathsep)[1:] == ["/opt/ros/x"]
     assert sys.path
+
+
+def test_what_cannot_be_compiled_is_tried_once_for_all_runs_of_a_grading(sends, monkeypatch):
+    tries = []
+
+    def fails(texts):
+        tries.append(texts)
+        raise compiling.NotCompiled("the compiler says: {line}", line="no")
+
+    monkeypatch.setattr(compiling, "_built", fails)
+    interfaces = OwnInterfaces({"in_vain/msg/Num": "int8 num\n"})
+    told = {str(run(sends, interfaces).run.flags[0]) for _ in range(2)}
+    assert len(tries) == len(told) == 1
