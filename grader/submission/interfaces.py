@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from itertools import takewhile, zip_longest
@@ -58,6 +58,7 @@ def find_interfaces(
         if folder is not None:
             places[file] = folder
     packages = {folder: _read(submitted, folder) for folder in dict.fromkeys(places.values())}
+    twice = {each.name: _twice(submitted, packages, each.name) for each in packages.values()}
     texts, faults = dict[str, str](), dict[str, Message]()
     notes, left = list[Message](), LONGEST
     words = {"most": MOST, "n": LONGEST}
@@ -72,13 +73,9 @@ def find_interfaces(
         left -= len(json.dumps(text))
         name = f"{package.name}/{file.suffix[1:]}/{file.stem}"
         path = file.relative_to(folder)
-        same = [submitted.called(each) for each in packages if packages[each].name == package.name]
-        twice = (
-            _TWICE.given(name=package.name, places=", ".join(same)) if len(same) > 1 else NOTHING
-        )
         if data is None or left < 0 or len(texts) + len(faults) >= MOST:
             faults[name] = many
-        elif fault := package.fault or twice or _lack(package, path, called, text):
+        elif fault := package.fault or twice[package.name] or _lack(package, path, called, text):
             faults[name] = fault
         elif text.encode() != data:
             faults[name] = msg("{file} is not UTF-8: save it as UTF-8.", file=called)
@@ -140,12 +137,19 @@ class _Package(NamedTuple):
     needed: Sequence[str] = ()
 
 
+def _twice(submitted: SubmissionFolder, packages: Mapping[Path, _Package], name: str) -> Message:
+    """Say that several packages have a name; NOTHING where one has it."""
+    same = [submitted.called(folder) for folder in packages if packages[folder].name == name]
+    return _TWICE.given(name=name, places=", ".join(same)) if len(same) > 1 else NOTHING
+
+
 def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
     """Read the package.xml and the CMakeLists.txt of a package."""
     manifest = read_manifest(folder / FILE) if (folder / FILE).is_file() else None
     manifest = manifest or Manifest("", "", msg("is not there"))
     setup, file = submitted.called(folder / FILE), submitted.called(folder / cmake.FILE)
     name = (manifest.name or folder.name)[:100]
+    words = {"file": file, "setup": setup, "name": name, "call": f"{_GENERATE}()"}
     if not (folder / cmake.FILE).is_file() or manifest.build_type == "ament_python":
         why = msg(
             "The package {name} is built by setup.py, which generates no interfaces. Put them "
@@ -162,65 +166,102 @@ def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
         part = word if word in ("", "DEPENDENCIES", *_OPTIONS) else part
         parts[part] += [word] * (word != part)
     listed, needed = parts[""], parts["DEPENDENCIES"]
-    commands = [call[0] for call in read.calls]
-    found = [call[1] for call in read.calls if call[0] == "find_package" and call[1:]]
-    finds_all = _UNKNOWN in " ".join(found) or "ament_auto_find_build_dependencies" in commands
-    known = [each for each in listed if each and _UNKNOWN not in each]
-    absent = next((each for each in known if not (folder / each).is_file()), "")
-    absolute = next((each for each in known if each.startswith(("./", "/"))), "")
     target = next((call[1] for call in asked if call[1:]), "")
-    is_late = "ament_package" in commands[: commands.index(_GENERATE)] if asked else False
-    lines = [
-        (file, f"project({name})", read.project == name),
-        (file, f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', bool(asked)),
-        (file, f"${{PROJECT_NAME}} in {_GENERATE}()", target == name or "LIBRARY_NAME" in parts),
-        *(
-            (file, f"find_package({each} REQUIRED)", finds_all or each in found)
-            for each in (*needed, _MAKERS)
-        ),
-        (setup, "<{0}>{1}</{0}>".format(*_GROUP), _GROUP in manifest.elements),
-    ]
-    words = {"file": file, "setup": setup, "name": name, "call": f"{_GENERATE}()"}
-    words["path"] = shown((absolute or absent).removeprefix("./"))
-    both = ["ament_python_install_package", name]
-    twice = msg(
-        "{file} makes a package of Python's and one of interfaces, both called {name}, which "
-        "colcon refuses. Put the interfaces into a package of their own.",
-        **words,
-    )
-    unlisted = msg("{file} lists {path}, and there is no such file. Correct its name.", **words)
-    names = sorted(each.name for each in (folder / absent).parent.glob("*")) if absent else []
-    near = next(iter(get_close_matches(PurePath(absent).name, names, 1)), "")
-    if near:
-        unlisted = msg(
-            "{file} lists {path}, and there is no such file, only {near}. Correct the name.",
-            **words,
-            near=shown(near),
-        )
+    is_named = target == name or "LIBRARY_NAME" in parts
+
+    def faults() -> Iterator[Message]:
+        yield _hides(submitted, folder, words)
+        if manifest.fault:
+            yield msg("{setup} {fault}. Correct it.", **words, fault=manifest.fault)
+        yield from _wrong_commands(read, needed, words, is_named=is_named)
+        if _GROUP not in manifest.elements:
+            yield _LACKS.given(file=setup, line=shown("<{0}>{1}</{0}>".format(*_GROUP)), what=name)
+        yield from _wrong_order_or_files(read, folder, listed, words)
+
+    why = next(filter(None, faults()), NOTHING)
+    return _Package(name, file, why, listed, needed)
+
+
+def _hides(submitted: SubmissionFolder, folder: Path, words: Mapping[str, str]) -> Message:
+    """Say that colcon does not look for a package in its folder; NOTHING where it does."""
     above = next((each for each in folder.parents if _is_hidden(each, submitted.base)), None)
-    elsewhere = msg(
+    if above is None and not (folder / _IGNORE).exists():
+        return NOTHING
+    return msg(
         "colcon does not look into {place}. Move the package {name} beside the others, below src/.",
         **words,
         place=submitted.called(above or folder),
     )
-    as_path = msg(
-        '{file} lists the absolute path of {path}: write "{short}", or, in file(GLOB), RELATIVE '
-        "${{CMAKE_CURRENT_SOURCE_DIR}}.",
-        **words,
-        short=absolute.removeprefix("./"),
-    )
-    late = msg("{file} calls ament_package() before {call}: it has to be last.", **words)
-    faults = [
-        (above is not None or (folder / _IGNORE).exists(), elsewhere),
-        (manifest.fault, msg("{setup} {fault}. Correct it.", **words, fault=manifest.fault)),
-        (both in [call[:2] for call in read.calls], twice),
-        *((not is_in, _LACKS.given(file=f, line=shown(x), what=name)) for f, x, is_in in lines),
-        (is_late, late),
-        (absolute, as_path),
-        (absent, unlisted),
+
+
+def _wrong_commands(
+    read: cmake.Read, needed: Sequence[str], words: Mapping[str, str], *, is_named: bool
+) -> Iterator[Message]:
+    """Yield what a CMakeLists.txt lacks, or has too many of.
+
+    Args:
+        is_named: whether what it generates has the name of the package.
+    """
+    file, name = words["file"], words["name"]
+    if ["ament_python_install_package", name] in [call[:2] for call in read.calls]:
+        yield msg(
+            "{file} makes a package of Python's and one of interfaces, both called {name}, which "
+            "colcon refuses. Put the interfaces into a package of their own.",
+            **words,
+        )
+    commands = [call[0] for call in read.calls]
+    found = [call[1] for call in read.calls if call[0] == "find_package" and call[1:]]
+    finds_all = _UNKNOWN in " ".join(found) or "ament_auto_find_build_dependencies" in commands
+    lines = [
+        (f"project({name})", read.project == name),
+        (f'{_GENERATE}(${{PROJECT_NAME}} "msg/Num.msg")', _GENERATE in commands),
+        (f"${{PROJECT_NAME}} in {_GENERATE}()", is_named),
+        *(
+            (f"find_package({each} REQUIRED)", finds_all or each in found)
+            for each in (*needed, _MAKERS)
+        ),
     ]
-    why = next((why for is_so, why in faults if is_so), NOTHING)
-    return _Package(name, file, why, listed, needed)
+    for line, is_there in lines:
+        if not is_there:
+            yield _LACKS.given(file=file, line=shown(line), what=name)
+
+
+def _wrong_order_or_files(
+    read: cmake.Read, folder: Path, listed: Sequence[str], words: Mapping[str, str]
+) -> Iterator[Message]:
+    """Yield what is wrong with where interfaces are generated, and with their files."""
+    commands = [call[0] for call in read.calls]
+    if "ament_package" in commands[: commands.index(_GENERATE)]:
+        yield msg("{file} calls ament_package() before {call}: it has to be last.", **words)
+    known = [each for each in listed if each and _UNKNOWN not in each]
+    for each in (each for each in known if each.startswith(("./", "/"))):
+        short = each.removeprefix("./")
+        yield msg(
+            '{file} lists the absolute path of {path}: write "{short}", or, in file(GLOB), '
+            "RELATIVE ${{CMAKE_CURRENT_SOURCE_DIR}}.",
+            **words,
+            path=shown(short),
+            short=short,
+        )
+    whole = folder.resolve()
+    for each in known:
+        file = (folder / each).resolve()
+        is_inside = file.is_relative_to(whole)  # elsewhere nobody is to learn what there is
+        if is_inside and file.is_file():
+            continue
+        names = sorted(other.name for other in file.parent.glob("*")) if is_inside else []
+        if near := get_close_matches(PurePath(each).name, names, 1):
+            yield msg(
+                "{file} lists {path}, and there is no such file, only {near}. Correct the name.",
+                **words,
+                path=shown(each),
+                near=shown(near[0]),
+            )
+        yield msg(
+            "{file} lists {path}, and there is no such file. Correct its name.",
+            **words,
+            path=shown(each),
+        )
 
 
 def _is_hidden(folder: Path, base: Path) -> bool:

@@ -146,6 +146,21 @@ def test_cmake_is_followed_as_far_as_colcon_would(tmp_path, name):
     assert ("mine/msg/Num" in found.texts) == (fault == "")
 
 
+def test_what_lies_elsewhere_is_not_told_to_who_lists_it(tmp_path):
+    place = tmp_path / "it"
+    package(place / "mine", {"Num": "int8 num\n"})
+    (tmp_path / "Secret.msg").write_text("int8 secret\n")
+    faults = set()
+    for listed in ("../../Secret.msg", "../../Secre.msg", "../../Nothing.msg"):
+        text = f"{FIND}\nrosidl_generate_interfaces(${{PROJECT_NAME}} {listed} msg/Num.msg)"
+        (place / "mine" / "CMakeLists.txt").write_text(f"project(mine)\n{text}\n")
+        fault = str(read(place)[0].faults["mine/msg/Num"])
+        faults.add(fault.replace(listed, "LISTED"))
+    assert faults == {
+        "mine/CMakeLists.txt lists LISTED, and there is no such file. Correct its name."
+    }
+
+
 @pytest.mark.parametrize("how", ["in another package", "ignored", "in what is ignored"])
 def test_where_colcon_does_not_look_nothing_is_generated(tmp_path, how):
     folder = tmp_path / "src" / "more" / "mine"
