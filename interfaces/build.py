@@ -112,7 +112,8 @@ class BuildInterfaces(build_ext):
 def _inputs() -> list[Path]:
     """Return the inputs of the build; pyproject.toml has the versions of ROS."""
     sources = [path for path in HERE.rglob("*") if path.is_file() and path.suffix != ".pyc"]
-    return [*sources, *building.HERE.glob("*.[cp]*"), HERE.parent / "pyproject.toml"]
+    ours = (building.HERE / name for name in ("building.py", "dispatch.c"))
+    return [*sources, *ours, HERE.parent / "pyproject.toml"]
 
 
 def _ros_version() -> str:
