@@ -52,7 +52,7 @@ needs: tools
 	@$(BIN)/python -m tests.needs | sh -ex
 
 # one and a half workers for a core; who has nothing left takes from the end of the other
-PYTEST = -m pytest --numprocesses=logical --dist=worksteal
+PYTEST = -m pytest --numprocesses=$(shell echo $$(( ($$(nproc) * 3 + 1) / 2 ))) --dist=worksteal
 
 test: tools
 	@echo "== running the tests"

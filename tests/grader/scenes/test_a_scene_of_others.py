@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.docs.test_examples import BLINKING, environment_with, run_examples
+from tests import once
+from tests.docs.test_examples import BLINKING, ROOT, environment_with, run_examples
 
 #: The scene of the page, and its mistakes: an entry point each.
 MISTAKES = '''
@@ -121,7 +123,12 @@ NAMES = (*SENTENCES, "ends_its_process", "misnamed")
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give a folder with a node, the lamp of the page and, for each mistake, an exercise in it."""
-    folder: Path = tmp_path_factory.mktemp("scenes")
+    sources = (__file__, ROOT / "tests/docs/test_examples.py", ROOT / "docs/write-a-scene.md")
+    made = once.folder(make, [Path(source).read_text(encoding="utf-8") for source in sources])
+    return shutil.copytree(made, tmp_path_factory.mktemp("scenes") / "own", symlinks=True)
+
+
+def make(folder: Path) -> None:
     run_examples("write-a-scene.md", folder)
     lamp = folder / "lamp"
     (lamp / "mistakes.py").write_text(MISTAKES)
@@ -142,7 +149,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (exercise / "checks.py").write_bytes((lamp / "blink" / "checks.py").read_bytes())
     (folder / "node.py").write_text(BLINKING)
     environment_with(lamp, folder / "venv")
-    return folder
 
 
 def run(folder: Path, name: str, *more: str) -> tuple[int, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from pathlib import Path
 
 import pytest
 
@@ -10,6 +11,7 @@ from grader.recording.observations import LintFinding, SourceLine
 from grader.run.opening import open_submission
 from grader.submission import lint
 
+TUTORIALS = Path(__file__).parents[2] / "submissions" / "tutorials"
 SETUP = """from setuptools import setup
 setup(name="spiral", entry_points={"console_scripts": ["draw = spiral.draw:main"]})
 """
@@ -160,6 +162,10 @@ FOUND = {
     ),
 }
 NOTHING = {
+    "a subscription that stands there as in ROS's tutorials": (
+        f"{HEAD}        self.subscription = self.create_subscription(String, 'topic', print, 10)\n"
+        "        self.subscription  # prevent unused variable warning\n"
+    ),
     "other words": f"{HEAD}{READ}    def on_pose(self, p):\n        self.last_y = p\n",
     "what is read by its name": (
         f"{HEAD}{READ}    def on_pose(self, p):\n        self.stoped = getattr(self, 'x')\n"
@@ -247,6 +253,15 @@ PLACED = {
     ),
     "def on_pose(pose):\n    turn = pose.theta\n": ("heads", "pose.theta", 2),
     "def on_pose(pose):\n    timer.cancel()\n": ("cancels", "timer.cancel()", 2),
+    "node.create_service(Add, 'add', add)\ndef add(request, response):\n    response.sum = 1\n": (
+        *("unanswered", "add", 2),
+    ),
+    "ActionServer(node, Fibonacci, 'f', go)\ndef go(goal):\n    goal.succeed()\n": (
+        *("unanswered", "go", 2),
+    ),
+    "def on_timer():\n    node.get_logger().debug('now')\n": (
+        *("quiet", "node.get_logger().debug", 2),
+    ),
     "from rclpy.executors import SingleThreadedExecutor\n"
     f"{HEAD}{READ}    def go(self):\n        self.stoped = True\n": ("unread", "stoped", 7 + 1),
 }
@@ -261,6 +276,14 @@ def test_what_is_wrong_only_where_a_run_shows_it_is_found_with_its_line(source):
 @pytest.mark.parametrize("name", NOTHING)
 def test_what_may_be_meant_is_no_slip(name):
     assert reported({"a.py": NOTHING[name]}) == []
+
+
+def test_in_the_right_programs_of_tutorials_nothing_is_blamed():
+    blamed = {"uncalled", "unused", "local", "unread", "no_effect", "unspun", "unanswered", "quiet"}
+    programs = [*TUTORIALS.glob("*/right/*.py"), *TUTORIALS.glob("*/with_form/*.py")]
+    assert len(programs) > 60
+    for path in programs:
+        assert not blamed & {each.kind for each in lint.lint(path.parent, [path])}, path
 
 
 def test_what_one_file_sets_another_may_read():
@@ -361,6 +384,6 @@ def test_twice_the_source_takes_about_twice_the_steps(monkeypatch):
 
 def test_a_file_that_nobody_looks_through_is_started_all_the_same(tmp_path):
     deep = tmp_path / "draw.py"
-    deep.write_text("main\n" * lint.MOST_SOURCE)
+    deep.write_text("main\n" * (lint.MOST_SOURCE // 5 + 1))
     with open_submission(deep) as submission:
         assert submission.lint_findings == ()

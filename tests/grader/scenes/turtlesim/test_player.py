@@ -15,6 +15,7 @@ from hypothesis import given
 from grader.errors import RecordingError
 from grader.recording.playback import JudgedCheck, Line, Playback, PlayedRun, Sent
 from grader.recording.subject import Start
+from grader.scenes import joined
 from grader.scenes.turtlesim.driving import drive
 from grader.scenes.turtlesim.player import page, runs
 from grader.scenes.turtlesim.player.animation import WIPED
@@ -234,7 +235,7 @@ def test_what_stands_in_a_result_ends_no_element_of_the_page():
 def test_a_module_that_cannot_be_joined_is_named(tmp_path):
     (tmp_path / "a.js").write_text('import { b } from "./b.js";\nb();\n')
     with pytest.raises(ValueError, match=r"no module b\.js"):
-        page.join_modules("a", [tmp_path])
+        joined.join_modules("a", [tmp_path])
     (tmp_path / "b.js").write_text("export default 3;\n")
     with pytest.raises(ValueError, match=r"b\.js: cannot be joined: export default"):
-        page.join_modules("a", [tmp_path])
+        joined.join_modules("a", [tmp_path])
