@@ -1,6 +1,7 @@
 """Programs with a beginner's mistake, and what the first line of the report says of each.
 
-They stand in first_lines.yaml, most of them as one right program with some passages replaced.
+They stand in first_lines.yaml and, those for the tutorials' exercises, in tutorials.yaml; most of
+them as one right program with some passages replaced.
 """
 
 from __future__ import annotations
@@ -11,11 +12,18 @@ from typing import Any
 import yaml
 
 FOLDER = Path(__file__).parent / "first_lines"
-ROWS: dict[str, dict[str, Any]] = yaml.safe_load(
-    (FOLDER / "first_lines.yaml").read_text(encoding="utf-8")
-)
+
+
+def _read(file: str) -> dict[str, dict[str, Any]]:
+    rows: dict[str, dict[str, Any]] = yaml.safe_load((FOLDER / file).read_text(encoding="utf-8"))
+    return rows
+
+
+#: Name -> as MISTAKES, with its `exercise`.
+TUTORIALS = _read("tutorials.yaml")
+ROWS = _read("first_lines.yaml") | TUTORIALS
 #: Name -> the rule that finds the cause (`key`), and what the first line `says`.
-MISTAKES = {name: row for name, row in ROWS.items() if "key" in row}
+MISTAKES = {name: row for name, row in ROWS.items() if "key" in row and name not in TUTORIALS}
 #: Those that the base is changed for.
 CHANGED = tuple(name for name in MISTAKES if "replace" in ROWS[name])
 

@@ -53,8 +53,9 @@ for turn in range(60):
         mailbox.sendmsg(
             [mail], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, struct.pack("3i", 0, 1, 2))]
         )
-    topics = [[f"/t{turn}_{number}", "std_msgs/msg/String"] for number in range(200)]
-    link.send(b"I" + json.dumps([[], topics]).encode())
+    kind = ("std_msgs/msg/String", True, 1, 2, 10)
+    topics = [["/a", f"topic /t{turn}_{number}", *kind] for number in range(200)]
+    link.send(b"I" + json.dumps(topics).encode())
     link.send(head.pack(b"N", 0, 2, 0, False) + b"\xff" * 100)
     link.send(head.pack(b"A", 2**64 - 1, 1, 2**64 - 1, True))
     link.recv(200_000)
