@@ -157,6 +157,8 @@ def _value(kind: Any, data: Any, bounds: Bounds) -> Any:
         for check in filter(callable, args[1:]):
             made = check(made)
         return made
+    if kind is Any:  # plain data, of ours
+        return data
     if origin in (Union, types.UnionType):
         if data is None and type(None) in args:
             return None

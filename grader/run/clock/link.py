@@ -40,12 +40,20 @@ from grader.run.lockstep.protocol import (
     ProtocolError,
     Reply,
     State,
+    StudentEndpoint,
     Table,
     decode,
     encode,
     pieces,
 )
-from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer, policies
+from grader.run.lockstep.registry import (
+    Arrived,
+    Endpoint,
+    EndpointRegistry,
+    Reader,
+    Writer,
+    policies,
+)
 
 UNBOUNDED = 0xFFFFFFFF
 #: The costs of sending a message, 20 us, and of counting the endpoints of a channel.
@@ -169,6 +177,7 @@ class SimulatorLink(EndpointRegistry):
         on_arrival: called after something may have arrived.
         on_standstill: called when no thread of the program has a deadline.
         on_over: called when the run is over, before this process ends for it.
+        is_recorded: whether the simulator has hidden readers for what the program publishes.
     """
 
     def __init__(
@@ -193,6 +202,7 @@ class SimulatorLink(EndpointRegistry):
         self.on_arrival: Callable[[], None] = lambda: None
         self.on_standstill: Callable[[], None] = lambda: None
         self.on_over: Callable[[], None] = lambda: None
+        self.is_recorded = False
         self._scheduler = scheduler
         self._sockets = SimulatorSockets(connection, page, refuse)
         self._agreed = Agreed()
@@ -202,6 +212,7 @@ class SimulatorLink(EndpointRegistry):
         #: the readers for responses, by the numbers that requests carry
         self._clients: dict[int, Reader] = {}
         self._client_numbers: dict[Reader, int] = {}
+        self._for_late: list[Parcel] = []
         #: what DDS was last waited for, at which epoch, and until when
         self._dds_wait = ("", 0, 0.0)
 
@@ -237,7 +248,7 @@ class SimulatorLink(EndpointRegistry):
         self.tick = tick
         self._sockets.write_tick(tick)
         parcels = self._agreed.parcels
-        while parcels and parcels[0].tick <= tick:
+        while parcels and parcels[0].time_ns <= tick * TICK_NS:
             self._deliver(parcels.popleft())
 
     def synchronise(self) -> None:
@@ -266,6 +277,7 @@ class SimulatorLink(EndpointRegistry):
         if packet.state == State.OVER:
             self.on_over()
             real.leave(0)
+        self._mail_for_late()
 
     # Messages ---------------------------------------------------------------------------------
 
@@ -278,7 +290,7 @@ class SimulatorLink(EndpointRegistry):
         """Send to readers of this process at once, to the simulator by its mailbox."""
         super().publish(writer, data)
         for remote in writer.remote:
-            self._mail(Parcel(remote.number, 0, writer.sent, self.tick, data))
+            self._mail(Parcel(remote.number, 0, writer.sent, self._scheduler.now_ns, data))
         self._has_sent(data, writer.local)
 
     def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
@@ -286,14 +298,18 @@ class SimulatorLink(EndpointRegistry):
         number = super().ask(writer, client, data)
         for remote in writer.remote:
             client.awaited += 1
-            self._mail(Parcel(remote.number, self._number(client), number, self.tick, data))
+            self._mail(
+                Parcel(remote.number, self._number(client), number, self._scheduler.now_ns, data)
+            )
         self._has_sent(data, writer.local)
         return number
 
     def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
-        """Send a response, in the same way; the simulator never asks."""
+        """Send a response, in the same way."""
         super().respond(writer, to, data)
-        self._has_sent(data, [to.client])
+        if isinstance(to.client, int):
+            self._mail(Parcel(to.client, 0, to.number, self._scheduler.now_ns, data))
+        self._has_sent(data, [to.client] if isinstance(to.client, Reader) else [])
 
     def _has_sent(self, data: bytes, local: list[Any]) -> None:
         self._sent += 1
@@ -320,15 +336,15 @@ class SimulatorLink(EndpointRegistry):
             rest = self._sockets.mail(rest)
 
     def _deliver(self, parcel: Parcel) -> None:
-        endpoint, client, number, tick, data = parcel
-        arrived = Arrived(data, EPOCH_NS + tick * TICK_NS, number)
-        if client:
+        endpoint, client, number, time_ns, data = parcel
+        arrived = Arrived(data, EPOCH_NS + time_ns, number)
+        writer = self.others[endpoint]
+        if writer.kind == "response":
             reader = self._clients[client]
             reader.awaited -= 1
             reader.items.append(arrived)
-            return
-        writer = self.others[endpoint]
-        if isinstance(writer, Writer):
+        elif isinstance(writer, Writer):
+            arrived.client = client or None  # of a request: the simulator's reader for the response
             self.deliver(writer, arrived)
 
     # Connections ------------------------------------------------------------------------------
@@ -343,9 +359,7 @@ class SimulatorLink(EndpointRegistry):
             return
         self.changed = False
         self._connect_anew()
-        topics = {(w.name, w.type.rstrip()) for w in self.writers if w.kind == "topic"}
-        reads = {reader.channel for reader in self.readers if reader.kind != "request"}
-        interests = Interests(tuple(sorted(reads)), tuple(sorted(topics)))
+        interests = Interests(tuple(sorted(map(_introduced, (*self.writers, *self.readers)))))
         if interests != self._interests:
             self._interests = interests
             if self.tick > self._agreed.tick:  # forecast for the readers that there were
@@ -353,19 +367,37 @@ class SimulatorLink(EndpointRegistry):
             self._agreed.parcels.clear()
             self._agreed.foreseen = self.tick
             self._sockets.send(interests)
+            if self.is_recorded:  # hidden readers of what is new, before anything is published
+                self._exchange(self.tick, 0)
 
     def _add(self, table: Table) -> None:
         """Add the new endpoints of the simulator's table."""
         for entry in table.added:
             kind = Writer if entry.writes else Reader
             qos = policies(entry.reliability, entry.durability, entry.depth)
-            self.others[entry.id] = kind(entry.channel, entry.type, qos, entry.id)
+            other = kind(entry.channel, entry.type, qos, entry.id)
+            self.others[entry.id] = other
+            other.is_hidden = entry.is_hidden
 
     def _connect_anew(self) -> None:
         self._is_unpaired = True
+        before = {writer: set(writer.remote) for writer in self.writers if writer.is_lasting}
         self.pair()
+        for writer, known in before.items():
+            for remote in writer.remote:
+                if remote not in known and remote.is_lasting:
+                    self._for_late += [
+                        Parcel(remote.number, 0, kept.number, kept.time_ns - EPOCH_NS, kept.data)
+                        for kept in writer.history
+                    ]
         self.count_meetings()
         self.graph_epoch += 1
+
+    def _mail_for_late(self) -> None:
+        """Send readers that come late what writers keep for such."""
+        parcels, self._for_late = self._for_late, []
+        for parcel in parcels:
+            self._mail(parcel)
 
     def await_dds(self, what: str) -> None:
         """Wait a little, in real time, until DDS has found what we know to be there.
@@ -384,3 +416,10 @@ class SimulatorLink(EndpointRegistry):
     def note(self, kind: Kind, remark: Message = NOTHING) -> None:
         """Send the simulator a note about this process."""
         self._sockets.send(Note(kind, remark))
+
+
+def _introduced(endpoint: Endpoint) -> StudentEndpoint:
+    qos = endpoint.qos
+    numbers = int(qos.reliability), int(qos.durability), max(0, qos.depth)
+    writes, kind = isinstance(endpoint, Writer), endpoint.type.rstrip()
+    return StudentEndpoint(endpoint.node, endpoint.channel, kind, writes, *numbers)

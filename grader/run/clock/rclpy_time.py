@@ -184,7 +184,7 @@ class VirtualWaiter(Waiter):
                     break
 
     def is_listening(self) -> bool:
-        """Whether a blocked wait set would hear what the simulator publishes."""
+        """Whether a blocked wait set would hear what the simulator publishes, or asks."""
         for wait_set, _ in self._waiting:
             for reader in wait_set.readers:
                 if reader.hears:
@@ -269,7 +269,11 @@ def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[NodeName]) -> b
     if not set(nodes) <= set(node.get_node_names_and_namespaces()):
         return False
     expected = Counter(
-        [(each.channel, isinstance(each, Writer)) for each in link.others.values()]
+        [
+            (each.channel, isinstance(each, Writer))
+            for each in link.others.values()
+            if not each.is_hidden
+        ]
         + [(reader.channel, False) for reader in link.readers]
         + [(writer.channel, True) for writer in link.writers]
     )

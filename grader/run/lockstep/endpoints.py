@@ -125,6 +125,7 @@ class Registered:
         self.is_valid = node.is_valid
         self.endpoints = list(endpoints)
         for endpoint in endpoints:
+            endpoint.node = node.get_fully_qualified_name()
             REGISTRY.add(endpoint)
         weakref.finalize(self, REGISTRY.remove, self.endpoints).atexit = False
 

@@ -5,7 +5,7 @@ The student's process drives, over a SOCK_SEQPACKET socket pair:
 | from | packet | meaning |
 |---|---|---|
 | simulator | `Table` | these endpoints of mine are new, these are gone; first of all packets |
-| student | `Interests` | I read and publish this |
+| student | `Interests` | these are my readers and writers |
 | student | `Advance` | run until this tick, but not more than so many ticks |
 | simulator | `Reply` | this tick is over; here are messages, some of ticks to come |
 | student | `Note` | something about the student's process; not answered |
@@ -62,7 +62,7 @@ PROGRESS, PROGRESS_BYTES = Struct("<Q"), mmap.PAGESIZE
 _HEAD = Struct("<cQIQ?")
 _PARCEL = Struct("<IIQQI")
 _CHANNEL = re.compile(r"[a-z]+ /[\w/]{0,300}", re.ASCII)
-_TOPIC = re.compile(r"/[\w/]{0,300}", re.ASCII)
+_NAME = re.compile(r"/[\w/]{0,600}", re.ASCII)
 _TYPE = re.compile(r"\w{1,100}/\w{1,10}/\w{1,200}", re.ASCII)
 #: The most that is kept of each text of a remark [characters].
 _LONGEST_REMARK = 1000
@@ -102,14 +102,14 @@ class Parcel(NamedTuple):
         endpoint: the number of the simulator's endpoint in the tables.
         client: the number of the student's client that asks or is answered; 0 for a topic.
         number: the sequence number of the request; on a topic, of the message.
-        tick: the tick in which it was sent.
+        time_ns: when it was sent, from the start of the run [ns]; from the simulator, in a tick.
         data: the message in CDR, as DDS would carry it.
     """
 
     endpoint: int
     client: int
     number: int
-    tick: int
+    time_ns: int
     data: bytes
 
 
@@ -118,7 +118,11 @@ Parcels = list[Parcel]
 
 @dataclass(frozen=True)
 class EndpointInfo:
-    """A reader or writer of the simulator, as the student's side needs to know it."""
+    """A reader or writer of the simulator, as the student's side needs to know it.
+
+    Attributes:
+        is_hidden: it only records, and the program's graph does not show it.
+    """
 
     id: int
     channel: str
@@ -127,6 +131,7 @@ class EndpointInfo:
     reliability: int
     durability: int
     depth: int
+    is_hidden: bool = False
 
 
 @dataclass(frozen=True)
@@ -140,12 +145,27 @@ class Table:
     removed: tuple[int, ...] = ()
 
 
+class StudentEndpoint(NamedTuple):
+    """A reader or writer of the student's process, as the simulator needs to know it.
+
+    Attributes:
+        node: the name of its node, with the namespace.
+    """
+
+    node: str
+    channel: str
+    type: str
+    writes: bool
+    reliability: int = 1
+    durability: int = 2
+    depth: int = 10
+
+
 @dataclass(frozen=True)
 class Interests:
-    """The channels that the student's process reads, and (topic, type) of what it publishes."""
+    """The readers and writers of the student's process, in order."""
 
-    reads: tuple[str, ...]
-    publishes: tuple[tuple[str, str], ...] = ()
+    endpoints: tuple[StudentEndpoint, ...]
 
 
 @dataclass(frozen=True)
@@ -208,8 +228,8 @@ def encode(packet: Packet) -> bytes:
             return _HEAD.pack(b"M", 0, 0, 0, False) + _parcels(parcels)
         case Note(kind, remark):
             return _HEAD.pack(b"N", 0, kind, 0, False) + json.dumps(remark.serialise()).encode()
-        case Interests(reads, publishes):
-            return b"I" + json.dumps([reads, publishes]).encode()
+        case Interests(endpoints):
+            return b"I" + json.dumps(endpoints).encode()
         case Table(added, removed):
             data = {"added": [vars(endpoint) for endpoint in added], "removed": removed}
             return b"T" + json.dumps(data).encode()
@@ -256,8 +276,8 @@ def _parcels(parcels: Parcels) -> bytes:
     pack = _PARCEL.pack
     return b"".join(
         [
-            pack(endpoint, client, number, tick, len(data)) + data
-            for endpoint, client, number, tick, data in parcels
+            pack(endpoint, client, number, time_ns, len(data)) + data
+            for endpoint, client, number, time_ns, data in parcels
         ]
     )
 
@@ -266,24 +286,24 @@ def _read_parcels(data: bytes) -> Parcels:
     found = []
     at, end, size, unpack = _HEAD.size, len(data), _PARCEL.size, _PARCEL.unpack_from
     while at < end:
-        endpoint, client, number, tick, length = unpack(data, at)
+        endpoint, client, number, time_ns, length = unpack(data, at)
         at += size
         if at + length > end:
             raise ValueError("cut off")
-        found.append(Parcel(endpoint, client, number, tick, data[at : at + length]))
+        found.append(Parcel(endpoint, client, number, time_ns, data[at : at + length]))
         at += length
     return found
 
 
 def _interests(data: Any) -> Interests:
-    reads, publishes = data
-    for channel in reads:
-        if not _CHANNEL.fullmatch(channel):
-            raise ValueError(f"no channel: {channel!r:.100}")
-    for topic, kind in publishes:
-        if not _TOPIC.fullmatch(topic) or not _TYPE.fullmatch(kind):
-            raise ValueError(f"no topic: {topic!r:.100} {kind!r:.100}")
-    return Interests(tuple(reads), tuple((topic, kind) for topic, kind in publishes))
+    endpoints = tuple(StudentEndpoint(*values) for values in data)
+    for each in endpoints:
+        forms = ((_NAME, each.node), (_CHANNEL, each.channel), (_TYPE, each.type))
+        if not all(form.fullmatch(text) for form, text in forms) or type(each.writes) is not bool:
+            raise ValueError(f"no endpoint: {each!r:.200}")
+        if not all(type(number) is int and 0 <= number < 1 << 32 for number in each[4:]):
+            raise ValueError(f"no quality of service: {each!r:.200}")
+    return Interests(endpoints)
 
 
 # Packets of any length over a socket ---------------------------------------------------------

@@ -59,6 +59,8 @@ class Endpoint:
         matches, unfit: how many counterparts it has had in all, here and in the simulator: those
             that DDS connects, and those whose quality of service does not fit.
         matched: how many of the former it has. All three are counted on the student's side.
+        node: the name of its node, with the namespace.
+        is_hidden: it only records: neither counts nor graphs show it.
     """
 
     channel: str
@@ -68,6 +70,8 @@ class Endpoint:
     matches: int = 0
     unfit: int = 0
     matched: int = 0
+    node: str = "/"
+    is_hidden: bool = False
 
     @property
     def name(self) -> str:
@@ -92,7 +96,7 @@ class Reader(Endpoint):
     Attributes:
         message: the class of its messages.
         awaited: of a client's, how many responses from the other process are still to come.
-        hears: whether it hears the other process's on a topic.
+        hears: whether it hears the other process's on a topic, or its requests.
     """
 
     message: Any = None
@@ -176,7 +180,8 @@ class EndpointRegistry:
         if not self._is_unpaired:
             return
         self._is_unpaired = False
-        local, remote = _by_channel(self.readers), _by_channel(_of_kind(Reader, self.others))
+        local = _by_channel(each for each in self.readers if not each.is_hidden)
+        remote = _by_channel(_of_kind(Reader, self.others))
         theirs = _of_kind(Writer, self.others)
         for writer in (*self.writers, *theirs):
             before = writer.local
@@ -189,14 +194,15 @@ class EndpointRegistry:
             writer.remote = [each for each in remote[writer.channel] if compatible(writer, each)]
         heard = {reader for writer in theirs for reader in writer.local}
         for reader in self.readers:
-            reader.hears = reader in heard and reader.kind == "topic"
+            reader.hears = reader in heard and reader.kind != "response"
 
     def count_meetings(self) -> None:
         """Count the matched endpoints of each topic, and those matched for the first time."""
         others = self.others.values()
         for endpoint in (*self.writers, *self.readers, *others):
             endpoint.matched = 0
-        hearing = _by_channel([*self.readers, *_of_kind(Reader, self.others)])
+        theirs = (each for each in _of_kind(Reader, self.others) if not each.is_hidden)
+        hearing = _by_channel([*self.readers, *theirs])
         for writer in (*self.writers, *_of_kind(Writer, self.others)):
             for reader in hearing[writer.channel]:
                 if writer.type != reader.type:
@@ -219,7 +225,7 @@ class EndpointRegistry:
 
     def count_readers(self, writer: Writer) -> int:
         """Return how many readers hear a writer."""
-        return len(writer.local) + len(writer.remote)
+        return len(writer.local) + sum(not each.is_hidden for each in writer.remote)
 
     def count_writers(self, reader: Reader) -> int:
         """Return how many writers a reader hears."""

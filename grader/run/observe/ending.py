@@ -38,7 +38,7 @@ class EndWitness:
         found = stuck.deadlock(stacks)
         if found is not None:
             print(stuck.explain(*found, self._now_s()), file=sys.stderr, flush=True)
-        elif any(map(stuck.is_spinning, stacks)):
+        elif any(stuck.in_spin(frame) for stack in stacks for frame in stack):
             return False
         stop = stuck.called(*(found or ("call", self._stack(main))))
         if stop is not None:
@@ -48,7 +48,7 @@ class EndWitness:
     def over(self, main: int) -> None:
         """Note the end of the run; the program would have gone on. `main`: its main thread."""
         if not self._has_ended:
-            found = quietly(lambda: stuck.standing(self._stack(main)))
+            found = quietly(lambda: stuck.at_end(self._stack(main)))
             if found is not None:
                 self._note("stop", found.row(self._files, self._now_s()))
         self._account.write(is_last=True)

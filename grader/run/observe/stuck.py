@@ -110,18 +110,24 @@ def called(kind: str, thread: Thread) -> Stuck | None:
 
 def waiting(threads: Sequence[Thread]) -> Stuck | None:
     """Return where a thread waits in a callback or a call, while no other spins."""
-    spinning = [thread for thread in threads if any(map(_spins, thread))]
+    spinning = [thread for thread in threads if any(map(in_spin, thread))]
     for thread in threads:
         at = _students(thread)
         if at <= 0:
             continue
         waits = any(map(_waits, thread[:at]))
         is_callback = any(map(_runs_callback, thread[at:]))
-        if is_callback and [thread] == spinning and (waits or any(map(_spins, thread[:at]))):
+        if is_callback and [thread] == spinning and (waits or any(map(in_spin, thread[:at]))):
             return called("callback", thread)
         if waits and not spinning:
             return called("call", thread)
     return None
+
+
+def at_end(thread: Thread) -> Stuck | None:
+    """Return where a main thread was at the end of a run; None where it just spun."""
+    found = waiting([thread])
+    return found if found is not None and found.kind == "callback" else standing(thread)
 
 
 # Threads that run -----------------------------------------------------------------------------
@@ -152,7 +158,7 @@ def standing(thread: Thread) -> Stuck | None:
         return Stuck("init", _head(thread[at : init + 1]) or thread[init])
     if spins and loops_around(thread[at].lines or (), thread[at].line):
         return Stuck("spin", thread[at])
-    if any(_spins(frame) for frame in inside):
+    if any(in_spin(frame) for frame in inside):
         return None
     loop = _head(thread[at:])
     return Stuck("going", loop) if loop else None
@@ -215,7 +221,8 @@ def _waits(frame: Frame) -> bool:
     return (frame.library, frame.name) in WAITS
 
 
-def _spins(frame: Frame) -> bool:
+def in_spin(frame: Frame) -> bool:
+    """Whether a frame is of a function that spins, for once or for ever."""
     return frame.library in SPINS and "spin" in frame.name
 
 

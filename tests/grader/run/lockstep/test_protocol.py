@@ -18,6 +18,7 @@ from grader.run.lockstep.protocol import (
     ProtocolError,
     Reply,
     State,
+    StudentEndpoint,
     Table,
     decode,
     encode,
@@ -58,19 +59,25 @@ def test_tables_survive_the_link() -> None:
 
 
 def test_interests_survive_the_link() -> None:
-    interests = Interests(("topic /turtle1/pose",), (("/chatter", "std_msgs/msg/String"),))
+    own = StudentEndpoint("/space/talker", "topic /chatter", "std_msgs/msg/String", True, 1, 2, 0)
+    interests = Interests((own, own._replace(writes=False)))
     assert decode(encode(interests)) == interests
 
 
 @pytest.mark.parametrize(
     "data",
     [
-        b'I[["topic /a\\u001b[31m"], []]',
-        b'I[["topic pose"], []]',
+        b'I[["/a", "topic /a\\u001b[31m", "a/msg/A", true, 1, 2, 0]]',
+        b'I[["/a", "topic pose", "a/msg/A", true, 1, 2, 0]]',
+        b'I[["/a b", "topic /a", "a/msg/A", true, 1, 2, 0]]',
+        b'I[["/a", "topic /a", "String", true, 1, 2, 0]]',
+        b'I[["/a", "topic /a", "a/msg/A", 1, 1, 2, 0]]',
+        b'I[["/a", "topic /a", "a/msg/A", true, 1, 2, -1]]',
+        b'I[["/a", "topic /a", "a/msg/A", true, 1, 2, "0"]]',
+        b'I[["/a", "topic /a", "a/msg/A", true, 1, 2, 0, 0]]',
+        b'I[["/a", 3, "a/msg/A", true]]',
         b"I[[3], []]",
-        b'I[[], [["/chatter", "String"]]]',
-        b'I[[], [["/chat ter", "std_msgs/msg/String"]]]',
-        b"I[[], [[]]]",
+        b"I3",
         b"I" + b"[" * 100_000,
     ],
 )
