@@ -1,10 +1,11 @@
 """Fuzz a simulator's process with what no well-meant program sends, and check that it survives.
 
-    python scripts/fuzz_simulator.py ros|link [--seconds N] [--seed N]
+    python scripts/fuzz_simulator.py ros|link|cast [--seconds N] [--seed N]
 
 `ros`: every service, topic and part of an action of a `turtlesim_node`, over DDS, with values that
 are random, huge, or none. `link`: a graded simulator in virtual time, whose student's side sends
-mutated packets and mutated CDR. `sends_broken_packets` (tests/attacks) fuzzes the layer below DDS.
+mutated packets and mutated CDR. `cast`: the same beside scripted peers, with readers and writers
+that it makes up. `sends_broken_packets` (tests/attacks) fuzzes the layer below DDS.
 
 It prints counts, and ends with 1 if a process has died or does not answer any more.
 """
@@ -26,7 +27,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,53 @@ sys.path.insert(0, str(ROOT))
 FLOATS = (0.0, -0.0, 1.0, 5e-324, 1e-38, 1e38, 1e308, -1e308, float("inf"), -float("inf"))
 TEXTS = ("", "turtle1", "t2", "a/b", "/", "~", "\0", "\x1b[31m", "ü" * 9, "[/b]", "use_sim_time")
 LENGTHS = (0, 1, 255, 256, 300, 300, 3_000, 3_000, 30_000)
+_ADD, _COUNT = "example_interfaces/srv/AddTwoInts", "example_interfaces/action/Fibonacci"
+CAST: dict[str, Any] = {
+    "peer": {
+        "publishers": {"data": {"type": "std_msgs/msg/Float64", "rate": 10, "message": "=n * 1.0"}},
+        "subscriptions": {"out": {"type": "std_msgs/msg/Float64"}},
+        "services": {
+            "divide": {"type": _ADD, "response": {"sum": "=a // b"}},
+            "slow": {"type": _ADD, "response": {"sum": "=a * b"}, "delay": 0.1},
+        },
+        "calls": {str(n): {"service": "add", "type": _ADD, "at": n} for n in range(9)},
+        "goals": {
+            str(n): {"action": "count", "type": _COUNT, "at": n, "cancel_after": n}
+            for n in range(9)
+        },
+        "actions": {
+            "fibonacci": {"type": _COUNT, "accepts": "=1 / order", "feedback": [[0]], "result": [0]}
+        },
+        "parameters": {
+            **{f"get {n}": {"node": "fuzz", "at": n, "get": ["p", "q"]} for n in range(9)},
+            **{f"set {n}": {"node": "fuzz", "at": n, "set": {"p": 5}} for n in range(9)},
+        },
+        "frames": {"still": {"parent": "world", "child": "peer", "rate": 5}},
+    },
+}
+#: What a program may have beside it, and what no program has.
+CHANNELS = (
+    *(f"topic /{name}" for name in ("out", "data", "big", "tf", "rosout", "cast/events")),
+    *("request /add", "request /divide", "response /add", "topic /count/_action/feedback"),
+    *(f"request /count/_action/{part}" for part in ("send_goal", "get_result", "cancel_goal")),
+    *("request /fuzz/get_parameters", "request /fuzz/set_parameters"),
+)
+TYPES = (
+    *("std_msgs/msg/Float64", "std_msgs/msg/String", "tf2_msgs/msg/TFMessage", _ADD, _COUNT),
+    *(f"{_COUNT}_{part}" for part in ("SendGoal", "GetResult", "FeedbackMessage")),
+    *("action_msgs/srv/CancelGoal", "rcl_interfaces/srv/GetParameters", "rcl_interfaces/msg/Log"),
+    *("rcl_interfaces/srv/SetParameters", "no_such/msg/Type", "antigravity/msg/Foo", "os/path/Foo"),
+)
+#: A right type of some of these.
+_RIGHT = {
+    **{"topic /out": "std_msgs/msg/Float64", "request /add": _ADD},
+    "topic /count/_action/feedback": f"{_COUNT}_FeedbackMessage",
+    "request /count/_action/send_goal": f"{_COUNT}_SendGoal",
+    "request /count/_action/get_result": f"{_COUNT}_GetResult",
+    "request /count/_action/cancel_goal": "action_msgs/srv/CancelGoal",
+    "request /fuzz/get_parameters": "rcl_interfaces/srv/GetParameters",
+    "request /fuzz/set_parameters": "rcl_interfaces/srv/SetParameters",
+}
 NAMES = ("background_r", "holonomic", "image_rate", "canvas_folder", "use_sim_time", "interfaces")
 
 
@@ -117,7 +165,10 @@ def _class(kind: str) -> Any:
     if not part:
         return getattr(importlib.import_module(".".join([package, *(folder or ["msg"])])), name)
     whole = getattr(importlib.import_module(f"{package}.action"), action)
-    return getattr(whole.Impl, f"{part}Service", None) or getattr(whole, part)
+    impl = whole.Impl
+    return (
+        getattr(impl, f"{part}Service", None) or getattr(impl, part, None) or getattr(whole, part)
+    )
 
 
 # Over DDS ---------------------------------------------------------------------------------------
@@ -227,18 +278,31 @@ def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
 # On the link ------------------------------------------------------------------------------------
 
 
-def fuzz_link(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
-    """Be the student's side of many runs; return the counts, and what went wrong."""
+def fuzz_link(
+    seconds: float, chance: random.Random, cast: dict[str, Any] | None = None
+) -> tuple[Counter[str], str]:
+    """Be the student's side of many runs; return the counts, and what went wrong.
+
+    Args:
+        cast: scripted peers that are there.
+    """
     counts: Counter[str] = Counter()
     until = time.monotonic() + seconds
     while time.monotonic() < until:
         counts["runs"] += 1
-        if wrong := _run_on_link(chance, counts, until):
+        if wrong := _run_on_link(chance, counts, until, cast):
             return counts, wrong
     return counts, ""
 
 
-def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> str:
+def fuzz_cast(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
+    """Do the same beside scripted peers."""
+    return fuzz_link(seconds, chance, CAST)
+
+
+def _run_on_link(
+    chance: random.Random, counts: Counter[str], until: float, cast: dict[str, Any] | None
+) -> str:
     from grader.message import Message
     from grader.run.handover import Plan
     from grader.run.limits import Patience
@@ -249,10 +313,13 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
     control, controlled = socket.socketpair()
     recording = os.memfd_create("recording")
     page = account.make()
+    plan = Plan(Limits(3, 1, 30))
+    if cast is not None:
+        plan = replace(plan, scene="graph", cast=cast, hears=("/big", "/tf"))
     fds = (controlled.fileno(), theirs.fileno(), recording, page)
     words = [
         *(str(controlled.fileno()), f"/proc/self/fd/{recording}"),
-        *(Plan(Limits(3, 1, 30)).to_json(), str(theirs.fileno()), str(page)),
+        *(plan.to_json(), str(theirs.fileno()), str(page)),
         *(str(os.getpid()), "-1"),
         json.dumps(asdict(Patience(simulator_cpu_s=20.0, all_asleep_s=2.0, asleep_s=1.0))),
         "",  # no live feed
@@ -273,7 +340,7 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
         controlled.close()
         os.close(recording)
         with suppress(OSError):
-            _converse(ours, page, chance, counts, until)
+            _converse(ours, page, chance, counts, until, has_cast=cast is not None)
         os.close(page)
         ours.close()
         output = b""
@@ -297,13 +364,20 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
 
 
 def _converse(
-    link: socket.socket, page: int, chance: random.Random, counts: Counter[str], until: float
+    link: socket.socket,
+    page: int,
+    chance: random.Random,
+    counts: Counter[str],
+    until: float,
+    *,
+    has_cast: bool,
 ) -> None:
     from grader.run.lockstep.protocol import (
         Advance,
         Interests,
         Mail,
         Parcel,
+        StudentEndpoint,
         Table,
         decode,
         encode,
@@ -313,9 +387,12 @@ def _converse(
     data, fds, _, _ = socket.recv_fds(link, 200_000, 1)
     table = decode(data)
     assert isinstance(table, Table)
-    readers = [entry for entry in table.added if not entry.writes]
-    requests = [(entry.id, *_samples(entry)) for entry in readers]
-    channels = tuple(entry.channel for entry in table.added if entry.writes)
+    requests = [(entry.id, *_samples(entry)) for entry in table.added if not entry.writes]
+    reading = tuple(
+        StudentEndpoint("/fuzz", entry.channel, entry.type, writes=False)
+        for entry in table.added
+        if entry.writes
+    )
     is_rude = chance.random() < 0.5  # also invalid packets, which end the run
     with socket.socket(fileno=fds[0]) as mail:
         mail.setblocking(False)
@@ -324,7 +401,8 @@ def _converse(
                 break
             parcels = [
                 Parcel(
-                    *(number, chance.choice((0, 1, 2**32 - 1)), chance.choice((0, 7, 2**64 - 1))),
+                    *(number, chance.choice((0, 1, 2**32 - 1))),
+                    chance.choice((0, 1, 2, 7, 2**64 - 1)),
                     *(0, mutated(_cdr(kind, chance), chance)),
                 )
                 for number, kind in requests
@@ -339,12 +417,19 @@ def _converse(
                     _drain(link)
             os.pwrite(page, chance.randbytes(8), 0)
             if chance.random() < 0.1:
-                link.send(encode(Interests(channels[: chance.randrange(len(channels))])))
+                made = _made_up(chance) if has_cast else ()
+                interests = encode(Interests(reading[: chance.randrange(len(reading))] + made))
+                is_wrong = is_rude and chance.random() < 0.1
+                link.send(mutated(interests, chance) if is_wrong else interests)
             ask = encode(Advance(2**40, 1, chance.choice((0, turn, 2**64 - 1)), True))
             is_wrong = is_rude and chance.random() < 0.01
             link.send(mutated(ask, chance) if is_wrong else ask)
             counts["packets"] += 2
-            _drain(link)
+            for reply in map(decode, _drain(link)):
+                if isinstance(reply, Table):
+                    counts["tables"] += 1
+                    new = [(e.id, *_samples(e)) for e in reply.added if not e.writes]
+                    requests = [each for each in requests if each[0] not in reply.removed] + new
 
 
 def _is_sent(mail: socket.socket, piece: bytes) -> bool:
@@ -357,7 +442,21 @@ def _is_sent(mail: socket.socket, piece: bytes) -> bool:
 
 def _samples(entry: Any) -> tuple[Any]:
     kind = _class(entry.type)
-    return (getattr(kind, "Request", kind),)
+    part = "Response" if entry.channel.startswith("response") else "Request"
+    return (getattr(kind, part, kind),)
+
+
+def _made_up(chance: random.Random) -> tuple[Any, ...]:
+    """Return endpoints of a program that is not there."""
+    from grader.run.lockstep.protocol import StudentEndpoint
+
+    made = []
+    for channel in chance.sample(CHANNELS, chance.randrange(len(CHANNELS))):
+        kind = chance.choice((_RIGHT.get(channel, TYPES[0]), chance.choice(TYPES)))
+        node = chance.choice(("/fuzz", "/peer", "/", f"/n{chance.randrange(10**6)}"))
+        numbers = (chance.choice((0, 1, 2, 3, 2**32 - 1)) for _ in range(3))
+        made.append(StudentEndpoint(node, channel, kind, chance.random() < 0.7, *numbers))
+    return tuple(made)
 
 
 def _cdr(kind: Any, chance: random.Random) -> bytes:
@@ -369,16 +468,19 @@ def _cdr(kind: Any, chance: random.Random) -> bytes:
         return bytes(serialize_message(kind()))
 
 
-def _drain(link: socket.socket) -> None:
-    """Read what is there, and wait a little for the first of it."""
-    patience_s = 0.5
+def _drain(link: socket.socket) -> list[bytes]:
+    """Return what is there, without parts of packets; wait a little for the first of it."""
+    found, patience_s = [], 0.5
     while select.select([link], [], [], patience_s)[0]:
-        if not link.recv(200_000):
+        data = link.recv(200_000)
+        if not data:
             raise ConnectionError
+        found += [data] if data[:1] in (b"T", b"R") else []
         patience_s = 0.0
+    return found
 
 
-FUZZERS = {"ros": fuzz_ros, "link": fuzz_link}
+FUZZERS = {"ros": fuzz_ros, "link": fuzz_link, "cast": fuzz_cast}
 
 
 def main(argv: Sequence[str]) -> int:

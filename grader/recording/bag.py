@@ -22,26 +22,16 @@ from grader.recording import rosbag2_reader
 from grader.recording.rosbag2_writer import Record, Rosbag2Writer
 from grader.recording.subject import Subject, Trace
 
-_NONE: Mapping[str, str] = {}
 
-
-def write(
-    trace: Trace, subject: Subject, folder: Path, interfaces: Mapping[str, str] = _NONE
-) -> Path:
+def write(trace: Trace, subject: Subject, folder: Path) -> Path:
     """Write a bag; returns its .mcap, which is named like the folder. Last comes metadata.yaml.
 
     The same trace gives the same bytes.
 
-    Args:
-        interfaces: definitions of types that are no scene's, in case that a topic has one.
-
     Raises:
         OSError: it cannot be written, e.g. because the disk is full.
     """
-    topics = list(subject.bag_topics(trace))
-    has_other = not interfaces.keys().isdisjoint(msgtype for _, msgtype in topics)
-    others = {name: interfaces[name] for name in interfaces if has_other and "/msg/" in name}
-    types = types_of({**others, **subject.message_definitions()}, is_whole=has_other)
+    types = types_of(subject.definitions_of(trace))
     writer = Rosbag2Writer(folder)
     connections: dict[str, Connection] = {}
 
@@ -56,7 +46,7 @@ def write(
             yield connections.get(topic) or connection(topic, msgtype), time_ns, data
 
     with writer:
-        for topic, msgtype in topics:
+        for topic, msgtype in subject.bag_topics(trace):
             connection(topic, msgtype)
         writer.write_all(records())
     return folder / f"{folder.name}.mcap"
@@ -83,7 +73,7 @@ def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
         raise RecordingError(f"the bag in {folder} holds no recording: {_brief(error)}") from error
 
 
-def types_of(definitions: Mapping[str, str], *, is_whole: bool = False) -> Typestore:
+def types_of(definitions: Mapping[str, str]) -> Typestore:
     """Return a typestore of the types that are defined, and of builtin_interfaces.
 
     rosbags has the types of ROS 2 Jazzy, but importing them lasts longer than a run's verdict: they
@@ -91,14 +81,13 @@ def types_of(definitions: Mapping[str, str], *, is_whole: bool = False) -> Types
 
     Args:
         definitions: ROS type -> the text of its .msg; also of the types of its fields.
-        is_whole: whether those of ROS are needed nonetheless.
     """
-    return _store(tuple(definitions.items()), Stores.ROS2_JAZZY if is_whole else Stores.EMPTY)
+    return _store(tuple(definitions.items()))
 
 
 @cache  # the code that (de)serializes a type is compiled once a store
-def _store(definitions: tuple[tuple[str, str], ...], known: Stores) -> Typestore:
-    types = get_typestore(known)
+def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
+    types = get_typestore(Stores.EMPTY)
     for msgtype, text in definitions:
         types.register(get_types_from_msg(text, msgtype))
     return types

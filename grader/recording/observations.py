@@ -112,6 +112,8 @@ LintKind = Literal[
     "entry",
     "not_defined",
     "circular",
+    "unanswered",
+    "quiet",
 ]
 
 
@@ -288,7 +290,8 @@ class LintFinding:
             NEAR; `circular` - the file NAME imports this one, too, which uses it or not (`unused`);
             `unstarted` - nothing starts the thread NAME; `heads` - NAME is the angle of a pose;
             `exits` - where NAME is true the program ends; `keeps` - NAME is kept for the next
-            comparison.
+            comparison; `unanswered` - the callback NAME of a server gives no NEAR (response,
+            result); `quiet` - NAME logs what is not shown.
     """
 
     kind: LintKind

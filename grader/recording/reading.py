@@ -16,6 +16,7 @@ from grader.errors import RecordingError
 from grader.limited import WorkLimits
 from grader.message import Message, msg
 from grader.recording import transfer
+from grader.recording.beside import CastKeeper, apart
 from grader.recording.folder import (
     BAG,
     CIRCUMSTANCES,
@@ -219,6 +220,11 @@ class _Header:
     subject: Subject
     output: str
 
+    @property
+    def kept(self) -> Subject:
+        """Who reads the bag."""
+        return CastKeeper(self.subject) if self.facts.get("cast") else self.subject
+
 
 def _read_header(folder: Path) -> _Header:
     """Read the files beside the bag, and compare the bag's checksum."""
@@ -246,10 +252,9 @@ def _loaded(found: Sequence[_Header]) -> list[Recording]:
     def answers() -> Iterator[bytes]:
         for header in found:
             try:
-                trace = bags.read(
-                    header.folder / BAG, header.subject, round(header.run.simulated_s * 1e9)
-                )
-                yield _TRACE + transfer.pack(trace, header.subject)
+                kept, end_ns = header.kept, round(header.run.simulated_s * 1e9)
+                trace = bags.read(header.folder / BAG, kept, end_ns)
+                yield _TRACE + transfer.pack(trace, kept)
             except RecordingError as error:
                 yield _ERROR + json.dumps(error.message.serialise()).encode()
 
@@ -262,7 +267,7 @@ def _loaded(found: Sequence[_Header]) -> list[Recording]:
                 if answer.startswith(_ERROR):
                     message = json.loads(answer.removeprefix(_ERROR))
                     raise RecordingError(Message.parse(message))
-                trace = transfer.unpack(answer.removeprefix(_TRACE), header.subject)
+                trace = transfer.unpack(answer.removeprefix(_TRACE), header.kept)
                 made.append(_recording(header, trace))
     except limited.LimitHit as hit:
         folder = str(found[len(made)].folder)
@@ -278,8 +283,10 @@ def _recording(header: _Header, trace: Trace) -> Recording:
     with scene_at_work(header.subject.name, RecordingError):
         _must_agree(header.folder, "ticks", header.run.ticks, trace.ticks)
         _must_agree(header.folder, "trace_sha256", header.run.trace_sha256, trace.sha256())
+    own, cast = apart(trace)
     return Recording(
-        trace=trace,
+        trace=own,
+        cast=cast,
         run=header.run,
         topics=tuple(PublishedTopic(**topic) for topic in facts["topics"]),
         output=header.output,

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -18,6 +19,8 @@ from grader.recording.subject import Start, Trace, load_subject
 from grader.recording.view import Pictures, Pixels
 from grader.strict_json import SPARSE
 
+#: A constant of a definition, which is no field.
+_CONSTANT = re.compile(r"\S+ \w+ ?=")
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed", "not_run"]
 Clock = Literal["virtual", "real"]
 
@@ -40,6 +43,7 @@ class Run:
         flags: remarks on the run that a reader of the result should know.
         seed: chose where the varied runs start; None where there are none.
         interfaces: with which the scene was run; '' where it has no choice, or had none.
+        case: of the exercise; '' for the usual one.
     """
 
     time: Clock = "real"
@@ -53,6 +57,7 @@ class Run:
     flags: tuple[Message, ...] = ()
     seed: int | None = None
     interfaces: str = field(default="", metadata=SPARSE)
+    case: str = field(default="", metadata=SPARSE)
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,19 @@ class OwnInterfaces:
     texts: Mapping[str, str] = field(default_factory=dict)
     faults: Mapping[str, Message] = field(default_factory=dict)
     unlike: Mapping[str, Message] = field(default_factory=dict)
+
+    @property
+    def importable(self) -> dict[str, str]:
+        """Those without a fault."""
+        return {name: text for name, text in self.texts.items() if name not in self.faults}
+
+    @staticmethod
+    def fields(text: str) -> list[str]:
+        """Return the fields of a definition, and its lines of ---, without values."""
+        lines = (line.partition("#")[0].split() for line in text.splitlines())
+        return [
+            " ".join(each[:2]) for each in lines if each and not _CONSTANT.match(" ".join(each))
+        ]
 
     @property
     def packages(self) -> set[str]:
@@ -129,10 +147,11 @@ class Recording:
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
         observations: what its process has reported; for words, not for points.
+        cast: what the scripted peers beside another scene have recorded; None where there are none.
         package: what an inspection of the submission's package found, in the nominal run's: a trace
             of the scene `package`; None where it is in none, or the exercise inspects none.
         provenance: when and with what it was made; only the nominal run has it, for all.
-        interfaces: those of the submission's program.
+        interfaces: those that the submission defines, and its exercise.
     """
 
     trace: Trace
@@ -142,6 +161,7 @@ class Recording:
     start: Start | None = None
     scene: str = "turtlesim"
     observations: Observations = field(default_factory=Observations)
+    cast: Trace | None = None
     package: Trace | None = None
     provenance: Provenance | None = field(default=None, compare=False)
     interfaces: OwnInterfaces = field(default_factory=OwnInterfaces, compare=False)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from grader import content
+from grader.recording.beside import together
 from grader.recording.folder import (
     CIRCUMSTANCES,
     CIRCUMSTANCES_FILE,
@@ -136,7 +137,7 @@ def _withdraw(folder: Path) -> None:
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     scene = load_subject(recording.scene)
-    mcap = bag().write(recording.trace, scene, folder, recording.interfaces.texts)
+    mcap = bag().write(*together(recording.trace, recording.cast, scene), folder)
     run = to_json(recording.run, OURS)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     if recording.provenance is not None:
@@ -154,6 +155,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     }
     if recording.scene != DEFAULT_SCENE:
         facts["scene"] = recording.scene
+    if recording.cast is not None:
+        facts["cast"] = True
     _write_json(folder / RUN, facts)
     _write_json(folder / CIRCUMSTANCES_FILE, circumstances)
     # Bytes: a student's line ends stay as they are.

@@ -27,14 +27,16 @@ DEFAULT_SCENE: Final = "turtlesim"
 #: Hooks of a subject, and of a scene, and what they may raise; `from_channels` and `decode` may
 #: raise anything.
 HOOKS: Final[Mapping[str, tuple[type[Exception], ...]]] = {
-    **dict.fromkeys(("untouched", "message_definitions", "to_messages", "bag_topics"), ()),
-    **dict.fromkeys(("encode", "scenario", "behaviour", "view", "pictures", "remarks"), ()),
-    **dict.fromkeys(("endpoints", "wrong_setting", "adapted", "how_to_try", "odd_traces"), ()),
-    **dict.fromkeys(("simulate", "preload", "starts"), ()),
+    **dict.fromkeys(("untouched", "message_definitions", "definitions_of", "to_messages"), ()),
+    **dict.fromkeys(("bag_topics", "encode", "scenario", "behaviour", "view", "pictures"), ()),
+    **dict.fromkeys(("remarks", "endpoints", "wrong_setting", "adapted", "how_to_try"), ()),
+    **dict.fromkeys(("odd_traces", "simulate", "preload", "starts"), ()),
     **{"interfaces_for": (SubmissionError,), "live_page": (OSError,)},
 }
 #: The subject of a package inspection; a run's recording may hold such a trace.
 PACKAGE_SCENE: Final = "package"
+#: The scene whose traces are those of a cast, also of one beside another scene.
+CAST_SCENE: Final = "graph"
 
 
 @dataclass(frozen=True)
@@ -105,11 +107,15 @@ class Endpoint(NamedTuple):
     Attributes:
         name: with its namespace.
         type: as 'geometry_msgs/msg/Twist'.
+        node: of a scripted peer; '' for the scene itself.
+        begin_s: from when on it is there [s].
     """
 
     kind: EndpointKind
     name: str
     type: str
+    node: str = ""
+    begin_s: float = 0.0
 
 
 class Command(NamedTuple):
@@ -162,6 +168,8 @@ class Subject(ABC):
     #: Whether what a person would have seen is that plane, so that places can be shown in it. Else
     #: its `pictures` have a `plan`, if anything moves.
     window_is_plane: ClassVar[bool] = False
+    #: Whether its trace is that of scripted peers; else that is kept beside its own.
+    has_cast: ClassVar[bool] = False
 
     def __init_subclass__(cls, **words: Any) -> None:
         """Let exceptions of its hooks name the subject, the file and the line."""
@@ -178,6 +186,10 @@ class Subject(ABC):
     @abstractmethod
     def message_definitions(self) -> Mapping[str, str]:
         """The definitions of the ROS types in its bags, and of the types of their fields."""
+
+    def definitions_of(self, trace: Trace) -> Mapping[str, str]:
+        """The same, with those that only a trace knows."""
+        return self.message_definitions()
 
     @abstractmethod
     def to_messages(self, trace: Trace) -> list[BagMessage]:

@@ -93,8 +93,7 @@ def compile_all(
     try:
         if unlike := next(iter(own.unlike.values()), NOTHING):
             raise NotCompiled(UNLIKE.given(difference=unlike))
-        right = {name: text for name, text in own.texts.items() if name not in own.faults}
-        for texts in (theirs, right):
+        for texts in (theirs, own.importable):
             if texts:
                 place, rest = _compiled(texts, context), context.env.get("PYTHONPATH")
                 path = os.pathsep.join(filter(None, [str(place), rest]))

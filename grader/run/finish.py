@@ -15,11 +15,12 @@ from typing import NamedTuple
 
 from grader.errors import GraderFailure
 from grader.message import Message, msg
+from grader.recording.beside import apart
 from grader.recording.observations import Observations
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
 from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import Trace, load_subject
-from grader.run.handover import Plan
+from grader.run.handover import Plan, keeper
 from grader.run.limits import LIMITS, size
 from grader.run.processes.started_process import SubmissionProcess
 from grader.scenes.scene import Reason
@@ -117,7 +118,7 @@ def outcome(reason: Reason, exit_code: int | None) -> Outcome:
 def not_run(plan: Plan, why: Message) -> Recording:
     """Return the recording of a run that was not started."""
     ending = Ending(Run("virtual", "not_run", flags=(why,)))
-    return record(plan, load_subject(plan.scene).untouched(plan.start), (), ending)
+    return record(plan, _untouched(plan), (), ending)
 
 
 class SimulatorLost(GraderFailure):
@@ -140,8 +141,11 @@ def recording_of_nothing(plan: Plan, lost: SimulatorLost) -> Recording:
     lines = [line for line in last_words.splitlines() if line and not line.startswith("[")]
     shown = [without_controls(text, "?")[:LONGEST_WORDS] for text in (how.rstrip("."), *lines[-1:])]
     flags = (*lost.ending.run.flags, LOST_TWICE.given(words="; ".join(shown)))
-    trace = load_subject(plan.scene).untouched(plan.start)
-    return record(plan, trace, (), lost.ending.with_flags(*flags))
+    return record(plan, _untouched(plan), (), lost.ending.with_flags(*flags))
+
+
+def _untouched(plan: Plan) -> Trace:
+    return keeper(plan, load_subject(plan.scene)).untouched(plan.start)
 
 
 def limits_struck(exit_code: int | None, output: str, excess: Message) -> tuple[Message, ...]:
@@ -177,6 +181,7 @@ def record(
     observations: Observations = NO_OBSERVATIONS,
 ) -> Recording:
     """Put together the recording of a run that is over."""
+    own, cast = apart(trace)
     with scene_at_work(plan.scene):
         run = replace(
             ending.run,
@@ -187,5 +192,7 @@ def record(
             flags=(*ending.run.flags, *plan.flags),
             seed=plan.seed,
             interfaces=plan.interfaces,
+            case=plan.case,
         )
-    return Recording(trace, run, topics, ending.output, plan.start, plan.scene, observations)
+    kept = (own, run, topics, ending.output, plan.start, plan.scene, observations)
+    return Recording(*kept, cast=cast)

@@ -12,16 +12,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from struct import Struct
-from typing import Self
+from typing import Any, Self
 
 from grader import strict_json
 from grader.errors import GraderFailure, SceneFailure
 from grader.message import Message, msg
 from grader.recording import transfer
+from grader.recording.beside import Both, CastKeeper
 from grader.recording.recording import PublishedTopic
-from grader.recording.subject import Start, Trace
+from grader.recording.subject import Start, Subject, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
-from grader.scenes.scene import Limits, Scene
+from grader.scenes.scene import Limits
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,11 @@ class Plan:
         looks_at_package: whether the package around the submission's program is inspected as well.
         inspections: the names of the inspectors that examine a package.
         definitions: the exercise's interfaces: a type -> its definition.
+        cast: its scripted peers, as `grader.cast.script` reads them; None for none.
+        hears: topics that are recorded besides those that the peers hear.
+        own_definitions: a hand-in's interfaces, for a cast alone: nothing imports them.
+        arguments: those that the program is started with.
+        case: of the exercise; '' for the usual one.
         budget: that of the whole grading, which the simulator's process does not know.
     """
 
@@ -55,6 +61,13 @@ class Plan:
     definitions: Mapping[str, str] = field(
         default_factory=dict, hash=False, metadata=strict_json.SPARSE
     )
+    cast: Mapping[str, Any] | None = field(default=None, hash=False, metadata=strict_json.SPARSE)
+    hears: tuple[str, ...] = field(default=(), metadata=strict_json.SPARSE)
+    own_definitions: Mapping[str, str] = field(
+        default_factory=dict, hash=False, metadata=strict_json.SPARSE
+    )
+    arguments: tuple[str, ...] = field(default=(), metadata=strict_json.SPARSE)
+    case: str = field(default="", metadata=strict_json.SPARSE)
     budget: CpuBudget = field(
         default_factory=CpuBudget, compare=False, metadata=strict_json.UNSTORED
     )
@@ -75,12 +88,24 @@ class Plan:
 
 # The recording --------------------------------------------------------------------------------
 
+
+def keeper(plan: Plan, scene: Subject) -> Subject:
+    """Return what keeps the trace of a run: with a cast beside a scene, that of both."""
+    return scene if plan.cast is None or scene.has_cast else CastKeeper(scene)
+
+
+def whole(scene: Subject, trace: Trace, cast: Any) -> Trace:
+    """Return the trace of a scene, with that of the cast beside it (`grader.cast.playing`)."""
+    is_beside = cast is not None and not scene.has_cast
+    return Both(trace, cast.trace(trace.ticks)) if is_beside else trace
+
+
 _LENGTH = Struct("<Q")
 #: Every node has these, and ROS publishes on them by itself.
 USUAL = ("/rosout", "/parameter_events")
 
 
-def leave(path: Path, scene: Scene, trace: Trace, published: Mapping[str, str]) -> None:
+def leave(path: Path, scene: Subject, trace: Trace, published: Mapping[str, str]) -> None:
     """Write the file, in the simulator's process.
 
     Args:
@@ -91,7 +116,7 @@ def leave(path: Path, scene: Scene, trace: Trace, published: Mapping[str, str]) 
     path.write_bytes(_LENGTH.pack(len(facts)) + facts + transfer.pack(trace, scene))
 
 
-def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
+def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]:
     """Read the file from an open descriptor, in the grader's process.
 
     Raises:

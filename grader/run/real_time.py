@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 
 from grader import linux
+from grader.cast import script
 from grader.errors import GraderFailure, NotNow, SceneFailure
 from grader.message import Message
 from grader.recording.recording import Recording
@@ -70,7 +71,9 @@ def run(
         ExitStack() as stack,
     ):
         try:
-            ours, theirs = compiling.compile_all(plan.definitions, submission.interfaces, context)
+            # of a cast the simulator's process hears the submission's own
+            known = {**plan.own_definitions, **plan.definitions}
+            ours, theirs = compiling.compile_all(known, submission.interfaces, context)
         except compiling.NotCompiled as why:
             return not_run(plan, why.message)
         its = replace(context, env={**context.env, **ours.env})
@@ -80,7 +83,7 @@ def run(
         simulator.expect("ready")
         submission, student = context.start(
             submission,
-            lambda private: command(private, scene.introduction, account.page),
+            lambda private: command(private, scene.introduction, plan, account.page),
             (account.page,),
             student_environment(theirs.env),
             more=theirs.folders,
@@ -95,7 +98,7 @@ def run(
                 if exit_code is None:
                     account.request_dump(student.pid)
                 account.close()  # later entries are only about the end that we ask for
-            trace, topics = handover.fetch(context.recording, scene)
+            trace, topics = handover.fetch(context.recording, handover.keeper(plan, scene))
         except (NotNow, SceneFailure):  # it was never started, or is not to blame
             raise
         except GraderFailure as failure:
@@ -106,10 +109,12 @@ def run(
     return record(plan, trace, topics, ending(how, exit_code, flags), observations)
 
 
-def command(submission: Submission, introduction: Introduction, page: int) -> list[str]:
+def command(submission: Submission, introduction: Introduction, plan: Plan, page: int) -> list[str]:
     """Return the command of the submission's process."""
-    awaited = json.dumps([introduction.topics, introduction.services])
-    words = [awaited, str(page), *run_context.start_arguments(submission)]
+    heard = [] if plan.cast is None else script.heard(script.parse(plan.cast), plan.hears)
+    topics = [*introduction.topics, *heard]
+    introduced = json.dumps([topics, introduction.services, plan.arguments])
+    words = [introduced, str(page), *run_context.start_arguments(submission)]
     return [sys.executable, str(STUDENT / "main.py"), *words]
 
 

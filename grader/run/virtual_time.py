@@ -109,7 +109,7 @@ def _try(
         fds = (ours.fileno(), account.page)
         submission, student = context.start(
             submission,
-            lambda private: command(private, scene.introduction, *fds),
+            lambda private: command(private, scene.introduction, plan, *fds),
             fds,
             virtual_environment({}),
             fork_servers.for_student(submission.root),
@@ -142,7 +142,7 @@ def _try(
                 reason = Message.parse(message["reason"])
                 return None, reason.map_texts(submission.with_original_paths)
             marks.update(message["marks"])
-            trace, topics = handover.fetch(context.recording, scene)
+            trace, topics = handover.fetch(context.recording, handover.keeper(plan, scene))
         except SceneFailure:
             raise
         except GraderFailure as failure:
@@ -157,12 +157,17 @@ def _try(
 
 
 def command(
-    submission: Submission, introduction: Introduction, link_fd: int, page: int
+    submission: Submission, introduction: Introduction, plan: Plan, link_fd: int, page: int
 ) -> list[str]:
     """Return the command of the submission's process."""
     own = submission.interfaces
-    interfaces = own.texts, list(own.unlike)
-    known = json.dumps([introduction.nodes, introduction.compares_stamps, *interfaces])
+    nodes = [*introduction.nodes, *((name, "/") for name in plan.cast or ())]
+    known = json.dumps(
+        [
+            *(nodes, introduction.compares_stamps, own.texts, list(own.unlike)),
+            *(plan.cast is not None, plan.arguments),
+        ]
+    )
     words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]
     return [*fork_servers.command(fork_servers.STUDENT), *words]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
 from grader.recording.playback import JudgedCheck
@@ -28,6 +28,14 @@ class Grading:
     first: str = ""
     judged: tuple[JudgedCheck, ...] = ()
     is_over: bool = False
+
+
+def content_of(grading: Grading) -> Mapping[str, Any]:
+    """Return the state of a grading as plain data for the page."""
+    shown = ("status", "word", "title", "rationale", "help")
+    checks = [{name: getattr(each, name) for name in shown} for each in grading.judged]
+    rest = {name: value for name, value in asdict(grading).items() if name != "judged"}
+    return {**rest, "checks": checks}
 
 
 class LivePage(Protocol):

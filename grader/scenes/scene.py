@@ -74,10 +74,12 @@ class Hooks:
         has_unread: whether anything has arrived; while nothing has, a node need not be served.
         send_news: receives after each tick what viewers see, as plain data for the live page of
             the scene (`grader.scenes.live`); None where there is no audience.
+        cast: the exercise's, at work (`grader.cast.playing.Playing`); None where it has none.
     """
 
     has_unread: Callable[[], bool] = lambda: True
     send_news: Callable[[Mapping[str, Any]], None] | None = None
+    cast: Any = None
 
 
 @dataclass(frozen=True)

@@ -33,9 +33,8 @@ _OPTIONS: Final = (
     "SKIP_GROUP_MEMBERSHIP_CHECK",
     "ADD_LINTER_TESTS",
 )
-#: The packages whose types are used; a constant, which is no field.
+#: The packages whose types are used.
 _USED: Final = re.compile(r"^[ \t]*([a-z]\w{0,100})/", re.MULTILINE)
-_CONSTANT: Final = re.compile(r"\S+ \w+ ?=")
 #: In a word of CMake's with a variable that nobody knows here: it may be any.
 _UNKNOWN: Final = "${"
 #: colcon passes by a folder with this file.
@@ -290,16 +289,10 @@ def _difference(name: str, own: str, theirs: str) -> Message:
     """Say how a type is defined otherwise than its exercise has it."""
     package, kind, stem = name.split("/")
     words = {"package": package, "file": f"{stem}.{kind}"}
-    for mine, other in zip_longest(_fields(own), _fields(theirs), fillvalue="---"):
+    for mine, other in zip_longest(*map(OwnInterfaces.fields, (own, theirs)), fillvalue="---"):
         if mine != other:
             return msg(
                 "{file} of {package} has `{own}` where the exercise's has `{theirs}`",
                 **{**words, "own": shown(mine), "theirs": shown(other)},
             )
     return msg("{file} of {package} contains a type that the exercise has otherwise", **words)
-
-
-def _fields(text: str) -> list[str]:
-    """Return the fields of a definition, and its lines of ---, without values."""
-    lines = (line.partition("#")[0].split() for line in text.splitlines())
-    return [" ".join(each[:2]) for each in lines if each and not _CONSTANT.match(" ".join(each))]

@@ -338,7 +338,7 @@ def _without_brackets(tree: ast.AST, names: Names, file: str) -> Iterator[LintFi
                 asked = list(_leaves(test))
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 asked = list(_leaves(operand))
-            case ast.Expr(value=ast.Attribute() as value):
+            case ast.Expr(value=ast.Attribute(attr=name) as value) if name not in names.kept:
                 yield _finding("uncalled", ast.unparse(value), "", file, node.lineno)
             case ast.Expr(value=ast.Name() as value):
                 asked = [value]

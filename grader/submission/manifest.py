@@ -97,11 +97,6 @@ def exercises_named(file: Path) -> tuple[str, ...]:
     return tuple(each.decode("utf-8", "replace") for each in found)
 
 
-def renamed(text: str, before: str, package: str) -> str:
-    """Return a text, or a file's name, of a package that is called otherwise now."""
-    return re.sub(rf"\b{re.escape(before)}\b", package, text)
-
-
 def naming(text: str, exercise: str, *, is_manifest: bool) -> str:
     """Return the text of a package.xml or a Python file, which names an exercise now."""
     if not is_manifest:

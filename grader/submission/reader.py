@@ -299,15 +299,15 @@ def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -
     imports = read_imports(found.root, found.start, only)
     refused = python_source.byte_faults(imports.files, found.root)
     notes, shows = [*refused, *found.notes], lint(found.root, imports.files)
-    interfaces = completed(found.interfaces, theirs)
-    known = {*imports.surely, *imports.perhaps} & interfaces.packages
-    interfaces = interfaces if known else OwnInterfaces()
+    defined = completed(found.interfaces, theirs)
+    known = {*imports.surely, *imports.perhaps} & defined.packages
+    interfaces = defined if known else OwnInterfaces()
     if found.package is not None:
         notes += undeclared(found.package / MANIFEST, known & found.interfaces.packages)
     for name in known:
         imports.surely.pop(name, None)
         imports.perhaps.pop(name, None)
-    found = replace(found, imports=imports, interfaces=interfaces)
+    found = replace(found, imports=imports, interfaces=interfaces, defined=defined)
     return replace(found, notes=tuple(notes), lint_findings=shows)
 
 

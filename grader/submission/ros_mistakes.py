@@ -22,6 +22,14 @@ MOST_NODES = 60_000
 MOST_FOLLOWED = 30
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
 CREATES = ("create_publisher", "create_client", "create_timer", "create_subscription")
+#: Statements that name a node or what it has.
+_NAMES = ("__init__", "create_service", "ActionServer", "declare_parameter")
+#: What gets a callback -> what that returns.
+_ANSWERS = {"create_service": "response", "ActionServer": "result"}
+#: What nothing of a program's own calls: an entry point, and what a LifecycleNode has.
+CALLED = frozenset(("main",)) | {
+    f"on_{step}" for step in ("configure", "activate", "deactivate", "cleanup", "shutdown", "error")
+}
 #: Of a topic or a service.
 _NAME = re.compile(r"[\w/~]{2,80}")
 #: Fields of messages that beginners set wrongly.
@@ -45,6 +53,7 @@ def find(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
         _heads,
         _exits,
         _keeps,
+        _quiet,
         _unstarted,
         _grows,
     ):
@@ -70,7 +79,7 @@ def find(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
 
 
 def _callbacks(source: Source) -> Iterator[Found]:
-    """Callbacks that take the wrong arguments, or wait for an answer."""
+    """Callbacks that take the wrong arguments, return nothing, or wait for an answer."""
     each = [*source.callbacks()]
     for by, function in each:
         arguments = [*function.args.posonlyargs, *function.args.args]
@@ -84,6 +93,8 @@ def _callbacks(source: Source) -> Iterator[Found]:
                 for of, given in source.given:  # it is right for the other
                     if of == by and last(given) == function.name:
                         yield "message_for_timer", function.name, "heard", given.lineno
+        if by in _ANSWERS and scopes.returns_nothing(function):
+            yield "unanswered", function.name, _ANSWERS[by], function.lineno
         if isinstance(function, ast.AsyncFunctionDef):
             node = _first_await(function)
             if node is not None:
@@ -226,6 +237,12 @@ def _exits(source: Source) -> Iterator[Found]:
         outer = source.around(call, ast.If)
         if isinstance(outer, ast.If) and call.lineno <= (outer.body[-1].end_lineno or 0):
             yield "exits", ast.unparse(outer.test), "", call.lineno
+
+
+def _quiet(source: Source) -> Iterator[Found]:
+    """Log lines of a level that is not shown."""
+    for call in source.calls("debug"):
+        yield "quiet", ast.unparse(call.func), "", call.lineno
 
 
 def _keeps(source: Source) -> Iterator[Found]:
@@ -403,7 +420,7 @@ def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
     }
     creates = [*source.calls(*CREATES)]
     for name, function in source.functions.items():
-        if name in used or name.startswith("__") or function.decorator_list or name == "main":
+        if name in used or name.startswith("__") or function.decorator_list or name in CALLED:
             continue
         takes = [arg.arg for arg in function.args.args if arg.arg != "self"]
         near = [c for c in creates if source.around(c, *_FUNCTIONS) is not function]
@@ -481,8 +498,10 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
 def _constants(source: Source) -> Iterator[Found]:
     """Names of topics and services that stand apart from where they are used."""
     for node in source.nodes:
-        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-            texts = (n for n in ast.walk(node.value) if isinstance(n, ast.Constant))
+        value = getattr(node, "value", None)
+        is_naming = isinstance(node, ast.Expr) and last(getattr(value, "func", node)) in _NAMES
+        if value is not None and (isinstance(node, ast.Assign | ast.AnnAssign) or is_naming):
+            texts = (n for n in ast.walk(value) if isinstance(n, ast.Constant))
             for each in texts:
                 if isinstance(each.value, str) and _NAME.fullmatch(each.value):
                     yield "constant", each.value, "", each.lineno

@@ -44,6 +44,8 @@ CALLBACKS = {
     "create_subscription": (2, "callback"),
     "create_timer": (1, "callback"),
     "add_done_callback": (0, "fn"),
+    "create_service": (2, "callback"),
+    "ActionServer": (3, "execute_callback"),
 }
 
 

@@ -92,6 +92,8 @@ class Submission:
     lint_findings: tuple[LintFinding, ...] = field(default=(), compare=False)
     #: what its program gets beside those that are installed
     interfaces: OwnInterfaces = field(default_factory=OwnInterfaces, compare=False)
+    #: the same, with those that it does not import
+    defined: OwnInterfaces = field(default_factory=OwnInterfaces, compare=False)
     #: files that it lacked and that were added, below `root`
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none

@@ -41,8 +41,8 @@ from typing import Any, Literal
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
-from grader.exercise.yaml_file import Keys, Mistake, read_yaml
 from grader.message import reason
+from grader.yaml_file import Keys, Mistake, read_yaml
 
 #: The keys of a solution that is made of the first one.
 MADE = frozenset(("replace", "files", "put"))

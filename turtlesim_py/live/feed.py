@@ -34,7 +34,7 @@ class News:
     Attributes:
         content: as the page gets it; `docs/live.md` describes it.
         canvas: with all of an arena, a copy of its paint.
-        viewer: that has asked for it.
+        viewer: that has asked for all.
     """
 
     content: Mapping[str, Any]

@@ -16,6 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from io import BytesIO
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import urlencode
 
@@ -57,6 +58,7 @@ class Settings:
         needs_token: whether nobody comes in without; elsewhere than at 127.0.0.1 nobody does.
         has_graph: whether viewers may see the topics and services of a ROS graph.
         language: of the page; '' for the one that a viewer's browser prefers.
+        page: a folder with another page than the turtles'.
     """
 
     port: int
@@ -66,6 +68,7 @@ class Settings:
     needs_token: bool = False
     has_graph: bool = True
     language: str = ""
+    page: Path | None = None
 
 
 class _Viewer:
@@ -109,7 +112,7 @@ class LiveServer:
             "has_graph": settings.has_graph,
         }
         needs_token = settings.needs_token or not is_loopback(settings.host)
-        self._site = Site(settings.token or secrets.token_urlsafe(12), needs_token)
+        self._site = Site(settings.token or secrets.token_urlsafe(12), needs_token, settings.page)
         self.forwarded_address = f"/?token={self._site.token}"
         self.address = ""
         self._source: Source
@@ -241,7 +244,7 @@ class LiveServer:
         self._source.is_watched = bool(self._watching)
 
     def _send(self, news: News) -> None:
-        if news.canvas is not None:
+        if news.viewer is not None:
             self._send_whole(news)
             return
         text = _live(news.content)
@@ -262,10 +265,11 @@ class LiveServer:
         viewer = news.viewer
         if not isinstance(viewer, _Viewer) or viewer not in self._watching:
             return
-        assert news.canvas is not None
-        file = BytesIO()
-        PIL.Image.fromarray(news.canvas.rgba()).save(file, format="PNG", compress_level=1)
-        picture = base64.b64encode(file.getvalue()).decode("ascii")
+        picture = ""
+        if news.canvas is not None:
+            file = BytesIO()
+            PIL.Image.fromarray(news.canvas.rgba()).save(file, format="PNG", compress_level=1)
+            picture = base64.b64encode(file.getvalue()).decode("ascii")
         viewer.is_behind = False
         viewer.send(_live({**news.content, "whole": picture, "about": self._about}))
 

@@ -42,13 +42,15 @@ class Site:
     Args:
         token: a request that shows it is let in, from wherever.
         needs_token: whether no other is: where the page is served to other machines.
+        page: a folder with another page, whose files stand before those of this one.
     """
 
-    def __init__(self, token: str, needs_token: bool) -> None:
+    def __init__(self, token: str, needs_token: bool, page: Path | None = None) -> None:
         self.token = token
         self.needs_token = needs_token
-        folder = Path(__file__).with_name("page")
-        self._files = {path.name: path.read_bytes() for path in folder.iterdir()}
+        folders = [Path(__file__).with_name("page"), *([] if page is None else [page])]
+        files = (path for folder in folders for path in folder.iterdir())
+        self._files = {path.name: path.read_bytes() for path in files}
 
     def answer(self, request: Request) -> Response | None:
         """Answer a request; None where it asks for a WebSocket and is let in."""

@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Final
+from typing import Any, Final
+
+from rclpy.qos import QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
 from grader.message import Message, msg
 from grader.run.lockstep.endpoints import deserialized
-from grader.run.lockstep.protocol import EndpointInfo, Interests, Parcel, Parcels, Table
+from grader.run.lockstep.protocol import (
+    EPOCH_NS,
+    TICK_NS,
+    EndpointInfo,
+    Interests,
+    Parcel,
+    Parcels,
+    StudentEndpoint,
+    Table,
+)
 from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
 
 #: The longest message that a reader accepts [bytes]; DDS has no limit, but no parameter is longer.
@@ -27,6 +38,7 @@ class SimulatorEndpoints(EndpointRegistry):
 
     Attributes:
         published: the topics on which the student's side has published: topic -> type.
+        theirs: the readers and writers that it has now.
     """
 
     def __init__(self, now_ns: Callable[[], int], flag: Callable[[Message], None]) -> None:
@@ -44,6 +56,10 @@ class SimulatorEndpoints(EndpointRegistry):
         self._outgoing_bytes = 0
         self._unread_bytes = 0  # at most: what was read since is not subtracted
         self._read = frozenset[str]()
+        self.theirs: tuple[StudentEndpoint, ...] = ()
+        #: what hidden readers have received, and since when [ns, on the clock of the run]
+        self._heard: list[tuple[str, str, int, bytes]] = []
+        self._heard_ns = EPOCH_NS
         self.published: dict[str, str] = {}
         self._may_have_unread = True
 
@@ -56,7 +72,10 @@ class SimulatorEndpoints(EndpointRegistry):
         policies = (int(qos.reliability), int(qos.durability), max(1, qos.depth))
         writes = isinstance(endpoint, Writer)
         self._added.append(
-            EndpointInfo(endpoint.number, endpoint.channel, endpoint.type, writes, *policies)
+            EndpointInfo(
+                *(endpoint.number, endpoint.channel, endpoint.type, writes, *policies),
+                is_hidden=endpoint.is_hidden,
+            )
         )
 
     def remove(self, endpoints: Iterable[Endpoint]) -> None:
@@ -78,10 +97,13 @@ class SimulatorEndpoints(EndpointRegistry):
 
     def note(self, interests: Interests) -> None:
         """Note what the student's side reads and publishes."""
-        self._read = frozenset(interests.reads)
+        self.theirs = interests.endpoints
+        self._read = frozenset(each.channel for each in self.theirs if not each.writes)
         types: dict[str, set[str]] = {}
-        for topic, kind in interests.publishes:
-            types.setdefault(topic, set()).add(kind)
+        for each in self.theirs:
+            kind, _, topic = each.channel.partition(" ")
+            if each.writes and kind == "topic":
+                types.setdefault(topic, set()).add(each.type)
         for endpoint in (*self.writers, *self.readers):
             if endpoint.name in types and endpoint.kind == "topic":
                 types[endpoint.name].add(endpoint.type)
@@ -102,6 +124,11 @@ class SimulatorEndpoints(EndpointRegistry):
         """Return how many hear a writer; all readers on the student's side count as one."""
         return super().count_readers(writer) + self.is_read(writer)
 
+    def count_writers(self, reader: Reader) -> int:
+        """Return how many a reader hears; all writers on the student's side count as one."""
+        theirs = any(each.writes and each.channel == reader.channel for each in self.theirs)
+        return super().count_writers(reader) + theirs
+
     def others_are_read(self, writers: Iterable[Writer]) -> bool:
         """Whether the student's side reads a topic of ours that is not one of these."""
         known = {writer.channel for writer in writers}
@@ -109,6 +136,29 @@ class SimulatorEndpoints(EndpointRegistry):
             writer.is_stream and writer.channel in self._read and writer.channel not in known
             for writer in self.writers
         )
+
+    def tap(self, topic: str, kind: str, message: Any) -> None:
+        """Record what the student's side publishes on a topic, by a reader that no graph shows.
+
+        DDS has one type a topic in each process, and so has no such reader.
+
+        Args:
+            kind: a type that it publishes there, whose class is `message`.
+        """
+        qos = QoSProfile(
+            history=QoSHistoryPolicy.KEEP_ALL, reliability=QoSReliabilityPolicy.BEST_EFFORT
+        )
+        reader = Reader(f"topic {topic}", kind, qos, message=message, is_hidden=True)
+        self.add(reader)
+
+    def pop_heard(self) -> list[tuple[str, str, int, bytes]]:
+        """Return what hidden readers have received since the last call, in the order of sending.
+
+        Topic, type, when it was sent [ns, on the clock of the run], CDR.
+        """
+        heard, self._heard = self._heard, []
+        self._heard_ns = self.now_ns()
+        return heard
 
     # Messages ---------------------------------------------------------------------------------
 
@@ -119,6 +169,14 @@ class SimulatorEndpoints(EndpointRegistry):
         if self.is_read(writer) or writer.is_lasting:
             self._send(writer, 0, writer.sent, data)
 
+    def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
+        """Send a request in the same way; its response comes to the client's number."""
+        number = super().ask(writer, client, data)
+        self._may_have_unread = self._may_have_unread or bool(writer.local)
+        if self.is_read(writer):
+            self._send(writer, client.number, number, data)
+        return number
+
     def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
         """Send a response in the same way."""
         super().respond(writer, to, data)
@@ -126,7 +184,7 @@ class SimulatorEndpoints(EndpointRegistry):
             self._send(writer, to.client, to.number, data)
 
     def _send(self, writer: Writer, client: int, number: int, data: bytes) -> None:
-        self._outgoing.append(Parcel(writer.number, client, number, self.tick, data))
+        self._outgoing.append(Parcel(writer.number, client, number, self.tick * TICK_NS, data))
         self._outgoing_bytes += len(data)
         # more than a few pictures are sent as soon as an answer would be
         is_answer = not writer.is_stream or self._outgoing_bytes > MOST_OUTGOING
@@ -142,7 +200,7 @@ class SimulatorEndpoints(EndpointRegistry):
     def receive(self, parcels: Parcels) -> None:
         """Put what the student's side has sent into the readers."""
         self._may_have_unread = True
-        for endpoint, client, number, _, data in parcels:
+        for endpoint, client, number, time_ns, data in parcels:
             reader = self._by_number.get(endpoint)
             if not isinstance(reader, Reader):
                 continue  # gone meanwhile
@@ -153,6 +211,10 @@ class SimulatorEndpoints(EndpointRegistry):
                 deserialized(data, reader.message)
             except Exception:  # of rclpy's C++
                 self._flag(msg("a message on {channel} could not be read", channel=reader.channel))
+                continue
+            if reader.is_hidden:
+                sent_ns = min(max(self._heard_ns, EPOCH_NS + time_ns), self.now_ns())
+                self._heard.append((reader.name, reader.type, sent_ns, data))
                 continue
             asked_by = client if reader.kind == "request" else None
             reader.items.append(Arrived(data, self.now_ns(), number, asked_by))

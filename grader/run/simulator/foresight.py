@@ -6,7 +6,7 @@ has used them, and must then publish, byte for byte, what the forecast holds.
 
 from __future__ import annotations
 
-from grader.run.lockstep.protocol import Advance, Parcel, Parcels
+from grader.run.lockstep.protocol import TICK_NS, Advance, Parcel, Parcels
 from grader.run.lockstep.registry import Writer
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.scenes.scene import Forecast, Reason, Simulation
@@ -37,16 +37,21 @@ class Foresight:
         self._length = 1
         self._vain = 0
 
-    def foresee(self, tick: int, request: Advance) -> None:
-        """Forecast the ticks after this one, as far as is worth while."""
+    def foresee(self, tick: int, request: Advance, quiet: int = MOST_TICKS) -> None:
+        """Forecast the ticks after this one, as far as is worth while.
+
+        Args:
+            quiet: so many will pass without anything that the scene does not know of.
+        """
         self.end = tick
-        most = self._worth_while(tick, request)
+        most = min(quiet, self._worth_while(tick, request))
         self._made = 0
         if most <= 0 or self._registry.has_unread():
             return
         forecast = self._simulation.foresee(most)
         writers: list[Writer] = [each.handle.writer for each in forecast.publishers]
-        if not forecast.ticks or self._registry.others_are_read(writers):
+        is_heard_here = any(writer.local for writer in writers)
+        if not forecast.ticks or is_heard_here or self._registry.others_are_read(writers):
             return
         read = [
             (index, writer.number, writer.sent)
@@ -56,7 +61,7 @@ class Foresight:
         self._forecast, self._writers = forecast, writers
         self.end = tick + len(forecast.ticks)
         self.parcels = [
-            Parcel(number, 0, sent + ahead, tick + ahead, published[index])
+            Parcel(number, 0, sent + ahead, (tick + ahead) * TICK_NS, published[index])
             for ahead, published in enumerate(forecast.ticks, 1)
             for index, number, sent in read
         ]

@@ -16,11 +16,15 @@ import socket
 import time
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from typing import Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from grader import linux
 from grader.recording.scene_at_work import overdue, scene_at_work
+from grader.run.handover import Plan
 from grader.run.limits import SCENE_S, SIMULATOR_BYTES
+
+if TYPE_CHECKING:
+    from grader.cast.playing import Playing
 
 #: So much may wait to be received [bytes]; then the run waits so long for that, in all [s].
 MOST_BYTES: Final = 8_000_000
@@ -43,6 +47,23 @@ def protect_process() -> None:
 def scene_in_time(scene: str) -> AbstractContextManager[None]:
     """Raise a `SceneFailure` also for a scene's code that takes longer than `SCENE_S`."""
     return scene_at_work(scene, within_s=SCENE_S)
+
+
+def make_cast(plan: Plan, wire: Any, *, are_compiled: bool = False) -> Playing | None:
+    """Make the scripted peers of a run; None where it has none.
+
+    Args:
+        wire: a `grader.cast.playing.Wire`.
+        are_compiled: whether interfaces that are not installed were compiled for this run.
+    """
+    if plan.cast is None:
+        return None
+    from grader.cast import script  # here: most runs have none
+    from grader.cast.playing import Playing
+
+    definitions = {**plan.own_definitions, **plan.definitions}
+    peers, end_s = script.parse(plan.cast), plan.limits.total_s
+    return Playing(peers, plan.hears, definitions, end_s, wire, are_compiled=are_compiled)
 
 
 def send_message(control: socket.socket, what: str, **more: Any) -> None:

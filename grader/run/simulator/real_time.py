@@ -16,6 +16,8 @@ import math
 import socket
 import sys
 import time
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,10 +30,12 @@ from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.simulator.process import (
     FeedWriter,
+    make_cast,
     protect_process,
     scene_in_time,
     send_message,
 )
+from grader.run.simulator.wall import WallWire
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
 from turtlesim_py.ros import program
@@ -54,19 +58,19 @@ class PublishedTopics:
         types: topic -> type.
     """
 
-    def __init__(self, node: Any) -> None:
-        """Read the graph by a node of the scene, whose own publishers do not count."""
+    def __init__(self, nodes: Sequence[Any]) -> None:
+        """Read the graph by the first of our nodes, whose publishers do not count."""
         self.types: dict[str, str] = {}
-        self._node = node
+        self._nodes = nodes
 
     def update(self) -> None:
         """Add the topics that the graph shows now."""
-        node = self._node
-        scene_topics = dict(
-            node.get_publisher_names_and_types_by_node(node.get_name(), node.get_namespace())
-        )
-        for topic, types in node.get_topic_names_and_types()[:MOST_TOPICS]:
-            if node.count_publishers(topic) > (topic in scene_topics):
+        first, own = self._nodes[0], Counter[str]()
+        for node in self._nodes:
+            called = node.get_name(), node.get_namespace()
+            own.update(t for t, _ in first.get_publisher_names_and_types_by_node(*called))
+        for topic, types in first.get_topic_names_and_types()[:MOST_TOPICS]:
+            if first.count_publishers(topic) > own[topic]:
                 self.types[topic] = types[0]
 
 
@@ -80,13 +84,21 @@ class GradedSimulator:
         self._first_node_s = first_node_s
         self._file = file
         self._scene = load_scene(plan.scene)
+        self._keeper = handover.keeper(plan, self._scene)
         self._feed = FeedWriter.of(shown, STEP_NS)
-        hooks = Hooks(send_news=None if self._feed is None else self._feed.write)
+        self._wire = None if plan.cast is None else WallWire()
+        self._cast = make_cast(plan, self._wire, are_compiled=True)
+        hooks = Hooks(send_news=None if self._feed is None else self._feed.write, cast=self._cast)
         with scene_in_time(plan.scene):
             self._simulation = self._scene.simulate(
                 plan.limits, plan.start, hooks, plan.interfaces, plan.setting
             )
-        self._topics = PublishedTopics(self._simulation.node)
+        nodes = [] if self._scene.has_cast else [self._simulation.node]
+        if self._cast is not None and self._wire is not None:
+            nodes += [self._wire.node, *self._cast.nodes]
+        self._ours = len(nodes) + len(self._scene.introduction.nodes[1:])
+        self._node, self._topics = nodes[0], PublishedTopics(nodes)
+        self._names = {node.get_fully_qualified_name() for node in nodes}
         self._limits = plan.limits
         self._flags: list[Message] = []
         self._running = False
@@ -105,6 +117,7 @@ class GradedSimulator:
             self._receive()
             if not self._running and self._may_start():
                 self._start()
+            self._play()
             with scene_in_time(self._scene.name):
                 reason = self._simulation.tick()
             expect_reason(self._scene.name, reason)
@@ -118,15 +131,30 @@ class GradedSimulator:
             self._feed.close()
         self._topics.update()
         with scene_in_time(self._scene.name):
-            handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
-            flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
+            trace = handover.whole(self._scene, self._simulation.trace(), self._cast)
+            handover.leave(self._file, self._keeper, trace, self._topics.types)
+            more = () if self._cast is None else self._cast.flags
+            flags = [f.serialise() for f in (*self._simulation.flags, *more, *self._flags)]
         self._send("done", reason=reason, flags=flags)
 
     def _start(self) -> None:
         if not self._running:
             self._end_at_s = time.monotonic() + SLOWEST * self._limits.total_s + OVERTIME_S
+            if self._wire is not None:
+                self._wire.begin()
         self._running = True
         self._simulation.record()
+
+    def _play(self) -> None:
+        """Let the cast know what the program has, and act."""
+        if self._cast is None or self._wire is None:
+            return
+        endpoints = self._wire.endpoints(self._names)
+        if endpoints is not None:
+            self._cast.meet(endpoints)
+        if self._running:
+            self._wire.ticks = self._simulation.ticks
+            self._cast.act()
 
     def _report_progress(self) -> None:
         self._ticks += 1
@@ -147,8 +175,7 @@ class GradedSimulator:
             return False
         # Every node has this publisher, and what it publishes with is made known in order: at the
         # latest when its first command or call comes, this is true. Its name may come later.
-        ours = len(self._scene.introduction.nodes)
-        has_node = self._simulation.node.count_publishers(EVENTS) > ours
+        has_node = self._node.count_publishers(EVENTS) > self._ours
         return time.monotonic() > self._start_at_s or has_node
 
     def _send(self, what: str, **more: str | float | list[str]) -> None:

@@ -35,10 +35,11 @@ from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import EPOCH_NS, TICK_NS, Advance, Interests, Reply, State
 from grader.run.processes import cores
 from grader.run.simulator.endpoints import SimulatorEndpoints
-from grader.run.simulator.foresight import Foresight
+from grader.run.simulator.foresight import MOST_TICKS, Foresight
 from grader.run.simulator.link import Refused, StudentLink
 from grader.run.simulator.process import (
     FeedWriter,
+    make_cast,
     protect_process,
     scene_in_time,
     send_message,
@@ -79,14 +80,16 @@ class Lockstep:
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, link.flag)
         endpoints.install(self._registry)
         actions.install()
-        if plan.definitions:
+        if plan.definitions or plan.own_definitions:
             endpoints.make_importable(plan.definitions)
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
+        self._keeper = handover.keeper(plan, self._scene)
         assert STEP_NS == TICK_NS
         self._feed = FeedWriter.of(shown, TICK_NS)
         send = None if self._feed is None else self._feed.write
-        hooks = Hooks(has_unread=self._registry.has_unread, send_news=send)
+        self._cast = make_cast(plan, self)
+        hooks = Hooks(self._registry.has_unread, send, self._cast)
         with scene_in_time(plan.scene):
             self._simulation = self._scene.simulate(
                 plan.limits, plan.start, hooks, plan.interfaces, plan.setting
@@ -128,15 +131,31 @@ class Lockstep:
         self._mark("over")
         if self._feed is not None:
             self._feed.close()
+        more = () if self._cast is None else self._cast.flags
         return {
             "reason": self._reason,
             "silence": self._link.silence,
             "waits": self._link.waits,
             "was_at_rest": self._was_at_rest,
             "reached_s": min(self._link.reached(), self._tick) * TICK_NS / 1e9,
-            "flags": [f.serialise() for f in (*self._link.flags, *self._simulation.flags)],
+            "flags": [f.serialise() for f in (*self._link.flags, *self._simulation.flags, *more)],
             "marks": self._marks,
         }
+
+    # For a cast, see `grader.cast.playing.Wire`
+
+    def tap(self, topic: str, kind: str, message: Any) -> None:
+        """Record what the program publishes on a topic with a type."""
+        self._registry.tap(topic, kind, message)
+
+    def heard(self) -> list[tuple[str, str, int, bytes]]:
+        """Return what was recorded since."""
+        heard = self._registry.pop_heard()
+        return [(topic, kind, time_ns - EPOCH_NS, data) for topic, kind, time_ns, data in heard]
+
+    def has_unread(self) -> bool:
+        """Whether something waits for the peers."""
+        return self._registry.has_unread()
 
     def _mark(self, name: str) -> None:
         self._marks.setdefault(name, time.monotonic())
@@ -149,8 +168,8 @@ class Lockstep:
     def save(self, file: Path) -> None:
         """Write the recording where the grader finds it."""
         with scene_in_time(self._scene.name):
-            trace = self._simulation.trace()
-            handover.leave(file, self._scene, trace, self._registry.published)
+            trace = handover.whole(self._scene, self._simulation.trace(), self._cast)
+            handover.leave(file, self._keeper, trace, self._registry.published)
 
     def _next_request(self) -> Advance | None:
         """Return the next `Advance`, after handling the packets before it."""
@@ -161,6 +180,8 @@ class Lockstep:
             match packet:
                 case Interests():
                     self._registry.note(packet)
+                    if self._cast is not None:
+                        self._cast.meet(packet.endpoints)
                     self._foresight.forget()
                 case Advance():
                     return packet
@@ -169,6 +190,8 @@ class Lockstep:
     def _receive_mail(self) -> None:
         for parcels in self._link.mail():
             self._registry.receive(parcels)
+        if self._cast is not None:
+            self._cast.record()
 
     def _catch_up(self, reached: int) -> None:
         """Make the forecast ticks that the student's side has used."""
@@ -184,12 +207,16 @@ class Lockstep:
         last = min(request.target, self._tick + request.most)
         while self._tick < last and not self._reason:
             self._make_tick()
-            if self._registry.answered:
+            # or a late reader, for which the program may keep something
+            is_met = self._cast is not None and self._registry.changed
+            if self._registry.answered or is_met:
                 return
 
     def _make_tick(self) -> None:
         self._count_tick()
         self._clocks.set_now(self.now_ns)
+        if self._cast is not None:
+            self._cast.act()
         with scene_in_time(self._scene.name):
             reason = self._simulation.tick(EPOCH_NS + self.now_ns)
         self._reason = expect_reason(self._scene.name, reason)
@@ -209,7 +236,8 @@ class Lockstep:
             self._link.send(self._registry.pop_table())
         elif state == State.RUNNING:
             with scene_in_time(self._scene.name):
-                self._foresight.foresee(self._tick, request)
+                quiet = MOST_TICKS if self._cast is None else self._cast.quiet_ticks()
+                self._foresight.foresee(self._tick, request, quiet)
             parcels += self._foresight.parcels
         self._link.send(Reply(self._tick, state, max(self._tick, self._foresight.end), parcels))
 

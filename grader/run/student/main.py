@@ -1,13 +1,14 @@
 """Starts a submission in real time: its program, or several programs of it.
 
-    python main.py AWAITED EVIDENCE ROOT module:function
-    python main.py AWAITED EVIDENCE ROOT path/to/script.py [function]
-    python main.py AWAITED EVIDENCE ROOT PROGRAMS
+    python main.py INTRODUCTION EVIDENCE ROOT module:function
+    python main.py INTRODUCTION EVIDENCE ROOT path/to/script.py [function]
+    python main.py INTRODUCTION EVIDENCE ROOT PROGRAMS
 
-AWAITED is a JSON list of two lists: topics and services that have to be connected when the
-submission gets them; see `Introduced`. EVIDENCE is the page of its account, -1 for none. PROGRAMS
-is a JSON list of [name, module:function, arguments], as a launch file starts them: each becomes a
-process of its own, without an account, which several must not write.
+INTRODUCTION is a JSON list of three lists: topics and services that have to be connected when the
+submission gets them, see `Introduced`; and the program's arguments. EVIDENCE is the page of its
+account, -1 for none. PROGRAMS is a JSON list of [name, module:function, arguments], as a launch
+file starts them: each becomes a process of its own, without an account, which several must not
+write.
 
 Started by path, not with -m, and of the grader it imports only what loads and observes a program,
 so that the submission finds the interpreter as on a student's machine. ROOT comes first on the
@@ -26,6 +27,7 @@ import json
 import os
 import signal
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
@@ -37,14 +39,19 @@ from grader.run.student import loading
 
 def main() -> None:
     """Start one program, or several, and leave with the exit code."""
-    _, awaited, page, root, target, *more = sys.argv
+    _, introduction, page, root, target, *more = sys.argv
     if target.startswith("["):
-        sys.exit(start_all(awaited, root, json.loads(target)))
-    sys.exit(start(awaited, int(page), root, target, more[0] if more else None))
+        sys.exit(start_all(introduction, root, json.loads(target)))
+    sys.exit(start(introduction, int(page), root, target, more[0] if more else None))
 
 
 def start(
-    awaited: str, page: int, root: str, target: str, function: str | None, words: Sequence[str] = ()
+    introduction: str,
+    page: int,
+    root: str,
+    target: str,
+    function: str | None,
+    words: Sequence[str] = (),
 ) -> int:
     """Run a program to its end; return its exit code.
 
@@ -55,7 +62,8 @@ def start(
     witness = Witness(page, root, lambda: now_s() - started_s, hooks.is_met)
     hooks.install_in_threads(witness)
     time.sleep = hooks.timed(witness, time.sleep)
-    introduced = Introduced(*json.loads(awaited))
+    topics, services, arguments = json.loads(introduction)
+    introduced = Introduced(topics, services)
     code: int | None = None
 
     # registered first, so called last: when all threads have ended that Python waits for
@@ -64,7 +72,7 @@ def start(
         if code is not None:
             witness.ending.returned(code)
 
-    loading.hide_the_grader(root, target, words)
+    loading.hide_the_grader(root, target, words or arguments)
     sys.meta_path.insert(
         0,
         loading.AfterImport(
@@ -86,13 +94,13 @@ def start(
 # Several programs -----------------------------------------------------------------------------
 
 
-def start_all(awaited: str, root: str, programs: Sequence[tuple[str, str, list[str]]]) -> int:
+def start_all(introduction: str, root: str, programs: Sequence[tuple[str, str, list[str]]]) -> int:
     """Start several programs and wait for all; return the exit code of the first that failed."""
     names = {}
     for name, target, words in programs:
         pid = os.fork()
         if pid == 0:
-            sys.exit(start(awaited, -1, root, target, None, words))
+            sys.exit(start(introduction, -1, root, target, None, words))
         names[pid] = name
     _ignore_questions()
     try:
@@ -135,12 +143,16 @@ class Introduced:
     second, and seconds on a busy machine: the same submission would do something else each time.
     A name that only ends like one of the scene's may be wrong, or that of something yet to come:
     these wait for `patience_s` at most, all together.
+
+    Args:
+        topics: each so many times as it has readers.
     """
 
     def __init__(self, topics: list[str], services: list[str]) -> None:
         self.patience_s = 4.0
         #: of the very names: they are there, and will be found, unless their types are wrong
         self.sure_patience_s = 10.0
+        self._readers = Counter(topics)
         self._topics, self._services = _with_endings(topics), _with_endings(services)
 
     def patch(self, module: Any) -> None:
@@ -151,7 +163,8 @@ class Introduced:
         @functools.wraps(create_publisher)
         def connected_publisher(self_: Any, *args: Any, **kwargs: Any) -> Any:
             publisher = create_publisher(self_, *args, **kwargs)
-            is_met = lambda: publisher.get_subscription_count() > 0  # noqa: E731
+            least = max(1, self._readers[publisher.topic_name])
+            is_met = lambda: publisher.get_subscription_count() >= least  # noqa: E731
             self._await(publisher.topic_name, self._topics, is_met)
             return publisher
 

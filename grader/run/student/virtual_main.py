@@ -6,7 +6,8 @@
 
 FD is the link to the simulator, EVIDENCE the page of the submission's account, SCENE a JSON list of
 the simulator's nodes, with names and namespaces, of whether two stamps have to differ, of the
-definitions of interfaces, and of those that the simulator has otherwise.
+definitions of interfaces, of those that the simulator has otherwise, of whether it records what is
+published and logged, and of the program's arguments.
 Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
 the same. Everything of ours is imported before the submission is, and then forgotten by the import
 system.
@@ -86,7 +87,7 @@ def main() -> None:
         witness.ending.raised(error)
 
     unsupported_calls.refuse_processes(refuse)
-    loading.hide_the_grader(root, target)
+    loading.hide_the_grader(root, target, json.loads(introduction)[-1])
     witness.lines.install()
     code = loading.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
@@ -131,7 +132,7 @@ def install(
     """Put rclpy into virtual time, and then have a witness observe it; return the link."""
     import rclpy.publisher
 
-    from grader.run.clock import rclpy_time
+    from grader.run.clock import rclpy_time, rosout
     from grader.run.clock.link import SimulatorLink
     from grader.run.lockstep import endpoints
 
@@ -142,13 +143,16 @@ def install(
         is_stuck = witness.ending.deadlocked([each.ident for each in scheduler.runners], main)
         link.note(Kind.STUCK if is_stuck else Kind.WAITING)
 
-    nodes, compares_stamps, texts, unlike = json.loads(introduction)
+    nodes, compares_stamps, texts, unlike, is_recorded, _ = json.loads(introduction)
     if texts:
         endpoints.make_importable(texts, unlike)
     known = [(name, namespace) for name, namespace in nodes]
     rclpy_time.install(
         scheduler, link, known, compares_stamps=compares_stamps, on_deadlock=on_deadlock
     )
+    if is_recorded:
+        link.is_recorded = True
+        rosout.install(link)
     link.on_over = lambda: witness.ending.over(main)
     scheduler.on_waited = witness.waited
     loading.accept_numbers(rclpy.publisher)

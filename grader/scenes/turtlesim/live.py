@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
-from grader.scenes.live import Grading
+from grader.scenes.live import Grading, content_of
 from grader.translations import current
 from turtlesim_py.live.feed import MOST_CALLS, Deliver, News
 from turtlesim_py.live.server import LiveServer, Settings
@@ -105,7 +104,7 @@ class Mirror:
     def update(self, grading: Grading) -> None:
         """Deliver the state of the grading."""
         with self._lock:
-            self._grading = _content(grading)
+            self._grading = content_of(grading)
             content = {"tick": self._state["tick"], "drawn": [], "calls": []}
             self._deliver(News({**content, "grading": self._grading}))
 
@@ -135,10 +134,3 @@ class Mirror:
         color, numbers = stroke
         runs = list(zip(*[iter(numbers)] * 3, strict=True))
         self._canvas.paint(Pen(*color), runs)
-
-
-def _content(grading: Grading) -> Mapping[str, Any]:
-    shown = ("status", "word", "title", "rationale", "help")
-    checks = [{name: getattr(each, name) for name in shown} for each in grading.judged]
-    rest = {name: value for name, value in asdict(grading).items() if name != "judged"}
-    return {**rest, "checks": checks}

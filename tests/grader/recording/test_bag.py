@@ -309,20 +309,24 @@ def test_a_channel_may_have_a_type_of_a_hand_ins(recorded, tmp_path):
         "mine/msg/Num": "int8 num\nstring<=5 name\n",
         "mine/msg/Nums": "std_msgs/Header header\nNum[<=3] nums\ngeometry_msgs/Point at\n",
         "mine/srv/Add": "Num a\n---\nNum b\n",
-        "mine/msg/Wrong": "what is this\n",
     }
     own = Definitions(texts)
     number, numbers = own.type("mine/msg/Num"), own.type("mine/msg/Nums")
     data = serialise(numbers(nums=[number(num=7, name="seven")]))
 
     class Listening(type(load_scene("turtlesim"))):
+        def definitions_of(self, trace):
+            own = {name: text for name, text in texts.items() if "/msg/" in name}
+            point = {"geometry_msgs/msg/Point": "float64 x\nfloat64 y\nfloat64 z\n"}
+            return {**super().definitions_of(trace), **own, **point}
+
         def bag_topics(self, trace):
             return [("/nums", "mine/msg/Nums")]
 
         def to_messages(self, trace):
             return [*super().to_messages(trace), (10**9, "/nums", "mine/msg/Nums", data)]
 
-    bag.write(recorded.trace, Listening(), tmp_path / "recording", texts)
+    bag.write(recorded.trace, Listening(), tmp_path / "recording")
     with (tmp_path / "recording" / "recording.mcap").open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
         ((_, channel, _, message),) = reader.iter_decoded_messages(topics=["/nums"])

@@ -348,7 +348,7 @@ def test_a_pipe_is_refused_and_not_waited_for(folder, name):
 
 def test_a_scene_that_is_not_known_is_named(folder):
     change(folder / "run.json", scene="moon")
-    assert "grader.scenes: there is no 'moon'; there are: package, " in refused(folder)
+    assert "grader.scenes: there is no 'moon'; there are: graph, package, " in refused(folder)
 
 
 def test_the_usual_scene_may_be_named(recorded, folder):

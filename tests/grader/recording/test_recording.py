@@ -79,7 +79,7 @@ def test_every_kind_of_input_survives_in_its_order(tmp_path):
 
 def test_the_facts_about_a_run_survive(recorded, tmp_path):
     ticks, simulated_s = recorded.run.ticks, recorded.run.simulated_s
-    told = ("ROS domain 77", (plain_text("odd"), msg("ü {at}", at=1.5)), 42, "i")
+    told = ("ROS domain 77", (plain_text("odd"), msg("ü {at}", at=1.5)), 42, "i", "late")
     run = Run("virtual", "crashed", -11, ticks, simulated_s, 1.5, recorded.run.trace_sha256, *told)
     changed = replace(
         recorded,

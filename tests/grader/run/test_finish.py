@@ -36,7 +36,8 @@ EXPECTED = {
 A, B, C = msg("a"), plain_text("b"), msg("c {n}", n=1)
 RUN = Run("virtual", "crashed", -11, wall_s=1.23456, isolation="ROS domain 77", flags=(A, B))
 ENDING = Ending(RUN, "printed\n")
-PLAN = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, (C,), "turtlesim")
+KNOWN = (Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, (C,), "turtlesim")
+PLAN = Plan(*KNOWN, case="late")
 TOPICS = (PublishedTopic("/a", "b/msg/C"),)
 
 
@@ -70,6 +71,7 @@ def test_a_recording_has_everything_about_its_run(trace):
         flags=(A, B, C),
         seed=42,
         interfaces="turtlesim",
+        case="late",
     )
     assert (made.topics, made.output) == (TOPICS, "printed\n")
     assert (made.start, made.scene) == (Start(1.0, 2.0, 3.0), "turtlesim")

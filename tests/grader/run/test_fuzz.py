@@ -14,7 +14,7 @@ LONG = pytest.param(
 
 
 @pytest.mark.parametrize("seconds", ["1", LONG])
-@pytest.mark.parametrize("where", ["ros", "link"])
+@pytest.mark.parametrize("where", ["ros", "link", "cast"])
 def test_a_fuzzed_simulator_lives(where: str, seconds: str) -> None:
     command = [sys.executable, str(SCRIPT), where, "--seconds", seconds]
     run = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -46,6 +46,11 @@ def test_every_field_and_its_type_survive():
         True,
         ("robot_description",),
         {"demo/msg/Num": "int8 num\n"},
+        {"peer": {"subscriptions": {"/topic": {"type": "std_msgs/msg/String"}}}},
+        ("/topic",),
+        {"own/msg/Num": "int8 num\n"},
+        ("2", "3"),
+        "late",
     )
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))

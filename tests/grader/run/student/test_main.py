@@ -79,7 +79,7 @@ def test_names_that_may_be_wrong_are_waited_for_together(clock: types.SimpleName
 def launch(folder: Path, *programs: tuple[str, list[str]]) -> subprocess.CompletedProcess[str]:
     (folder / "programs.py").write_text(PROGRAMS)
     listed = [[name, f"programs:{name}", arguments] for name, arguments in programs]
-    words = [json.dumps([[], []]), "-1", str(folder), json.dumps(listed)]
+    words = [json.dumps([[], [], []]), "-1", str(folder), json.dumps(listed)]
     return subprocess.run(
         [sys.executable, MAIN, *words], capture_output=True, text=True, check=False
     )

@@ -1,0 +1,82 @@
+"""Traces of odd nodes, which the checks of an exercise with a cast have to survive."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from grader.cast.trace import ROSOUT, CastTrace, SentMessage
+from grader.rosidl.cdr import CdrWriter, string
+
+TICKS = 300
+_STRING, _FLOAT, _LOG = "std_msgs/msg/String", "std_msgs/msg/Float64", "rcl_interfaces/msg/Log"
+_DEFINITIONS = {
+    _STRING: "string data\n",
+    _FLOAT: "float64 data\n",
+    _LOG: "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\n"
+    "string function\nuint32 line\n",
+}
+_ENDPOINT = {"type": _STRING, "reliability": 1, "durability": 2, "depth": 10}
+
+
+def odd_traces() -> Mapping[str, CastTrace]:
+    """Return the traces, by what their nodes do."""
+    long = "x" * 20_000
+    names = ("/topic", "/tf", "/latest", "/turtle1/cmd_vel")
+    writers = [_endpoint("/node", f"topic {name}") for name in names]
+    return {
+        "nothing at all": CastTrace(),
+        "a node that does nothing": _trace(_endpoint("/node", "topic /parameter_events")),
+        "a thousand nodes": _trace(*(_endpoint(f"/n{n}", "topic /x") for n in range(1000))),
+        "a node with a very long name": _trace(_endpoint(f"/{long[:600]}", f"topic /{long[:300]}")),
+        "odd qualities of service": _trace(_endpoint("/node", "topic /latest", depth=2**32 - 1)),
+        "texts where something else belongs": _trace(*writers, sent=[
+            SentMessage(10**9, name, _STRING, "/node", string("\x1b[2J \ud800")) for name in names
+        ]),
+        "numbers that are none": _trace(*writers, sent=[
+            SentMessage(10**8 * n, name, _FLOAT, "/node", _number(value))
+            for n, value in enumerate((float("nan"), float("inf"), -1e308, 0.0))
+            for name in names
+        ]),
+        "log lines of no level": _trace(sent=[
+            SentMessage(10**9 + n, ROSOUT, _LOG, "", _log(n * 17 % 256, text))
+            for n, text in enumerate(("", long, "\n\r\t", "Hello World: 0"))
+        ]),
+        "everything at once": _trace(*writers, sent=[
+            SentMessage(0, "/topic", _STRING, "/node", string("Hello World: 0")) for _ in range(50)
+        ]),
+        "peers that could do nothing": _trace(
+            {"kind": "refused", "time_ns": 0, "peer": "/peer", "what": "x", "why": "y"}
+        ),
+        "more than is recorded": _trace({"kind": "full", "time_ns": 10**9}),
+        "a message that nobody sent": _trace(sent=[
+            SentMessage(2 * 10**9, "/topic", _STRING, "", string("?"))
+        ]),
+    }  # fmt: skip
+
+
+def _trace(*events: Mapping[str, Any], sent: list[SentMessage] | None = None) -> CastTrace:
+    messages = tuple(sorted(sent or [], key=lambda each: each.time_ns))
+    return CastTrace(TICKS, messages, events, ("/peer",), _DEFINITIONS)
+
+
+def _endpoint(node: str, channel: str, **more: Any) -> dict[str, Any]:
+    facts = {"kind": "endpoint", "time_ns": 0, "node": node, "channel": channel, "writes": True}
+    return {**facts, **_ENDPOINT, **more}
+
+
+def _number(value: float) -> bytes:
+    made = CdrWriter()
+    made.number("d", value)
+    return made.message()
+
+
+def _log(level: int, text: str) -> bytes:
+    made = CdrWriter()
+    made.number("i", 1)
+    made.number("I", 0)
+    made.number("B", level)
+    for each in ("node", text, "", ""):
+        made.text(each)
+    made.number("I", 1)
+    return made.message()

@@ -1,0 +1,126 @@
+"""A cast in a run: its peers act and are served in each tick, its recorder keeps what is said."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any, Protocol
+
+from grader.cast.messages import Types
+from grader.cast.peers import PeerNode
+from grader.cast.recorder import CastRecorder
+from grader.cast.script import Peer, endpoints, heard
+from grader.cast.trace import CastTrace
+from grader.message import Message
+from grader.scenes.scene import STEP_NS
+
+
+class Wire(Protocol):
+    """What a clock offers a cast: which endpoints the program has, and what it sends.
+
+    Attributes:
+        now_ns: the time from the start of the run [ns].
+    """
+
+    def tap(self, topic: str, kind: str, message: Any) -> None:
+        """Record what the program publishes on a topic with a type, whose class is `message`."""
+
+    def heard(self) -> Iterable[tuple[str, str, int, bytes]]:
+        """Return what was recorded since: topic, type, when [ns from the start], CDR."""
+
+    def has_unread(self) -> bool:
+        """Whether something waits for the peers."""
+
+    now_ns: int
+
+
+class Playing:
+    """A cast at work.
+
+    Args:
+        peers: what its nodes do, by their names.
+        topics: those that are recorded besides what the peers hear.
+        definitions: of types that are not installed, or were compiled for this run.
+        end_s: how long the run may last [s].
+    """
+
+    def __init__(
+        self,
+        peers: Mapping[str, Peer],
+        topics: Iterable[str],
+        definitions: Mapping[str, str],
+        end_s: float,
+        wire: Wire,
+        *,
+        are_compiled: bool = False,
+    ) -> None:
+        self._wire = wire
+        self._endpoints: tuple[Any, ...] = ()
+        types = Types(definitions, are_compiled=are_compiled)
+
+        def now_ns() -> int:
+            return wire.now_ns
+
+        names = [f"/{name}" for name in peers]
+        self._recorder = CastRecorder(types, heard(peers, topics), names, now_ns, wire.tap)
+        for each in endpoints(peers):
+            facts = {"node": each.node, "what": each.kind, "name": each.name, "type": each.type}
+            self._recorder.event("offers", **facts)
+        more = (types, self._recorder, end_s, now_ns, self._type_of)
+        self._peers = [PeerNode(name, peer, *more) for name, peer in peers.items()]
+
+    @property
+    def nodes(self) -> tuple[Any, ...]:
+        """Those of its peers."""
+        return tuple(peer.node for peer in self._peers)
+
+    @property
+    def names(self) -> set[str]:
+        """The names of these, with their namespaces."""
+        return {peer.name for peer in self._peers}
+
+    @property
+    def has_met(self) -> bool:
+        """Whether the program has made a node."""
+        return bool(self._endpoints)
+
+    @property
+    def flags(self) -> tuple[Message, ...]:
+        """Remarks for the result."""
+        return tuple(self._recorder.flags)
+
+    def meet(self, endpoints: tuple[Any, ...]) -> None:
+        """Note which endpoints the program has now."""
+        self._endpoints = endpoints
+        self._recorder.meet(endpoints)
+
+    def record(self) -> None:
+        """Record what the program has sent."""
+        for topic, kind, time_ns, data in self._wire.heard():
+            self._recorder.heard(topic, kind, time_ns, data)
+
+    def act(self) -> None:
+        """Let the peers be served, and do what is due, in a tick."""
+        self.record()
+        has_unread = self._wire.has_unread
+        if has_unread():
+            for peer in self._peers:
+                peer.serve(has_unread)
+        for peer in self._peers:
+            if peer.act():
+                peer.serve(has_unread)
+
+    def quiet_ticks(self) -> int:
+        """Return for how many ticks no peer will do anything by itself."""
+        first_ns = min((peer.next_ns for peer in self._peers), default=1 << 62)
+        return max(0, math.ceil((first_ns - self._wire.now_ns) / STEP_NS) - 1)
+
+    def trace(self, ticks: int) -> CastTrace:
+        """Return what was recorded up to now."""
+        self.record()
+        return self._recorder.trace(ticks, (peer.name for peer in self._peers))
+
+    def _type_of(self, kind: str, name: str) -> str:
+        """Return the type of a channel that the program uses; '' for none."""
+        channel = f"{kind} {name}"
+        return next((each.type for each in self._endpoints if each.channel == channel), "")

@@ -1,0 +1,155 @@
+"""Keeps what the program and the peers exchange in a run; in the simulator's process.
+
+| event | its values |
+|---|---|
+| offers | node, what, name, type: an endpoint of a peer's |
+| endpoint | node, channel, type, writes, reliability, durability, depth: one of the program's |
+| call | peer, id, service, type, request, sent_ns; response, answered_ns |
+| served | peer, service, type, request; response, answered_ns |
+| goal | peer, id, action, type, goal, sent_ns; accepted, feedback, status, result, ended_ns |
+| action | peer, action, type, goal, accepted; feedback, status, ended_ns |
+| parameter | peer, id, node, sent_ns; set {name: reason or ''}, values {name: value}, answered_ns |
+| got | peer, topic, values: what a subscription has received |
+| refused | peer, what, why: what a peer could not do with what the program sent |
+| full | nothing: what came then is not recorded |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Final
+
+from grader.cast.messages import NoType, Types, plain
+from grader.cast.trace import EVENTS, ROSOUT, CastTrace, Event, SentMessage
+from grader.message import Message, msg
+from grader.rosidl.cdr import deserialise, serialise
+
+#: The most messages, bytes of them and of what is in events, and events of a recording.
+MOST_MESSAGES, MOST_BYTES, MOST_EVENTS = 20_000, 20_000_000, 10_000
+LOG: Final = "rcl_interfaces/msg/Log"
+_FULL: Final = msg("of what was exchanged, the first {n:,} messages and {m:,} bytes were recorded")
+
+
+class CastRecorder:
+    """A recording in the making.
+
+    Args:
+        topics: names of those that are heard besides `/rosout`, with their namespaces.
+        peers: the names of the cast's nodes, with theirs.
+        now_ns: the time from the start of the run [ns].
+        tap: called with a topic, a type and its class: has that be heard from now on.
+    """
+
+    def __init__(
+        self,
+        types: Types,
+        topics: Iterable[str],
+        peers: Iterable[str],
+        now_ns: Callable[[], int],
+        tap: Callable[[str, str, Any], None],
+    ) -> None:
+        self._types = types
+        self._topics = {*topics, ROSOUT} - {EVENTS}
+        self._peers = frozenset(peers)
+        self._now_ns = now_ns
+        self._tap = tap
+        #: a bag has one type a topic: that of the first message
+        self._types_of: dict[str, str] = {}
+        self._tapped: set[tuple[str, str]] = set()
+        self._writers: dict[str, set[str]] = {}
+        self._endpoints: set[tuple[Any, ...]] = set()
+        self._messages: list[SentMessage] = []
+        self._events: list[dict[str, Any]] = []
+        self._bytes = 0
+        self.flags: list[Message] = []
+
+    @property
+    def has_heard(self) -> bool:
+        """Whether the program has sent anything but log lines, or serves something."""
+        return bool(self._messages or self._events)
+
+    @property
+    def is_full(self) -> bool:
+        """Whether nothing more is recorded."""
+        return bool(self.flags)
+
+    def meet(self, endpoints: Iterable[Any]) -> None:
+        """Note the program's readers and writers, and hear those that are asked for.
+
+        Args:
+            endpoints: `grader.run.lockstep.protocol.StudentEndpoint`s.
+        """
+        self._writers = {}
+        for each in endpoints:
+            kind, _, name = each.channel.partition(" ")
+            if each not in self._endpoints and len(self._endpoints) <= MOST_EVENTS:
+                self._endpoints.add(each)
+                self.event("endpoint", **each._asdict())
+            if kind == "topic" and each.writes:
+                self._writers.setdefault(name, set()).add(each.node)
+                if name in self._topics and (name, each.type) not in self._tapped:
+                    self._tapped.add((name, each.type))
+                    try:
+                        self._tap(name, each.type, self._types.use(each.type))
+                    except NoType:  # one of its own that nobody has
+                        continue
+
+    def event(self, kind: str, **values: Any) -> dict[str, Any]:
+        """Add an event, whose values may still be completed."""
+        made = {"kind": kind, "time_ns": self._now_ns(), **values}
+        if len(self._events) < MOST_EVENTS:
+            self._events.append(made)
+        else:
+            self._note_full()
+        return made
+
+    def plain(self, message: Any) -> dict[str, Any]:
+        """Return the values of a message for an event; none where there is no room for them."""
+        return plain(message) if self._has_room(len(serialise(message))) else {}
+
+    def heard(self, topic: str, kind: str, time_ns: int, data: bytes) -> None:
+        """Add a message of the program's, in CDR."""
+        if not self._is_of_type(topic, kind) or not self._has_room(len(data), 1):
+            return
+        try:
+            canonical = serialise(deserialise(data, self._types.use(kind)))
+        except ValueError:
+            return
+        nodes = self._writers.get(topic, set()) - self._peers  # it may call itself like one
+        node = min(nodes) if len(nodes) == 1 else ""
+        self._messages.append(SentMessage(time_ns, topic, kind, node, canonical))
+
+    def said(self, topic: str, kind: str, node: str, message: Any) -> None:
+        """Add a message of a peer's."""
+        self._types.use(kind)
+        data = serialise(message)
+        if self._is_of_type(topic, kind) and self._has_room(len(data), 1):
+            self._messages.append(SentMessage(self._now_ns(), topic, kind, node, data))
+
+    def _is_of_type(self, topic: str, kind: str) -> bool:
+        return self._types_of.setdefault(topic, kind) == kind
+
+    def _has_room(self, size: int, messages: int = 0) -> bool:
+        """Whether there is room for so many bytes and messages; it is used then."""
+        if self._bytes + size > MOST_BYTES or len(self._messages) + messages > MOST_MESSAGES:
+            self._note_full()
+        if self.is_full:
+            return False
+        self._bytes += size
+        return True
+
+    def flag(self, remark: Message) -> None:
+        """Add a remark for the result, once."""
+        if remark not in self.flags:
+            self.flags.append(remark)
+
+    def _note_full(self) -> None:
+        if not self.is_full:
+            self.flag(_FULL.given(n=MOST_MESSAGES, m=MOST_BYTES))
+            self._events.append({"kind": "full", "time_ns": self._now_ns()})
+
+    def trace(self, ticks: int, peers: Iterable[str]) -> CastTrace:
+        """Return the recording up to now."""
+        events: tuple[Event, ...] = tuple(map(dict, self._events))
+        messages = tuple(sorted(self._messages, key=lambda each: each.time_ns))
+        return CastTrace(ticks, messages, events, tuple(peers), dict(self._types.used))

@@ -1,0 +1,115 @@
+"""The trace of a scene and that of the cast beside it, kept as one: in one bag, with one hash."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from grader.message import Message
+from grader.recording.channel import Channel
+from grader.recording.subject import CAST_SCENE, BagMessage, Start, Subject, Trace, load_subject
+
+#: Before the topics of a cast: a scene may have some of the same names.
+PREFIX: Final = "/cast"
+
+
+@dataclass(frozen=True)
+class Both:
+    """Two traces of one run."""
+
+    trace: Trace
+    cast: Trace
+
+    @property
+    def duration_ns(self) -> int:
+        """The length of the recording [simulated ns]."""
+        return self.trace.duration_ns
+
+    @property
+    def ticks(self) -> int:
+        """The number of ticks."""
+        return self.trace.ticks
+
+    def sha256(self) -> str:
+        """A hash of both."""
+        return hashlib.sha256(f"{self.trace.sha256()}{self.cast.sha256()}".encode()).hexdigest()
+
+
+class CastKeeper(Subject):
+    """Keeps a trace of a scene, and one of a cast, as one."""
+
+    def __init__(self, scene: Subject) -> None:
+        self._scene = scene
+        self._cast = load_subject(CAST_SCENE)
+
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """The scene's."""
+        return self._scene.name
+
+    @property
+    def thing(self) -> Message:  # type: ignore[override]
+        """The scene's."""
+        return self._scene.thing
+
+    @property
+    def the_thing(self) -> Message:  # type: ignore[override]
+        """The scene's."""
+        return self._scene.the_thing
+
+    def untouched(self, start: Start | None) -> Trace:
+        """Both, with nothing in them."""
+        return Both(self._scene.untouched(start), self._cast.untouched(None))
+
+    def message_definitions(self) -> Mapping[str, str]:
+        """Those of both."""
+        return {**self._cast.message_definitions(), **self._scene.message_definitions()}
+
+    def definitions_of(self, trace: Trace) -> Mapping[str, str]:
+        """Those of both traces."""
+        assert isinstance(trace, Both)
+        own = self._scene.definitions_of(trace.trace)
+        return {**self._cast.definitions_of(trace.cast), **own}
+
+    def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
+        """Those of both."""
+        assert isinstance(trace, Both)
+        others = self._cast.bag_topics(trace.cast)
+        return [
+            *self._scene.bag_topics(trace.trace),
+            *((PREFIX + topic, msgtype) for topic, msgtype in others),
+        ]
+
+    def to_messages(self, trace: Trace) -> list[BagMessage]:
+        """Those of both, by time."""
+        assert isinstance(trace, Both)
+        others = self._cast.to_messages(trace.cast)
+        made = self._scene.to_messages(trace.trace)
+        made += [each._replace(topic=PREFIX + each.topic) for each in others]
+        return sorted(made, key=lambda message: message.time_ns)
+
+    def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
+        """Read both back."""
+        prefix = f"{PREFIX}/"
+        own = [each for each in channels if not each.topic.startswith(prefix)]
+        others = [
+            replace(each, topic=each.topic.removeprefix(PREFIX))
+            for each in channels
+            if each.topic.startswith(prefix)
+        ]
+        return Both(
+            self._scene.from_channels(own, duration_ns),
+            self._cast.from_channels(others, duration_ns),
+        )
+
+
+def together(trace: Trace, cast: Trace | None, subject: Subject) -> tuple[Trace, Subject]:
+    """Return a trace with that of the cast beside it, if there is one, and who keeps it."""
+    return (trace, subject) if cast is None else (Both(trace, cast), CastKeeper(subject))
+
+
+def apart(kept: Trace) -> tuple[Trace, Trace | None]:
+    """Return the two again."""
+    return (kept.trace, kept.cast) if isinstance(kept, Both) else (kept, None)

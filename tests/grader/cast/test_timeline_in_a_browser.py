@@ -1,0 +1,341 @@
+"""The timeline in a browser: for everybody, of much, looked back on while a run goes on."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grader.cast import timeline
+from grader.cast.live import TimelinePage
+from grader.cast.replay import render
+from grader.cast.trace import CastTrace
+from grader.cli import main
+from grader.exercise.loading import load_exercise
+from grader.recording import saving
+from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
+from grader.recording.recording import Recordings
+from grader.recording.subject import load_subject
+from grader.reports import read as read_report
+from grader.reports.page import html
+from grader.scenes.live import Grading
+from grader.translations import ENGLISH, use
+from tests import runs
+from tests.browser import WIDTHS, clipped, cut_off, english, needs_browser, obstacles, open_browser
+from tests.grader.exercise.expect.traces import endpoint, event, line, text, trace
+from tests.grader.reports import samples
+from tests.programs import DEADLINE_S, Program
+from tests.tiers import others_are_more
+
+pytestmark = needs_browser
+
+#: What the lanes show, RGBA in base64, and their width.
+PIXELS = """
+() => {
+  const { width, height } = document.getElementById("lanes");
+  const pen = document.getElementById("lanes").getContext("2d");
+  const bytes = pen.getImageData(0, 0, width, height).data;
+  let text = "";
+  for (let i = 0; i < bytes.length; i += 8192) {
+    text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  }
+  return [width, btoa(text)];
+}
+"""
+ROWS, CURRENT = "#hops tr", "#hops tr[aria-current]"
+HOSTILE = "<script>alert(1)</script> <b>"
+#: Two messages a second for ten seconds, and a log line, from and to nodes with hostile names.
+HOSTILE_RUN = trace(
+    *(text(n / 2, "/chatter", f"{HOSTILE} {n}", node="/<b>one") for n in range(20)),
+    line(9.9, HOSTILE),
+    endpoint("topic /chatter", node="/<b>one"),
+    endpoint("topic /chatter", node="/<b>other", writes=False),
+)
+
+
+@pytest.fixture(scope="module")
+def everything() -> Recordings:
+    """A run with all that a cast has."""
+    exercise = load_exercise(Path(__file__).parent / "everything")
+    return runs.recordings("hostile_casts/does_all", exercise)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory, everything: Recordings) -> Path:
+    """The replay in each language, of that run, of the hostile one, and of one with much in it."""
+    made = tmp_path_factory.mktemp("timeline")
+    much = trace(*(text(n / 1000, "/chatter", str(n)) for n in range(10_000)))
+    traces = (everything.nominal.trace, HOSTILE_RUN, much)
+    played = tuple(PlayedRun(n, f"Run {n}", "finished", each) for n, each in enumerate(traces))
+    moment = Moment(number=1, run=1, time_s=4.0, place=None, text=HOSTILE)
+    judged = (JudgedCheck("It says it", "failed", "failed", HOSTILE, "Say it.", (moment,)),)
+    for language in ("en", "fr", "zh"):
+        use(language)
+        content = render(Playback(f"node.py {HOSTILE}", "", played, judged))
+        (made / f"{language}.html").write_text(content, encoding="utf-8")
+    use(ENGLISH)
+    return made
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with open_browser() as opened:
+        yield opened
+
+
+@pytest.fixture
+def visit(browser: Any) -> Iterator[Callable[..., Any]]:
+    """Opens pages; whatever fails in one, or is fetched from elsewhere, fails the test."""
+    pages, errors = [], list[str]()
+
+    def visited(address: str, width: int = 1200, **settings: Any) -> Any:
+        page = browser.new_page(viewport={"width": width, "height": 900}, **settings)
+        page.set_default_timeout(DEADLINE_S * 1000)
+        pages.append(page)
+        here = address.partition("?")[0]
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("dialog", lambda dialog: errors.append(dialog.message))
+        page.on("request", lambda a: a.url.startswith(("data:", here)) or errors.append(a.url))
+        page.goto(address)
+        return page
+
+    yield visited
+    for page in pages:
+        page.close()
+    assert errors == []
+
+
+@pytest.fixture
+def replay(folder: Path, visit: Callable[..., Any]) -> Any:
+    return visit((folder / "en.html").as_uri())
+
+
+def columns(page: Any) -> list[int]:
+    """The columns of the lanes in which there is a message from before the cursor [px]."""
+    width, pixels = page.evaluate(PIXELS)
+    shown = np.frombuffer(base64.b64decode(pixels), np.uint8).reshape(-1, width, 4)
+    return np.flatnonzero((shown == (0x2B, 0x45, 0xC4, 255)).all(axis=2).any(axis=0)).tolist()
+
+
+def cells(page: Any, rows: str) -> list[str]:
+    found: list[str] = page.locator(f"{rows} td").all_inner_texts()
+    return found
+
+
+def go(page: Any, time_s: float) -> None:
+    page.locator("#slider").fill(str(round(time_s / 0.016)))
+
+
+def test_a_hop_is_seen_once_the_cursor_has_come_to_it(replay: Any) -> None:
+    replay.select_option("#about", "/chatter")
+    go(replay, 0.5)
+    assert columns(replay) == []
+    go(replay, 3.5)
+    wide = replay.locator("#lanes").bounding_box()["width"]
+    seen = columns(replay)
+    for second in (1, 2, 3):
+        assert any(abs(column - second * wide / 5) < 0.05 * wide for column in seen)
+    assert max(seen) < 3.5 * wide / 5
+    assert cells(replay, CURRENT)[1:] == ["/node", "→ /peer", "/chatter", "Hello 2"]
+
+
+def test_the_list_follows_the_cursor_and_the_page_stays_where_it_is(replay: Any) -> None:
+    replay.set_viewport_size({"width": 400, "height": 500})
+    for time_s in (0.2, 1.0, 2.5, 4.9, 0.3):
+        go(replay, time_s)
+        assert float(cells(replay, CURRENT)[0].partition("–")[0]) <= time_s
+        assert replay.evaluate("scrollY") == 0
+        whole, row = (replay.locator(each).bounding_box() for each in (".list", CURRENT))
+        assert whole["y"] <= row["y"] + 1
+        assert row["y"] + row["height"] <= whole["y"] + whole["height"] + 1
+
+
+def test_it_is_played_by_keys_alone(replay: Any) -> None:
+    replay.locator("#slider").focus()
+    replay.keyboard.press("End")
+    replay.keyboard.press(",")
+    assert "tick 312 of 313" in replay.inner_text("#time")
+    replay.select_option("#speed", "20")
+    replay.locator("#slider").focus()
+    replay.keyboard.press("Home")
+    replay.keyboard.press(" ")
+    replay.wait_for_selector("#time:has-text('tick 313 of 313')")
+
+
+def test_hostile_names_and_texts_are_text_and_their_moment_is_found(replay: Any) -> None:
+    replay.click("#checks button")
+    assert "tick 250 of 625" in replay.inner_text("#time")
+    who, whom, _, what = cells(replay, CURRENT)[1:]
+    assert (who, whom, what) == ("/<b>one", "→ /<b>other", f"{HOSTILE} 8")
+    assert replay.locator("b, script:not([type]):not(:last-of-type)").count() == 0
+
+
+def test_ten_thousand_messages_can_be_used(folder: Path, replay: Any) -> None:
+    replay.click("#runs button >> nth=2")
+    go(replay, 8.0)
+    assert cells(replay, CURRENT)[-1] == "8000"
+    assert replay.locator(ROWS).count() < 100
+    assert (folder / "en.html").stat().st_size < 2_500_000
+
+
+def test_another_recording_is_there_for_comparison(
+    tmp_path: Path, visit: Any, everything: Recordings
+) -> None:
+    for name in ("one", "other"):
+        saving.save_all(everything, tmp_path / name)
+    words = ("view", tmp_path / "one", "--compare", tmp_path / "other", "--no-open", "--out")
+    assert main([*map(str, words), str(tmp_path / "view.html")]) == 0
+    page = visit((tmp_path / "view.html").as_uri())
+    assert page.locator("#runs button").count() == 2
+    page.click("#runs button >> nth=1")
+    go(page, 3.5)
+    assert cells(page, CURRENT)[0] <= "3.50"
+
+
+@pytest.mark.parametrize("width", others_are_more("the narrowest stands for all", WIDTHS, 320))
+def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: int) -> None:
+    page = visit((folder / "en.html").as_uri(), width)
+    for button in page.locator("#runs button").all()[:2]:
+        button.click()
+        go(page, 3.0)
+        assert cut_off(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert obstacles(page) == []
+    assert clipped(page) == {}
+
+
+@pytest.mark.parametrize("language", others_are_more("one language", ["fr", "zh"], "fr"))
+def test_the_replay_speaks_each_language(folder: Path, visit: Any, language: str) -> None:
+    page = visit((folder / f"{language}.html").as_uri())
+    of_the_run = "#hops, #checks, header, #outcome, #runs"
+    assert english(page, language, of_the_run) == []
+
+
+@pytest.mark.more("tables of other reports are in `make test`")
+def test_nobody_is_kept_from_reading_it_in_the_report(
+    tmp_path: Path, visit: Any, everything: Recordings
+) -> None:
+    saving.save_all(everything, tmp_path / "recording")
+    result = samples.result(samples.verdict("says"), artifacts={"recording": "recording"})
+    (tmp_path / "result.json").write_text(json.dumps(result))
+    content = html.render(read_report(tmp_path / "result.json"))
+    (tmp_path / "report.html").write_text(content, encoding="utf-8")
+    page = visit((tmp_path / "report.html").as_uri(), 1280)
+    assert "Hello 0" in page.locator("table", has_text="/chatter").first.inner_text()
+    assert page.locator(".pictures").is_hidden()  # there is nothing in it
+    assert obstacles(page) == []
+    assert clipped(page) == {}
+
+
+# While a run goes on ------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def live() -> Iterator[TimelinePage]:
+    served = TimelinePage(0)
+    yield served
+    served.close()
+
+
+def news(end_s: float, since_s: float = 0.0) -> dict[str, Any]:
+    found = timeline.items(HOSTILE_RUN, round(since_s * 1e9))
+    items = [each for each in found if each["t"] <= end_s]
+    return {"t": end_s, "lanes": timeline.lanes(HOSTILE_RUN), "items": items}
+
+
+def test_who_looks_back_stays_there_while_it_grows(live: TimelinePage, visit: Any) -> None:
+    live.hear([news(2.0)])
+    page = visit(live.address)
+    page.wait_for_selector("html[data-time='2']")
+    assert cells(page, CURRENT)[-1] == f"{HOSTILE} 4"
+    live.hear([news(3.0, 2.0), news(4.0, 3.0)])
+    page.wait_for_selector("html[data-time='4']")
+    assert cells(page, CURRENT)[-1] == f"{HOSTILE} 8"
+    page.locator("#slider").focus()
+    page.keyboard.press("Home")
+    page.wait_for_selector(f"{CURRENT}:has-text('<b> 0')")
+    live.hear([news(6.0, 4.0)])
+    page.wait_for_selector("html[data-time='6']")
+    assert cells(page, CURRENT)[-1] == f"{HOSTILE} 0"
+    page.keyboard.press("End")
+    page.wait_for_selector(f"{CURRENT}:has-text('<b> 12')")
+    assert page.locator("main b, main script").count() == 0
+    live.begin()
+    page.wait_for_selector("html[data-time='0']")
+    assert page.locator(ROWS).count() == 0
+
+
+@pytest.mark.parametrize("width", others_are_more("the narrowest", [320, 1280], 320))
+def test_nobody_is_kept_from_looking_on(live: TimelinePage, visit: Any, width: int) -> None:
+    live.hear([news(10.0)])
+    live.update(Grading("node.py, talker", "nominal run", "Score: 1 of 2", "Do this first."))
+    page = visit(live.address, width, locale="en-GB")
+    page.wait_for_selector("html[data-time='10']")
+    assert cut_off(page) == []
+    assert obstacles(page) == []
+    assert clipped(page) == {}
+    page.select_option("#language", "fr")
+    page.wait_for_selector("html[lang=fr]")
+    assert english(page, "fr", "#hops, #checks, #grading-score, #grading-first, #state") == []
+
+
+def test_a_run_is_seen_to_its_end(tmp_path: Path, visit: Any) -> None:
+    words = (str(runs.path_of("hostile_casts/does_all")), "--live", "--speed", "free")
+    exercise = str(Path(__file__).with_name("everything"))
+    given = ("run", *words, "--exercise", exercise, "--out", "out", "--lang", "en")
+    with Program("grader", *given, cwd=tmp_path) as program:
+        address = re.search(r"http://\S+", program.wait_for_line("See the runs at"))[0]
+        page = visit(address)
+        page.wait_for_selector("#state:has-text('The grading is over; what is here stays.')")
+        assert program.wait() == 0
+        page.select_option("#about", "/chatter")
+        page.wait_for_selector(f"{CURRENT}:has-text('Hello 4')")
+        assert page.inner_text("#grading-score") == "Score: 100 of 100"
+
+
+# Data ---------------------------------------------------------------------------------------------
+
+
+def test_what_came_late_is_told_with_the_last() -> None:
+    first, late, last = (text(n, "/chatter", str(n)) for n in (1, 2, 3))
+    told = {each["id"]: each for each in timeline.items(trace(first, last))}
+    told |= {each["id"]: each for each in timeline.items(trace(first, late, last), 2_000_000_000)}
+    assert [each["text"] for each in told.values()] == ["1", "2", "3"]
+
+
+def test_a_parameter_is_set_or_got_and_a_refusal_says_why() -> None:
+    answers: dict[str, Any] = {"node": "/node", "sent_ns": 0, "answered_ns": 1}
+    events = (
+        event("parameter", **answers, values={"p": "world", "q": 0.5}),
+        event("parameter", **answers, set={"p": "", "q": "too large"}),
+    )
+    told = [each["text"] for each in timeline.items(trace(*events))]
+    assert told == ["get p → world, get q → 0.5", "set p, set q → too large"]
+
+
+def test_what_the_program_sends_is_its_behaviour(everything: Recordings) -> None:
+    done = load_subject("graph").behaviour(everything.nominal.trace).commands
+    assert {each.name for each in done} == {"/out", "/chatter", "/tf"}
+    assert [each.values for each in done if each.name == "/out"][:3] == [(0.0,), (1.0,), (2.0,)]
+    said = [each.values for each in done if each.name == "/chatter"]
+    assert len(set(said)) == len(said) > 1
+    hostile = load_subject("graph").behaviour(HOSTILE_RUN)
+    assert len(hostile.commands) == 20  # log lines have names of its own
+
+
+def test_a_program_of_many_nodes_has_as_many_lanes_as_can_be_seen() -> None:
+    nodes = (endpoint("topic /chatter", node=f"/n{number:04}") for number in range(5_000))
+    lanes = timeline.lanes(trace(*nodes))
+    assert len(lanes) == timeline.MOST_NODES + 1
+    assert lanes[-2:] == [timeline.OTHERS, "/peer"]
+
+
+def test_a_run_without_anything_has_the_program_s_lane() -> None:
+    assert timeline.items(CastTrace()) == []
+    assert timeline.lanes(CastTrace()) == [timeline.PROGRAM]
