@@ -229,6 +229,8 @@ def plan(
     interfaces = ""
     if isinstance(scene, Scene):
         interfaces = scene.interfaces_for(imports.surely, imports.perhaps)
+    usual, *others = exercise.cases
+    own = {} if usual.cast is None else submission.interfaces.importable
     nominal = Plan(
         exercise.limits,
         scene=exercise.scene,
@@ -238,9 +240,16 @@ def plan(
         looks_at_package=exercise.looks_at_package and submission.package is not None,
         inspections=exercise.inspections,
         definitions=exercise.interfaces,
+        cast=usual.cast,
+        hears=usual.hears,
+        own_definitions=own,
+        arguments=usual.arguments,
         budget=budget,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
+    for each in others:
+        own_part = replace(nominal, cast=each.cast, hears=each.hears, arguments=each.arguments)
+        varied.append(replace(own_part, case=each.name, seed=None))
     missing = missing_neighbours(
         submission.name, submission.copy, (*imports.surely, *imports.perhaps)
     )
@@ -317,7 +326,7 @@ def start(
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
         inspection = pool.submit(_inspect_twice_at_most, submission, plans[0]) if inspects else None
         over = (
-            (numbers[future], replace(future.result(), interfaces=submission.interfaces))
+            (numbers[future], replace(future.result(), interfaces=submission.defined))
             for future in as_completed(numbers)
         )
         yield ((n, r if n else _nominal(r, origin, inspection)) for n, r in over)

@@ -29,7 +29,8 @@ def judge(
     """
     asked = loaded(exercise)
     verdicts = check.judge(recordings, asked.checks, asked.points, asked.tolerances)
-    return build(submission, asked, recordings, verdicts, {}, diagnose(recordings, verdicts))
+    cause = diagnose(recordings, verdicts, asked.peers_have, is_to_end=asked.is_to_end)
+    return build(submission, asked, recordings, verdicts, {}, cause)
 
 
 def load_recordings(folder: AnyPath) -> Recordings:
@@ -54,7 +55,8 @@ def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "
     """Judge the nominal run alone; return a result without the other verdicts."""
     verdicts = check.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
     alone = Recordings(nominal)
-    return build(submission, exercise, alone, verdicts, {}, diagnose(alone, verdicts))
+    cause = diagnose(alone, verdicts, exercise.peers_have, is_to_end=exercise.is_to_end)
+    return build(submission, exercise, alone, verdicts, {}, cause)
 
 
 def loaded(exercise: AnyPath | Exercise) -> Exercise:

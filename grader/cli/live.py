@@ -108,16 +108,18 @@ class Live:
 
     def begins(self, plan: Plan, time: Clock) -> None:
         """Show an empty window, and the name of the run."""
-        starts = [each.start for each in self._plans]
-        number, varied = starts.index(plan.start), len(starts) - 1
+        kinds = [(each.start, each.case) for each in self._plans]
+        number, varied = kinds.index((plan.start, plan.case)), len(kinds) - 1
         pace = msg("in real time") if time == "real" else self._pace
         run = tr("nominal run, {pace}", pace=pace)
-        if plan.start is not None:
+        if number:
             run = tr(
                 "varied run {number} of {runs} {begins}, {pace}",
                 number=number,
                 runs=varied,
-                begins=plan.start.words,
+                begins=msg("case {case}", case=plan.case)
+                if plan.start is None
+                else plan.start.words,
                 pace=pace,
             )
         assert self._page is not None

@@ -11,7 +11,7 @@ import shlex
 import shutil
 import sys
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -25,7 +25,7 @@ from grader.exercise.sheet import Start, sheet
 from grader.recording.subject import Subject
 from grader.submission.folder import NO_SOURCES
 from grader.submission.manifest import FILE as MANIFEST
-from grader.submission.manifest import naming, read_manifest, renamed
+from grader.submission.manifest import naming
 from grader.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
@@ -69,27 +69,28 @@ def main(args: argparse.Namespace) -> int:
                 "{folder} is not empty; give a new folder, nothing was written", folder=folder
             )
         called = folder.resolve().name
-        package = _package_name(called, exercise.starter)
+        try:
+            given = exercise.starter_files()
+            package = _package_name(called, exercise.starter_package, given)
+            given = exercise.starter_files(package)
+        except OSError as error:
+            why = error.strerror or str(error)
+            raise UsageError(
+                "cannot copy {source}: {why}; nothing was written", source=error.filename, why=why
+            ) from None
         with _whole_or_not_at_all(folder) as copy:
-            if exercise.starter is not None:
-                skip = shutil.ignore_patterns("__pycache__", "*.pyc")
-                shutil.copytree(exercise.starter, copy, ignore=skip)
-                _rename(copy, _package_of(copy), package)
-            else:
-                copy.mkdir()
-                if exercise.is_started:
-                    (copy / PROGRAM).write_text("# TODO: your node\n", encoding="utf-8")
+            copy.mkdir()
+            if exercise.starter is None and exercise.is_started:
+                given = {PROGRAM: b"# TODO: your node\n"}
+            for name, data in given.items():
+                (copy / name).parent.mkdir(parents=True, exist_ok=True)
+                (copy / name).write_bytes(data)
             is_named = _name_exercise(copy, exercise.name) and is_installed(args.exercise)
             words = [] if is_named else ["--exercise", args.exercise]
             if not (copy / SHEET).exists():  # else its author has written one
                 _write_sheet(copy, exercise, Path(called), package, _grading(called, words))
             if args.ros:
                 _adapt(copy, exercise.subject, args.ros)
-    except shutil.Error as error:
-        source, _, why = error.args[0][0]  # (source, target, why) of each file
-        raise UsageError(
-            "cannot copy {source}: {why}; nothing was written", source=source, why=why
-        ) from None
     except OSError as error:
         raise files.cannot_write(folder, error.strerror or str(error)) from None
     to_fill_in = _with_todos(folder)
@@ -114,21 +115,20 @@ def _grading(folder: str, words: Sequence[str]) -> str:
     return shlex.join(["grader", "run", place, *words])
 
 
-def _package_of(folder: Path) -> str:
-    """Return the name of a package; '' for a folder that is none."""
-    manifest = read_manifest(folder / MANIFEST) if (folder / MANIFEST).is_file() else None
-    return manifest.name if manifest else ""
-
-
-def _package_name(called: str, starter: Path | None) -> str:
+def _package_name(called: str, before: str, given: Iterable[str]) -> str:
     """Return the name for the package of a starter in a folder; '' where it is none.
+
+    Args:
+        called: the folder's name.
+        before: the name that the package has.
+        given: the paths of its files.
 
     Two packages in a workspace may not share one, and it hides no module that is there already.
 
     Raises:
         UsageError: the folder's name has no letter or digit for it.
     """
-    if starter is None or not (before := _package_of(starter)):
+    if not before:
         return ""
     plain = unicodedata.normalize("NFKD", called).encode("ascii", "ignore").decode().lower()
     name = re.sub("[^a-z0-9]+", "_", plain).strip("_")
@@ -138,7 +138,7 @@ def _package_name(called: str, starter: Path | None) -> str:
             "a to z; nothing was written",
             folder=called,
         )
-    others = {path.name for path in starter.iterdir()} - {before}
+    others = {Path(path).parts[0] for path in given} - {before}
     module = None if keyword.iskeyword(name) else importlib.util.find_spec(name)
     is_taken = (
         len(name) == 1  # colcon's linter asks for two letters
@@ -150,18 +150,6 @@ def _package_name(called: str, starter: Path | None) -> str:
         or (module is not None and module.origin is not None)
     )
     return f"my_{name}" if is_taken else name
-
-
-def _rename(folder: Path, before: str, package: str) -> None:
-    """Give the package in a folder another name, wherever that stands in files and their names."""
-    if not before:
-        return
-    for path in sorted(folder.rglob("*"), reverse=True):  # what is inside a folder first
-        if path.is_file():
-            text = path.read_bytes().decode("utf-8", "surrogateescape")
-            made = renamed(text, before, package)
-            path.write_bytes(made.encode("utf-8", "surrogateescape"))
-        path.rename(path.with_name(renamed(path.name, before, package)))
 
 
 def _name_exercise(folder: Path, exercise: str) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.resources import files
 from importlib.util import find_spec
@@ -18,6 +18,7 @@ from typing import Any
 from grader import content, extensions
 from grader.errors import ExerciseError
 from grader.exercise import places, policies, translated
+from grader.exercise.cases import RunCase, read_cases
 from grader.exercise.check import Checks
 from grader.exercise.exercise import (
     CPU,
@@ -29,11 +30,11 @@ from grader.exercise.exercise import (
     VariedRuns,
 )
 from grader.exercise.places import DESCRIPTION, Place
-from grader.exercise.yaml_file import Mistake, check_known, expect, is_amount
 from grader.extensions import SCENES
 from grader.message import authored, msg
 from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
+from grader.yaml_file import Mistake, check_known, expect, is_amount
 
 #: Where nothing is started, no time passes that could be limited.
 NO_LIMITS = Limits(0.0, 0.0, 0.0)
@@ -50,6 +51,8 @@ LONGEST_SETTING = 50_000
 INTERFACES = "interfaces"
 #: As JSON, in an argument of each process [characters].
 LONGEST_INTERFACES = 40_000
+#: What is expected of what is exchanged: each is a check.
+EXPECT = "expect"
 RUNS = "runs"
 #: A turtle that drives so many times as fast crosses the window in a tick or two.
 MOST_FACTOR = 100
@@ -71,7 +74,9 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     tolerances = data.get("tolerances") or {}
     is_dict = isinstance(tolerances, dict)
     expect(is_dict, ("tolerances",), "expected names with values, found {found}", tolerances)
-    checks = places.import_checks(place)
+    cases = read_cases(data, has_cast=subject.has_cast)
+    checks, heard = _checks(data, place, cases)
+    cases = [each.hearing(heard) for each in cases]
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
         raise Mistake(("tolerances", wrong[0]), wrong[1])
@@ -99,6 +104,8 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         explained=words.tolerances,
         fits=_fits(data.get(FITS) or {}),
         interfaces=interfaces,
+        cases=tuple(cases),
+        is_to_end=any("exits" in each for each in data.get(EXPECT, {}).values()),
         title=authored(str(data["title"]), words.title),
         task=authored(data.get("task", ""), words.task),
     )
@@ -204,6 +211,19 @@ def _interfaces(where: Any, place: Place) -> dict[str, str]:
     for wrong in Definitions(texts).errors.values():
         raise Mistake((INTERFACES,), wrong.message)
     return texts
+
+
+def _checks(
+    data: Mapping[str, Any], place: Place, cases: Sequence[RunCase]
+) -> tuple[Checks, set[str]]:
+    """Return the checks of checks.py and those of what is expected, and the topics of these."""
+    if EXPECT not in data:
+        return places.import_checks(place), set()
+    from grader.exercise.expect.checks import add_checks  # here: most exercises have no such part
+
+    has_own = (place.folder / places.CHECKS).is_file()
+    checks = places.import_checks(place).with_words({}, {}) if has_own else Checks()
+    return checks, add_checks(checks, data[EXPECT], cases)
 
 
 def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
@@ -329,8 +349,9 @@ def _starter(where: object, place: Place) -> Path | None:
         folder = places.locate(place.folder, str(where))
     except ExerciseError as error:
         raise Mistake(("starter",), error.message) from None
-    if not folder.is_dir():
-        raise Mistake(("starter",), "expected a folder, found {folder}", folder=str(folder))
+    if not folder.is_dir() and folder.suffix != ".py":
+        what = "expected a folder or a Python file, found {folder}"
+        raise Mistake(("starter",), what, folder=str(folder))
     real = folder.resolve()
     package = str(where).partition("/")[0]
     roots = [place.folder]

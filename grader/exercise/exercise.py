@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import ast
+import errno
 import hashlib
 import math
 import random
+import re
+import sys
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict
 
+from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
 from grader.message import NOTHING, Message
-from grader.recording.subject import Start, Subject, load_subject
+from grader.recording.subject import Endpoint, Start, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
@@ -39,6 +44,12 @@ class Opening(TypedDict, total=False):
 
 
 Range = tuple[float, float]
+
+#: The package around a starter that is a program, and what stands in its files for names.
+_AROUND = Path(__file__).with_name("starter")
+_PACKAGE, _PROGRAM, _EXERCISE = "my_solution", "my_node", "my_exercise"
+_RCLPY = "  <exec_depend>rclpy</exec_depend>\n"
+_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 
 
 @dataclass(frozen=True)
@@ -96,11 +107,14 @@ class Exercise:
         scene: the name of what runs beside the submission.
         interfaces: a type that it brings along, 'my_interfaces/msg/Num' -> its definition.
         setting: the text of the file that it is set up with; '' for none.
+        cases: what plays beside a program in the nominal run, and in further ones.
+        is_to_end: whether a program is to end by itself.
         looks_at_package: whether the package around what is started is inspected as well.
         inspections: the names of the inspectors that examine packages.
         program: the one to start where a submission has several; '' for the usual one.
         folder: where its files are.
-        starter: the folder that `grader new` copies; None where there is none.
+        starter: the folder that `grader new` copies, or a program around which it makes a package;
+            None where there is none.
         sha256: of all that a verdict depends on: the values of exercise.yaml that are in force,
             the setting, and the Python files beside it.
     """
@@ -127,11 +141,18 @@ class Exercise:
     explained: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     fits: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     interfaces: Mapping[str, str] = field(default_factory=dict)
+    cases: tuple[RunCase, ...] = (RunCase(),)
+    is_to_end: bool = False
 
     @property
     def subject(self) -> Subject:
         """The scene that runs beside a submission, or the subject `package`."""
         return load_subject(self.scene)
+
+    @property
+    def peers_have(self) -> Mapping[str, tuple[Endpoint, ...]]:
+        """What of the scripted peers a program may meet in each case, by its name."""
+        return {case.name: case.endpoints for case in self.cases}
 
     @property
     def is_started(self) -> bool:
@@ -173,6 +194,39 @@ class Exercise:
         """The sum of all points."""
         return round(sum(self.points.values()), 2)
 
+    def starter_files(self, package: str = "") -> dict[str, bytes]:
+        """Return the files of the starter by their paths; of a program with a package around it.
+
+        Args:
+            package: the name of the package, in files and their names; '' leaves it.
+
+        Raises:
+            OSError: one of them cannot be read.
+        """
+        if self.starter is None:
+            return {}
+        names = {}
+        if self.starter.is_dir():
+            texts = _texts_below(self.starter)
+        else:
+            program = self.starter.read_text(encoding="utf-8")
+            texts = _texts_below(_AROUND)
+            texts["package.xml"] = texts["package.xml"].replace(_RCLPY, _depends(program))
+            texts[f"{_PACKAGE}/{_PROGRAM}.py"] = program
+            names = {_PROGRAM: self.starter.stem, _EXERCISE: self.name}
+        if package and (found := _NAME.search(texts.get("package.xml", ""))):
+            names[found[1]] = package
+        for before, name in names.items():
+            word = re.compile(rf"\b{re.escape(before)}\b")
+            texts = {word.sub(name, path): word.sub(name, text) for path, text in texts.items()}
+        return {path: text.encode("utf-8", "surrogateescape") for path, text in texts.items()}
+
+    @property
+    def starter_package(self) -> str:
+        """The name of the package that the starter is; '' where it is none."""
+        found = _NAME.search(self.starter_files().get("package.xml", b"").decode(errors="replace"))
+        return found[1] if found else ""
+
     def seed_for(self, student_id: str, secret: str = "") -> int | None:
         """Return the seed of a student's varied runs; None: that of the exercise.
 
@@ -206,3 +260,28 @@ class Exercise:
             usual = subject.usual_start if run.start == "same" else None
             starts[number] = replace(usual or starts[number], **factors)
         return starts
+
+
+def _texts_below(folder: Path) -> dict[str, str]:
+    """Return the files in a folder by their paths; what is no text can be written as it was."""
+    texts = {}
+    for path in sorted(folder.rglob("*")):
+        if path.is_dir() or "__pycache__" in path.parts:
+            continue
+        if not path.is_file():
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
+        text = path.read_bytes().decode("utf-8", "surrogateescape")
+        texts[path.relative_to(folder).as_posix()] = text
+    return texts
+
+
+def _depends(program: str) -> str:
+    """Return the elements of a package.xml that name what a program imports."""
+    found = {"rclpy"}
+    for node in ast.walk(ast.parse(program)):
+        if isinstance(node, ast.Import):
+            found.update(alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found.add(node.module.partition(".")[0])
+    names = sorted(found - sys.stdlib_module_names)
+    return "".join(_RCLPY.replace("rclpy", name) for name in names)

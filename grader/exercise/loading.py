@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from grader.errors import ExerciseError
-from grader.exercise import places, translated
-from grader.exercise.building import FITS, INTERFACES, NAME, RUNS, build
+from grader.exercise import cases, places, translated
+from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
-from grader.exercise.yaml_file import (
+from grader.message import reason
+from grader.yaml_file import (
     Mistake,
     YamlFile,
     check_known,
@@ -24,12 +25,11 @@ from grader.exercise.yaml_file import (
     is_amount,
     read_yaml,
 )
-from grader.message import reason
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", INSPECTS, CPU),
-    *(INSPECTIONS, INTERFACES),
+    *(INSPECTIONS, INTERFACES, *cases.KEYS, EXPECT),
     *("points", "visible", "late", "tolerances", "starter", "program", FITS, translated.PART),
 )
 
@@ -96,7 +96,7 @@ def _from_place(place: Place) -> Exercise:
 
 
 def _from_file(path: Path) -> Exercise:
-    if path.name == DESCRIPTION and (path.parent / CHECKS).is_file() and path.is_file():
+    if path.name == DESCRIPTION and places.is_exercise(path.parent):
         return _from_place(places.in_folder(path.parent))
     try:
         edited = _read(path)
@@ -118,7 +118,7 @@ def _from_file(path: Path) -> Exercise:
 
 def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
     """Find the exercise that an edited copy in a folder is a copy of."""
-    if all((folder / file).is_file() for file in (DESCRIPTION, CHECKS)):
+    if places.is_exercise(folder):
         beside = places.in_folder(folder)
         file = _read(beside.description)
         try:

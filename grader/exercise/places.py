@@ -106,8 +106,23 @@ def in_folder(folder: Path) -> Place:
 
 def _wrong_with(folder: Path) -> Message:
     """Say why there is no exercise in a folder; '' where there is one."""
-    files = (folder / name for name in (DESCRIPTION, CHECKS))
+    names = (DESCRIPTION,) if _expects(folder) else (DESCRIPTION, CHECKS)
+    files = (folder / name for name in names)
     return next((_instead_of(file) for file in files if not file.is_file()), NOTHING)
+
+
+def is_exercise(folder: Path) -> bool:
+    """Whether a folder has what an exercise needs."""
+    return not _wrong_with(folder)
+
+
+def _expects(folder: Path) -> bool:
+    """Whether all is said as data, so that there need be no checks of its own."""
+    with suppress(OSError):
+        return (
+            re.search(rb"^expect:", (folder / DESCRIPTION).read_bytes(), re.MULTILINE) is not None
+        )
+    return False
 
 
 def _instead_of(file: Path) -> Message:

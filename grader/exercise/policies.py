@@ -9,8 +9,8 @@ from typing import Any, get_args
 
 from grader.exercise.check import Checks
 from grader.exercise.verdict import Visible
-from grader.exercise.yaml_file import Mistake, check_known, expect, is_amount
 from grader.message import msg
+from grader.yaml_file import Mistake, check_known, expect, is_amount
 
 _DAY = timedelta(days=1)
 

@@ -21,6 +21,7 @@ from grader.exercise.places import DESCRIPTION
 from grader.exercise.policies import LatePolicy
 from grader.message import chained, joined, msg
 from grader.recording.subject import Subject
+from grader.scenes.scene import Scene
 from grader.text import points
 from grader.translations import current, tr, tr_many, translate
 
@@ -173,7 +174,14 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
         )
     limits, varied = exercise.limits, exercise.varied
     times = {"total_s": limits.total_s, "first_s": limits.first_motion_s}
-    if limits.rest_s:
+    is_driven = isinstance(subject, Scene) and subject.usual_start is not None
+    if subject.has_cast and not is_driven:
+        text = tr(
+            "Your node is run beside others for {total_s:g} simulated seconds, or until it ends. "
+            "Time is simulated: the same program gets the same verdict every time, on any machine.",
+            **times,
+        )
+    elif limits.rest_s:
         text = tr(
             "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
             "seconds at most. The run ends before that when the {thing} has moved and then rested "
@@ -202,8 +210,16 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
         farthest_m=varied.farthest_m,
     )
     more = [elsewhere] if varied.count and not varied.runs else []
+    if others := len(exercise.cases) - 1:
+        more.append(
+            tr_many(
+                "In one more run other nodes do something else, or yours has other arguments.",
+                "In {n} more runs other nodes do something else, or yours has other arguments.",
+                others,
+            )
+        )
     if varied.runs:
-        more = [
+        more += [
             tr_many(
                 "In {n} more run {the_thing} starts elsewhere, or drives and turns faster or "
                 "slower than it is commanded: a program that reads the pose works there too, one "

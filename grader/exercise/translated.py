@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from grader.exercise.check import Checks
-from grader.exercise.yaml_file import Mistake, check_known, expect
 from grader.translations import ENGLISH, LANGUAGES
+from grader.yaml_file import Mistake, check_known, expect
 
 PART = "languages"
 #: All but the language of the file itself.

@@ -18,7 +18,7 @@ from grader.grading import gather, run_all, runner
 from grader.judging import AnyPath
 from grader.message import Message, msg, plain_text
 from grader.recording.recording import Recording, Recordings, Run
-from grader.recording.subject import Start, Trace
+from grader.recording.subject import CAST_SCENE, Start, Trace, load_subject
 from grader.run.opening import open_submission
 from grader.scratch import make_folder
 from grader.testing.examination import Examination, Fault, Problem, Trial
@@ -66,7 +66,7 @@ def check_exercise(
         verdicts, wrong = examine(asked, recordings)
         trial = Trial(solution, tuple(verdicts), _remarks(recordings))
         wrong += dict.fromkeys(filter(None, (_changed(asked, each) for each in recordings)))
-        wrong += [*_unexpected(trial), *_wrong_first_line(trial, recordings)]
+        wrong += [*_unexpected(trial), *_wrong_first_line(trial, recordings, asked)]
         if solution is solutions[0]:
             wrong += _twice(asked, trial, recordings, recorded[AGAIN])
         trials.append(trial)
@@ -84,20 +84,24 @@ def check_exercise(
 
 def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
     """Return recordings of the odd runs of the exercise's scene, from every start."""
+    is_beside = exercise.cases[0].cast is not None and not exercise.subject.has_cast
+    cast = load_subject(CAST_SCENE).untouched(None) if is_beside else None
 
-    def recorded(trace: Trace, start: Start | None) -> Recording:
+    def recorded(trace: Trace, start: Start | None, case: str) -> Recording:
         run = Run(
             time="virtual",
             ticks=trace.ticks,
             simulated_s=trace.duration_ns / 1e9,
             trace_sha256=trace.sha256(),
+            case=case,
         )
-        return Recording(trace, run, start=start, scene=exercise.scene)
+        return Recording(trace, run, start=start, scene=exercise.scene, cast=cast)
 
-    starts = (None, *exercise.starts())
-    runs = [exercise.subject.odd_traces(exercise.setting, start) for start in starts]
+    starts = [(start, "") for start in (None, *exercise.starts())]
+    starts += [(None, each.name) for each in exercise.cases[1:]]
+    runs = [exercise.subject.odd_traces(exercise.setting, start) for start, _ in starts]
     return {
-        what: gather((n, recorded(r[what], starts[n])) for n, r in enumerate(runs))
+        what: gather((n, recorded(r[what], *starts[n])) for n, r in enumerate(runs))
         for what in runs[0]
     }
 
@@ -164,12 +168,12 @@ def _unexpected(trial: Trial) -> Iterator[Fault]:
             yield Fault(verdict.check, text)
 
 
-def _wrong_first_line(trial: Trial, recordings: Recordings) -> Iterator[Fault]:
+def _wrong_first_line(trial: Trial, recordings: Recordings, exercise: Exercise) -> Iterator[Fault]:
     """Yield a fault if the first line of a mutant's report lacks the expected words."""
     expected = trial.solution.first_line
     if not expected:
         return
-    found = diagnose(recordings, trial.verdicts)
+    found = diagnose(recordings, trial.verdicts, exercise.peers_have)
     line = "" if found is None else str(found.cause)
     if found is not None and found.place is not None:
         line += f" ({found.place.file}, line {found.place.line})"

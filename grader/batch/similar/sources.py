@@ -33,8 +33,6 @@ from grader.exercise.exercise import Exercise
 from grader.removal import remove
 from grader.reports.csv import cell, table
 from grader.submission.folder import MAX_SOURCE_BYTES, files_below, read_bounded
-from grader.submission.manifest import FILE as MANIFEST
-from grader.submission.manifest import read_manifest, renamed
 from grader.testing.solutions import FILE_NAME, read_solutions
 
 SOURCE: Final = "source"
@@ -131,8 +129,7 @@ def given_files(exercise: Exercise) -> list[File]:
         OSError: one of them cannot be read.
     """
     found: list[File] = []
-    if exercise.starter is not None:
-        found += _below(exercise.starter, "starter")
+    found += _starter(exercise)
     for path in _right_solutions(exercise):
         found += _below(path, "reference")
     return sorted(set(found))
@@ -140,13 +137,12 @@ def given_files(exercise: Exercise) -> list[File]:
 
 def renamed_starter(exercise: Exercise, package: str) -> list[File]:
     """Return the starter as `grader new` writes it into a package of this name."""
-    starter = exercise.starter
-    if starter is None or not (starter / MANIFEST).is_file():
-        return []
-    manifest = read_manifest(starter / MANIFEST)
-    before = manifest.name if manifest else ""
-    texts = ((name, data.decode("utf-8", "replace")) for name, data in _below(starter, "starter"))
-    return [File(name, renamed(text, before, package).encode()) for name, text in texts if before]
+    return _starter(exercise, package) if exercise.starter_package else []
+
+
+def _starter(exercise: Exercise, package: str = "") -> list[File]:
+    files = exercise.starter_files(package).items()
+    return [File(f"starter/{name}", data) for name, data in files if name.endswith(".py")]
 
 
 def _right_solutions(exercise: Exercise) -> Iterator[Path]:

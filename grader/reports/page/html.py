@@ -270,7 +270,10 @@ def _still_words(drawing: Drawing) -> str:
 
 
 def _title(report: Report, number: int) -> str:
-    start = report.varied_runs[number - 1].start if number else None
+    summary = report.varied_runs[number - 1] if number else report.run
+    if summary.case:
+        return tr("Varied run {number}: case {case}", number=number, case=summary.case)
+    start = summary.start
     if start is None:
         return wording.run_name(number)
     return tr(

@@ -16,7 +16,6 @@ from grader.cli import main
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
 from grader.run.opening import open_submission
-from grader.submission.manifest import read_manifest
 from grader.submission.start import EntryPoint
 from tests.grader.testing import exercises
 from tests.programs import ROOT
@@ -97,7 +96,7 @@ def test_the_package_is_called_like_its_folder(tmp_path, capsys, called, package
     assert f" = {package}." in (mine / "setup.py").read_text()
     assert (mine / "setup.cfg").read_text().count(f"$base/lib/{package}\n") == 2
     assert f"    ros2 run {package} " in (mine / "README.md").read_text()
-    placeholder = read_manifest(load_exercise(exercise).starter / "package.xml").name
+    placeholder = load_exercise(exercise).starter_package
     if package != placeholder:
         for path in (path for path in mine.rglob("*") if path.is_file()):
             assert not re.search(rf"\b{placeholder}\b", f"{path.name} {path.read_text()}")
@@ -190,8 +189,8 @@ def test_where_there_is_no_starter_the_sheet_comes_with_an_empty_file(tmp_path, 
     ]
 
 
-def test_a_starter_must_be_a_folder(tmp_path):
-    exercise = exercises.write(tmp_path / "ahead", starter="checks.py")
+def test_a_starter_must_be_a_folder_or_a_program(tmp_path):
+    exercise = exercises.write(tmp_path / "ahead", starter="exercise.yaml")
     with pytest.raises(ExerciseError, match="starter: expected a folder"):
         load_exercise(exercise)
 

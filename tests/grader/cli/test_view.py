@@ -114,9 +114,9 @@ def test_a_scene_that_has_no_such_page_is_led_to_the_report(graded, capsys, monk
     assert not (graded / "view.html").exists()
 
 
-def test_only_one_scene_is_played_so_far():
+def test_turtles_and_casts_are_played():
     names = extensions.points(extensions.SCENES)
-    assert [name for name in names if load_subject(name).player] == ["turtlesim"]
+    assert [name for name in names if load_subject(name).player] == ["graph", "turtlesim"]
 
 
 def test_recordings_of_two_scenes_are_not_compared(graded, capsys, monkeypatch, drawn):

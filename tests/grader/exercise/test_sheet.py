@@ -28,6 +28,7 @@ ASKED = {
 TRIED = {
     "turtlesim": ("    turtlesim\n    (cd mine && python3 -m pkg.node)\n", "save_canvas"),
     "robot": ("    (cd mine && python3 -m pkg.node)\n", "rviz2"),
+    "graph": ("    (cd mine && python3 -m pkg.node)\n", "ros2 node info"),
 }
 
 
@@ -40,10 +41,10 @@ def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_be
     )
     for check in exercise.checks:
         assert f"| {exercise.points[check.name]:g} | {check.title!s} | `{check.name}` |" in text
-    assert f"{exercise.limits.total_s:g} simulated seconds at most" in " ".join(text.split())
+    assert f"{exercise.limits.total_s:g} simulated seconds" in " ".join(text.split())
     for key, value in exercise.tolerances.items():
         assert f"\n{key}: {value}" in text
-    for words in ASKED[exercise.scene]:
+    for words in () if exercise.cases[0].cast is not None else ASKED[exercise.scene]:
         assert words in str(exercise.task)
     for words in (
         *TRIED[exercise.scene],

@@ -1,0 +1,124 @@
+"""The cases of an exercise: what plays beside a program, and what it is started with, in each run.
+
+    cast: {caller: {calls: {draw: {service: draw, type: ..., request: {sides: 4}}}}}
+    arguments: ["2", "3"]
+    cases:
+      triangle: {cast: {caller: {calls: {draw: {request: {sides: 3}}}}}}
+
+The exercise itself is the first case, `usual`. Each further one is a varied run, and says in what
+it differs: what it names takes the place of what is there, null takes it away.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from grader.message import msg
+from grader.recording.subject import Endpoint
+from grader.yaml_file import Mistake, expect
+
+#: Scripted peers, topics that are recorded besides, arguments of the program; the cases.
+CAST, HEARS, ARGUMENTS, CASES = "cast", "hears", "arguments", "cases"
+KEYS: Final = (CAST, HEARS, ARGUMENTS, CASES)
+#: The name of the first case.
+USUAL: Final = "usual"
+#: So many cases there are at most; so long are the peers as JSON [characters].
+MOST_CASES, LONGEST_CAST = 20, 60_000
+_NAME: Final = re.compile(r"[a-z]\w{0,40}", re.ASCII)
+
+
+@dataclass(frozen=True)
+class RunCase:
+    """One case.
+
+    Attributes:
+        name: '' for the usual one.
+        cast: its scripted peers, as `grader.cast.script` reads them; None where there are none and
+            nothing is recorded.
+        hears: topics that are recorded besides.
+        arguments: those that the program is started with.
+    """
+
+    name: str = ""
+    cast: Mapping[str, Any] | None = field(default=None, hash=False)
+    hears: tuple[str, ...] = ()
+    arguments: tuple[str, ...] = ()
+
+    @property
+    def endpoints(self) -> tuple[Endpoint, ...]:
+        """What of the peers a program may meet."""
+        from grader.cast import script  # here: most exercises have none
+
+        return tuple(script.endpoints(script.parse(self.cast))) if self.cast else ()
+
+    def hearing(self, topics: Iterable[str]) -> RunCase:
+        """Return it with more topics, which are recorded if anything is."""
+        heard = tuple(sorted({*self.hears, *topics}))
+        return self if self.cast is None else replace(self, hears=heard)
+
+
+def read_cases(data: Mapping[str, Any], *, has_cast: bool) -> list[RunCase]:
+    """Read the cases of an exercise's description, the usual one first.
+
+    Args:
+        has_cast: whether something is recorded though there are no peers.
+
+    Raises:
+        Mistake: something in it is wrong.
+    """
+    given = data.get(CASES) or {}
+    fits = isinstance(given, dict) and len(given) <= MOST_CASES
+    what = "expected names of cases, each with what differs, at most {most}; found {found}"
+    expect(fits, (CASES,), what, given, most=MOST_CASES)
+    usual = {key: data[key] for key in (CAST, HEARS, ARGUMENTS) if key in data}
+    if has_cast or HEARS in data or "expect" in data:
+        usual.setdefault(CAST, {})
+    cases = [_case("", usual, ())]
+    for name, change in given.items():
+        at = (CASES, str(name))
+        is_name = isinstance(name, str) and _NAME.fullmatch(name) and name != USUAL
+        expect(bool(is_name), at, "expected a name such as triangle, found {found}", name)
+        is_known = isinstance(change, dict) and change.keys() <= {CAST, HEARS, ARGUMENTS}
+        what = "expected some of {known}, found {found}"
+        expect(is_known, at, what, change, known=", ".join((CAST, HEARS, ARGUMENTS)))
+        cases.append(_case(name, _changed(usual, change), at))
+    return cases
+
+
+def _case(name: str, data: Mapping[str, Any], at: tuple[str, ...]) -> RunCase:
+    return RunCase(name, _cast(data, at), _texts(data, HEARS, at), _texts(data, ARGUMENTS, at))
+
+
+def _changed(usual: Mapping[str, Any], change: Mapping[str, Any]) -> dict[str, Any]:
+    made = dict(usual)
+    for key, value in change.items():
+        before = made.pop(key, None)
+        if isinstance(before, dict) and isinstance(value, dict):
+            made[key] = _changed(before, value)
+        elif value is not None:
+            made[key] = value
+    return made
+
+
+def _cast(data: Mapping[str, Any], at: tuple[str, ...]) -> Mapping[str, Any] | None:
+    """Check the scripted peers; None for none."""
+    if CAST not in data:
+        return None
+    from grader.cast import script  # here: most exercises have none
+
+    peers = data[CAST] or {}
+    script.parse(peers, (*at, CAST))
+    if len(json.dumps(peers)) > LONGEST_CAST:
+        raise Mistake((*at, CAST), msg("expected {n:,} characters at most", n=LONGEST_CAST))
+    return dict(peers)
+
+
+def _texts(data: Mapping[str, Any], key: str, at: tuple[str, ...]) -> tuple[str, ...]:
+    given = data.get(key, [])
+    is_list = isinstance(given, list) and all(isinstance(each, str) for each in given)
+    expect(is_list, (*at, key), "expected a list of texts, found {found}", given)
+    return tuple(given)
