@@ -17,6 +17,8 @@ PAGE = ROOT / "docs" / "rubric.md"
 EXERCISES = (
     *("turtlesim_challenge", "square", "state_publisher"),
     *("description_package", "thymio_package"),
+    *("talker", "listener", "service_server", "service_client", "parameters", "action_server"),
+    *("action_client", "tf2_static_broadcaster", "own_interfaces", "qos"),
 )
 #: The text between these two lines is generated.
 FIRST, LAST = "<!-- from the checks: python scripts/rubric.py -->", "<!-- so far -->"

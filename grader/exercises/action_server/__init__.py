@@ -1,0 +1,1 @@
+"""An action server for Fibonacci's numbers."""

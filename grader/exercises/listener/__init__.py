@@ -1,0 +1,1 @@
+"""A node that logs what it hears."""

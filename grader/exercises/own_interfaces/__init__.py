@@ -1,0 +1,1 @@
+"""Interfaces of one's own."""

@@ -1,0 +1,1 @@
+"""A relay with the right quality of service."""

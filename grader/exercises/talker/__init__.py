@@ -1,0 +1,1 @@
+"""A node that sends Hello World twice a second."""

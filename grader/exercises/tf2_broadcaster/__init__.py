@@ -1,0 +1,1 @@
+"""The frame of a turtle, sent as a transform."""

@@ -1,0 +1,1 @@
+"""One turtle follows another, by transforms."""

@@ -1,0 +1,1 @@
+"""A transform that is sent once."""

@@ -1,0 +1,124 @@
+"""The tutorials: right solutions in many styles keep every point, mistakes cost what they must."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+import yaml
+
+import grader
+from grader.cli import main
+from grader.exercise.loading import load_exercise
+from grader.testing.solutions import FILE_NAME, read_solutions
+from tests import once, runs
+
+FOLDER = runs.SUBMISSIONS / "tutorials"
+NAMES = sorted(path.name for path in FOLDER.iterdir() if path.is_dir())
+RIGHT = {
+    (name, path.stem): path
+    for name in NAMES
+    for path in sorted((FOLDER / name / "right").iterdir())
+    if path.suffix in ("", ".py") and not path.name.startswith("__")
+}
+#: Those that come with a reference and mutants of their own.
+WHOLE = [name for name in NAMES if (load_exercise(name).folder / FILE_NAME).is_file()]
+LISTS = {name: yaml.safe_load((FOLDER / name / "mutants.yaml").read_text()) for name in NAMES}
+MUTANTS = [(name, key) for name in NAMES for key in LISTS[name]]
+#: What stands for the others in `make test`; `make test-more` grades all.
+FIRST = [(name, next(iter(LISTS[name]))) for name in NAMES]
+#: One part of the mutants may slip through: those that only another seed would show.
+MOST_MISSED = 0.03
+#: What the name of a node, or a definition that is given, is worth [points].
+MOST_FOR_NOTHING = 20
+
+
+def mutant(name, key):
+    """The path of a mutant, which is a file, or the official solution with passages replaced."""
+    path = FOLDER / name / "mutants" / key
+    changes = LISTS[name][key].get("changes")
+    if changes is None:
+        return path
+
+    def make(folder):
+        made = shutil.copytree(FOLDER / name / "right" / "official", folder / "hand_in")
+        for file, old, new in changes:
+            text = (made / file).read_text()
+            assert text.count(old) == 1, (file, old)
+            (made / file).write_text(text.replace(old, new))
+
+    return once.folder(make, "tutorial", name, key, str(changes)) / "hand_in"
+
+
+def lost(name, key):
+    """The checks in which a mutant loses points."""
+    result = grader.grade(mutant(name, key), name)
+    return {verdict.check for verdict in result.verdicts if verdict.status != "passed"}
+
+
+def must_lose(name, key):
+    known = {check.name for check in load_exercise(name).checks}
+    return set(LISTS[name][key]["loses"]) & known
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_official_solution_keeps_every_point_and_is_blamed_for_nothing(name):
+    result = grader.grade(RIGHT[name, "official"], name)
+    assert (result.score, result.run.time) == (100, "virtual")
+    assert result.diagnosis is None
+
+
+@pytest.mark.parametrize(("name", "key"), FIRST)
+def test_a_mistake_costs_what_it_must(name, key):
+    found = lost(name, key)
+    assert found and must_lose(name, key) <= found
+
+
+def reference(name):
+    return next(each.path for each in read_solutions(load_exercise(name)) if each.is_right)
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_the_reference_keeps_every_point(name):
+    result = grader.grade(reference(name), name)
+    assert (result.score, result.diagnosis) == (100, None)
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("name", WHOLE)
+def test_the_starter_is_a_package_or_workspace_whose_todos_earn_next_to_nothing(
+    name, tmp_path, capsys
+):
+    assert main(["new", str(tmp_path / "mine"), "--exercise", name]) == 0
+    assert "Fill in the TODOs of " in capsys.readouterr().out
+    assert list((tmp_path / "mine").rglob("package.xml"))
+    assert grader.grade(tmp_path / "mine", name).score <= MOST_FOR_NOTHING
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("name", WHOLE)
+def test_an_exercise_is_in_order(name, capsys):
+    assert main(["check-exercise", name]) == 0, capsys.readouterr().out
+
+
+@pytest.mark.more
+@pytest.mark.parametrize(("name", "style"), RIGHT)
+def test_each_style_keeps_every_point_three_times_with_one_hash(name, style):
+    results = [grader.grade(RIGHT[name, style], name) for _ in range(3)]
+    assert {result.score for result in results} == {100}
+    assert len({tuple(r.trace_sha256 for r in (x.run, *x.varied_runs)) for x in results}) == 1
+
+
+@pytest.mark.more
+def test_of_all_mistakes_nearly_each_costs_what_it_must():
+    missed = []
+    for name, key in MUTANTS:
+        found = lost(name, key)
+        if not found or not must_lose(name, key) <= found:
+            missed.append((name, key, found))
+    assert len(missed) <= MOST_MISSED * len(MUTANTS), missed
+
+
+@pytest.mark.parametrize("name", ["talker", "tf2_broadcaster"])
+def test_real_time_gives_the_same_points(name):
+    assert grader.grade(RIGHT[name, "official"], name, time="real").score == 100
