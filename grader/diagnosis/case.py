@@ -49,7 +49,8 @@ _FRAME = re.compile(
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]{0,200})(?:: (?P<text>.*))?$")
 #: As far as the line that begins with the exception's name.
 _IN_THREAD = re.compile(
-    r"^Exception in thread [^\n]{0,200}:\n(Traceback [^\n]*\n(?:[ \t][^\n]*\n)+[^\n]*)",
+    r"^(?:Exception in thread [^\n]{0,200}:|[^\n]{0,200}: Error raised in [^\n]{0,400})\n"
+    r"(Traceback [^\n]*\n(?:[ \t][^\n]*\n)+[^\n]*)",
     re.MULTILINE,
 )
 #: Parts of the paths of Python's, ROS's and the grader's files; no submission's.
@@ -58,9 +59,16 @@ _LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run
 
 @dataclass(frozen=True)
 class Case:
-    """All that is known of one run."""
+    """All that is known of one run.
+
+    Attributes:
+        is_to_end: whether the program is to end by itself.
+        peers_have: what of the scripted peers it may meet.
+    """
 
     recording: Recording
+    is_to_end: bool = False
+    peers_have: tuple[Endpoint, ...] = ()
 
     @property
     def run(self) -> Run:
@@ -93,6 +101,12 @@ class Case:
         return last_exception(self.tail) if crashed else None
 
     @property
+    def is_shut_down(self) -> bool:
+        """Whether it has shut ROS down itself, and then went on spinning: that is no crash."""
+        raised = self.raised
+        return raised is not None and raised.type.endswith("ExternalShutdownException")
+
+    @property
     def stop(self) -> Standstill | None:
         """The place where it got stuck; None for none."""
         return self.observed.stop if self.observed.is_known else None
@@ -101,7 +115,8 @@ class Case:
     def ended_s(self) -> float | None:
         """When the program ended by itself, without an error; None if it did not."""
         observed = self.observed
-        if observed.is_known and observed.raised is not None and self.run.outcome == "exited":
+        is_end = self.run.outcome == "exited" or self.is_shut_down
+        if observed.is_known and observed.raised is not None and is_end:
             return observed.raised.time_s  # sys.exit()
         return observed.returned_s if observed.is_known else None
 
@@ -118,9 +133,9 @@ class Case:
 
     @cached_property
     def scene_has(self) -> Sequence[Endpoint]:
-        """The endpoints of the scene: its topics, services and actions."""
+        """The endpoints of the scene and the peers: topics, services and actions."""
         scene = load_subject(self.recording.scene)
-        return scene.endpoints(self.recording.trace, self.run.interfaces)
+        return (*scene.endpoints(self.recording.trace, self.run.interfaces), *self.peers_have)
 
     @cached_property
     def the_thing(self) -> Message:

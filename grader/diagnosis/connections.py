@@ -12,7 +12,7 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from grader.diagnosis import lint_findings, standstill
-from grader.diagnosis.case import OPPOSITE, Case, excerpt, line, of_kind, since
+from grader.diagnosis.case import OPPOSITE, Case, at, excerpt, line, of_kind, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import Message, msg
@@ -21,6 +21,10 @@ from grader.recording.subject import Endpoint
 
 #: So alike two names have to be, 0 to 1, for one to be meant by the other.
 _ALIKE = 0.75
+_UNTIL_IT_IS_THERE = {
+    "client": "while not client.wait_for_service(timeout_sec=1.0): pass",
+    "action_client": "client.wait_for_server()",
+}
 #: A longer name is nobody's mistake.
 _LONGEST_NAME = 100
 #: rclpy's warning that the QoS of two ends of a topic is incompatible, from either side.
@@ -76,6 +80,39 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
     return None
 
 
+def is_too_early(case: Case) -> Diagnosis | None:
+    """The program asks for what comes later only, or has ended by then."""
+    begins = {
+        (e.name, e.type): e.begin_s for e in case.scene_has if e.kind in ("service", "action")
+    }
+    ended_s = case.ended_s if case.raised is None else case.raised.time_s
+    for wait in case.observed.waits:
+        begin_s = begins.get((wait.name, wait.type), 0.0)
+        mine = [e for e in case.ends if (e.name, e.type) == (wait.name, wait.type)]
+        is_lost = wait.lasted_s is None and any(end.used for end in mine)
+        if wait.since_s >= begin_s or not (is_lost or (ended_s or begin_s) < begin_s):
+            continue
+        place = next((end.used_at for end in mine if end.used), None) or wait.place
+        kind: EndKind = "action_client" if "/action/" in wait.type else "client"
+        words = {"what": _served(kind, wait.name), "begin_s": begin_s, "where": line(place)}
+        cause = msg(
+            "Your program ended{at}{where}, and {what} came at {begin_s:.1f} s only.",
+            at=at(ended_s),
+            **words,
+        )
+        if is_lost:
+            cause = msg(
+                "You call {what}{where} before it is there, which is at {begin_s:.1f} s: what you "
+                "ask is lost.",
+                **words,
+            )
+        help_ = msg(
+            "Wait for it first, as long as it takes: {loop}.", loop=_UNTIL_IT_IS_THERE[kind]
+        )
+        return Diagnosis("is_too_early", cause, help_, time_s=wait.since_s, place=place)
+    return None
+
+
 def publishes_to_nobody(case: Case) -> Diagnosis | None:
     """The program publishes under a name or with a type that the scene does not subscribe to."""
 
@@ -85,7 +122,7 @@ def publishes_to_nobody(case: Case) -> Diagnosis | None:
                 "You publish {type} on {name}, but {the_thing} listens to {wanted} there{where}.",
                 type=excerpt(end.type),
                 name=near.name,
-                the_thing=case.the_thing,
+                the_thing=near.node or case.the_thing,
                 wanted=near.type,
                 where=line(end.place),
             )
@@ -94,7 +131,7 @@ def publishes_to_nobody(case: Case) -> Diagnosis | None:
             "{wanted}{where}.",
             type=excerpt(end.type),
             name=excerpt(end.name),
-            the_thing=case.the_thing,
+            the_thing=near.node or case.the_thing,
             wanted=_near(end, near),
             where=line(end.place),
         )
@@ -217,21 +254,36 @@ def has_unfit_qos(case: Case) -> Diagnosis | None:
     """An end of a topic gets no message through, because its QoS does not fit the other end's."""
     for found in _UNFIT.finditer(case.tail):
         kind: EndKind = "publisher" if found["other"] == "subscription" else "subscription"
-        topic = found["topic"]
-        if not any(e.kind == OPPOSITE[kind] and e.name == topic for e in case.scene_has):
+        topic = f"/{found['topic'].lstrip('~/')}"  # as the program wrote it
+        named = (e.name for e in case.ends if e.kind == kind and e.name.endswith(topic))
+        topic = next(named, topic)
+        others = [e for e in case.scene_has if e.kind == OPPOSITE[kind] and e.name == topic]
+        if not others:
             continue
         mine = [end for end in case.observed.ends if (end.kind, end.name) == (kind, topic)]
         place = mine[0].place if mine else None
         return Diagnosis(
             "has_unfit_qos",
-            _unfit(case, kind, topic, found["policy"], line(place)),
-            msg("Write 10 instead of the QoS profile."),
+            _unfit(others[0].node or case.the_thing, kind, topic, found["policy"], line(place)),
+            _fitting(kind, found["policy"]),
             place=place,
         )
     return None
 
 
-def _unfit(case: Case, kind: EndKind, topic: str, policy: str, where: Message) -> Message:
+def _fitting(kind: EndKind, policy: str) -> Message:
+    """Say what to write for a QoS policy that differs from the other end's."""
+    sends, wants = _TOO_LITTLE.get(policy, ("", ""))
+    right = wants if kind == "publisher" else sends
+    if not right:
+        return msg("Write 10 instead of the QoS profile.")
+    setting = f"{policy.lower()}={policy.capitalize()}Policy.{right}"
+    if right in ("RELIABLE", "VOLATILE"):
+        return msg("Write 10 instead of the QoS profile, or {setting} in it.", setting=setting)
+    return msg("Give it a QoSProfile with {setting}.", setting=setting)
+
+
+def _unfit(other: str | Message, kind: EndKind, topic: str, policy: str, where: Message) -> Message:
     """Say in which QoS policy a publisher or subscription differs from the other end."""
     sends, wants = _TOO_LITTLE.get(policy, ("", ""))
     words = {"topic": topic, "where": where, "sends": sends, "wants": wants, "policy": policy}
@@ -239,7 +291,7 @@ def _unfit(case: Case, kind: EndKind, topic: str, policy: str, where: Message) -
         return msg(
             "Your publisher on {topic}{where} is {sends}, {the_thing} listens {wants}: nothing "
             "arrives.",
-            the_thing=case.the_thing,
+            the_thing=other,
             **words,
         )
     if sends:
@@ -264,9 +316,9 @@ def _unfit(case: Case, kind: EndKind, topic: str, policy: str, where: Message) -
 def nearest(end: End, case: Case) -> Endpoint | None:
     """Return the endpoint that was meant; None where the end is right, or nothing is near."""
     there = [each for each in case.scene_has if each.kind == OPPOSITE[end.kind]]
-    same = next((each for each in there if each.name == end.name), None)
-    if same is not None:
-        return same if same.type != end.type else None
+    same = [each for each in there if each.name == end.name]
+    if same:
+        return None if any(each.type == end.type for each in same) else same[0]
     if len(end.name) > _LONGEST_NAME:
         return None
     by_name = [(_likeness(end, each), each) for each in there]
@@ -289,7 +341,7 @@ def _last(name: str) -> str:
 
 
 def _has_right_one(case: Case, kind: EndKind, near: Endpoint) -> bool:
-    return any(e.kind == kind and (e.name, e.type) == near[1:] for e in case.ends)
+    return any(e.kind == kind and (e.name, e.type) == near[1:3] for e in case.ends)
 
 
 def _meets_itself(case: Case, end: End) -> bool:
@@ -316,6 +368,8 @@ def _fix(end: End, near: Endpoint) -> Message:
     """Say what to write instead."""
     package, kind, name = near.type.split("/")
     imported = f"`from {package}.{kind} import {name}`"
+    if near.name == "/tf_static":
+        return msg("Send it by a {right}.", right="StaticTransformBroadcaster")
     if end.type == near.type:
         return msg("Write '{name}' there.", name=near.name)
     if end.name == near.name:

@@ -216,6 +216,28 @@ def _wanted(
     )
 
 
+def unanswered(case: Case) -> Diagnosis | None:
+    """The callback of a service or an action returns nothing, where its answer is to be."""
+    raised = case.raised
+    for finding in of_kind(case, "unanswered") if raised is not None else ():
+        name, answer = excerpt(finding.name), excerpt(finding.near)
+        sign = "'result' field must be" if answer == "result" else ""
+        if raised is None or raised.type not in ("TypeError", "AssertionError"):
+            continue
+        if sign in raised.text and bool(sign) == bool(raised.text):
+            when = _when(case, raised)
+            cause = msg(
+                "{name}(){where} returns no {answer}, and so your node crashed{at}.",
+                name=name,
+                where=line(finding.place),
+                answer=answer,
+                at=at(when),
+            )
+            help_ = msg("Write `return {answer}` at the end of {name}().", answer=answer, name=name)
+            return Diagnosis("unanswered", cause, help_, time_s=when, place=finding.place)
+    return None
+
+
 def ended_itself(case: Case) -> Diagnosis | None:
     """The program ended by sys.exit() with a text or a number."""
     if case.run.outcome != "crashed":
@@ -261,7 +283,7 @@ def ended_itself(case: Case) -> Diagnosis | None:
 def crashed(case: Case) -> Diagnosis | None:
     """An exception that nobody caught."""
     raised = case.raised
-    if case.run.outcome != "crashed" or raised is None:
+    if case.run.outcome != "crashed" or raised is None or case.is_shut_down:
         return None
     when = _when(case, raised)
     hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
@@ -278,14 +300,18 @@ def crashed(case: Case) -> Diagnosis | None:
 
 
 def thread_crashed(case: Case) -> Diagnosis | None:
-    """An exception ended one of the program's threads, and the rest went on."""
+    """An exception ended a thread, or the callback of an action, and the rest went on."""
     raised = case.raised or thread_exception(case.tail)
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
+    of = msg("A thread of your program")
+    if "Error raised in" in case.tail:
+        of = msg("The callback of your action")
     hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
     place = hint.place or raised.place
     cause = msg(
-        "A thread of your program crashed{error}{where}.",
+        "{of} crashed{error}{where}.",
+        of=of,
         error=_error(raised, hint),
         where=line(place),
     )

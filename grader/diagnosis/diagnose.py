@@ -9,8 +9,9 @@ come. A rule returns None when it is not sure.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Final
 
 from grader.diagnosis import (
@@ -28,6 +29,7 @@ from grader.exercise.verdict import Verdict
 from grader.message import msg
 from grader.recording.observations import LintKind
 from grader.recording.recording import Recordings
+from grader.recording.subject import Endpoint
 from grader.text import in_one_line
 
 Rule = Callable[[Case], Diagnosis | None]
@@ -35,10 +37,12 @@ Rule = Callable[[Case], Diagnosis | None]
 RULES: Final[tuple[Rule, ...]] = (
     crash.unreadable,
     imports.not_importable,
+    crash.unanswered,
     crash.wrong_value,
     lint_findings.ends_before_spin,
     connections.is_defined_otherwise,
     connections.misses_what_it_hears,
+    connections.is_too_early,
     crash.ended_itself,
     connections.is_of_another_type,
     crash.crashed,
@@ -77,18 +81,26 @@ DISTURBING: Final[tuple[Rule, ...]] = (
 )
 
 
-def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagnosis | None:
+def diagnose(
+    recordings: Recordings,
+    verdicts: Sequence[Verdict] = (),
+    peers_have: Mapping[str, Sequence[Endpoint]] = MappingProxyType({}),
+    *,
+    is_to_end: bool = False,
+) -> Diagnosis | None:
     """Return the earliest cause of lost points; it changes none of them.
 
     Args:
         recordings: of all runs; a cause in the nominal one comes before one in the others.
         verdicts: of the exercise's checks; without any, only the rules about runs are applied.
+        peers_have: what of the exercise's peers a program may meet, by the names of cases.
+        is_to_end: whether the exercise asks for a program that ends by itself.
 
     Returns: None where no point is lost and no program died, or no verdict is known and the runs
         show nothing.
     """
     is_right = bool(verdicts) and all(verdict.passed for verdict in verdicts)
-    cases = [Case(recording) for recording in recordings]
+    cases = [Case(each, is_to_end, tuple(peers_have.get(each.run.case, ()))) for each in recordings]
     for rules in (RULES,) if is_right else (RULES, DISTURBING):
         for number, case in enumerate(cases):
             if is_right and case.run.outcome != "crashed":
@@ -142,7 +154,8 @@ def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
     with_finding = lost_points.beside(found, case)
     if with_finding is not found:
         return _shown(with_finding)
-    return _shown(_with_unused(found, case) or _with_place(found, case))
+    with_end = _with_unused(found, case) or _with_timer(found, case)
+    return _shown(with_end or _with_place(found, case))
 
 
 def _text(found: Diagnosis) -> str:
@@ -166,6 +179,17 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
     return replace(found, cause=cause, help=help_, place=made)
 
 
+def _with_timer(found: Diagnosis, case: Case) -> Diagnosis | None:
+    """Add the period of the only timer to a finding about how often something was sent."""
+    is_about_rate = re.search("times a second|messages on ", str(found.cause))
+    if is_about_rate is None or len(case.observed.timers) != 1:
+        return None
+    timer = case.observed.timers[0]
+    words = {"where": line(timer.place), "period_s": timer.period_s}
+    has = msg("Your timer{where} has a period of {period_s:g} s.", **words)
+    return replace(found, cause=sentences(found.cause, has), place=timer.place)
+
+
 def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
     """Add the line that sends what a finding's text names first."""
     text = _text(found)
@@ -180,4 +204,5 @@ def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
         at = min((found.start() for found in spoken if found), default=len(text))
         if at < first and end.used_at is not None:
             first, place = at, end.used_at
-    return replace(found, place=lint_findings.set_at(case, text) or place)
+    place = lint_findings.set_at(case, text) or place or lint_findings.called_at(case, text)
+    return replace(found, place=place)

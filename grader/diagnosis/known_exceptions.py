@@ -30,6 +30,9 @@ _GIVEN = re.compile(
 MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
 _TAKES_CALLBACK = re.compile(r"create_(?:timer|subscription|service)\(|add_done_callback\(")
 _AWAITED = re.compile(r"object (\w{1,60}) can't be used in 'await' expression")
+_WITH_INIT = re.compile(r"\bwith\b.*\binit\(")
+_NO_PART = re.compile(r"'(\w{1,60})' has no attribute '(?:Request|Response|Goal|Result|Feedback)'")
+_WRAPPED = re.compile(r"'\w{1,60}_(FeedbackMessage|GetResult_Response)' object has no attribute")
 _NO_FILE = re.compile(r"\[Errno \d+\] [^:]{1,60}: '([^'\n]{1,300})")
 _UNPACKED = re.compile(r"values to unpack \(expected \d{1,3}")
 _SUBSCRIPTED = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
@@ -44,6 +47,10 @@ _IN_ORDER = {
 NOT_CALLED = msg(
     "Pass a callback by its name, without parentheses: self.NAME, not self.NAME(), which calls "
     "it at once and passes what it returns."
+)
+OF_A_PARAMETER = msg(
+    "get_parameter() gives a Parameter; what it is set to is its value: "
+    "self.get_parameter('NAME').value."
 )
 NO_INIT = msg("rclpy.init() has not been called")
 NO_NODE = msg("the Node is not made yet when that line uses it")
@@ -164,11 +171,19 @@ def _no_argument(_: str, text: str, place: SourceLine | None) -> Hint | None:
     return None
 
 
-def _without_init(name: str, text: str, _: SourceLine | None) -> Hint | None:
+def _without_init(name: str, text: str, place: SourceLine | None) -> Hint | None:
     """ROS or the node has not been started."""
     if name == "NotInitializedException" or "rclpy.init() has not been called" in text:
         return Hint(
             msg("Call rclpy.init() at the start of main(), before the node is made."), NO_INIT
+        )
+    if name == "TypeError" and _WITH_INIT.search(place.text if place is not None else ""):
+        return Hint(
+            msg(
+                "Write rclpy.init() in a line of its own, without `with`, and rclpy.shutdown() at "
+                "the end of main()."
+            ),
+            msg("`with rclpy.init():` needs a newer ROS 2: here rclpy.init() returns nothing"),
         )
     if name == "AttributeError" and re.search(f"has no attribute {_NODE_ATTRIBUTE}", text):
         return Hint(
@@ -201,9 +216,36 @@ def _read_only_name(_: str, text: str, __: SourceLine | None) -> Hint | None:
     )
 
 
+def _part(_: str, text: str, place: SourceLine | None) -> Hint | None:
+    """A part of another kind of interface, or what stands around the part that was meant."""
+    if found := _NO_PART.search(text):
+        return Hint(
+            msg(
+                "A service has Request and Response; an action has Goal, Result and Feedback: "
+                "which is {type}?",
+                type=excerpt(found[1]),
+            )
+        )
+    found, missing = _WRAPPED.search(text), re.search(r"attribute '(\w{1,60})'", text)
+    if found is None or missing is None:
+        return None
+    part = "feedback" if found[1] == "FeedbackMessage" else "result"
+    return Hint(
+        msg("Write .{part}.{name} there.", part=part, name=excerpt(missing[1])),
+        msg("what came is a message around the {part}", part=part),
+    )
+
+
 def _values(name: str, text: str, place: SourceLine | None) -> Hint | None:
     """Another number of values than names, super without parentheses, names with blanks."""
     counts = _UNPACKED.search(text)
+    is_no_number = "invalid literal" in text or "convert string" in text
+    if is_no_number and re.search(r"\barg\w*\[\d", place.text if place is not None else ""):
+        return Hint(
+            msg("sys.argv[0] is the name of the program: its first argument is sys.argv[1].")
+        )
+    if name == "InvalidTopicNameException" and "rclpy.pa" in text:
+        return Hint(OF_A_PARAMETER, msg("a Parameter stands there for its value"))
     if name == "ValueError" and counts is not None and place is not None:
         left, _, right = place.text.partition("=")
         return Hint(
@@ -237,6 +279,11 @@ def _class_for_instance(name: str, text: str, place: SourceLine | None) -> Hint 
         return Hint(
             msg("Give it a {wanted}.", wanted=wanted),
             msg("{wanted} is what can be sent there, it was given: {was}", wanted=wanted, was=was),
+        )
+    if name == "TypeError" and not text and "spin" in line:
+        return Hint(
+            msg("End each callback of a service with `return response`, which it was given."),
+            msg("the callback of a service returned something else than a response"),
         )
     if name == "TypeError" and not text and "call" in line:
         return Hint(
@@ -360,12 +407,7 @@ def _parameter(name: str, text: str, _: SourceLine | None) -> Hint | None:
             msg("Declare it first, in __init__: self.declare_parameter('{name}', 1.0).", name=of)
         )
     if name == "TypeError" and "'Parameter'" in text:
-        return Hint(
-            msg(
-                "get_parameter() gives a Parameter; what it is set to is its value: "
-                "self.get_parameter('NAME').value."
-            )
-        )
+        return Hint(OF_A_PARAMETER)
     return None
 
 
@@ -414,6 +456,7 @@ _RULES: tuple[Callable[[str, str, SourceLine | None], Hint | None], ...] = (
         _no_argument,
         _without_init,
         _read_only_name,
+        _part,
         _values,
         _class_for_instance,
         _no_node,

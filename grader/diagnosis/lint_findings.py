@@ -29,6 +29,13 @@ def named_at(case: Case, name: str, place: SourceLine | None) -> SourceLine | No
     return place
 
 
+def called_at(case: Case, text: str) -> SourceLine | None:
+    """Return the line of the name that a finding says there is instead of the right one."""
+    names = re.findall(r"(?:yours is|there is|only(?: on)?) /?([\w/]{1,100})", text)
+    found = (each for each in of_kind(case, "constant") if each.name.lstrip("/") in names)
+    return next((each.place for each in found), None)
+
+
 def number(text: str) -> float:
     """Parse a number of a source; not a number where it is none."""
     try:

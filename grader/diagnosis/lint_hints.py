@@ -354,7 +354,9 @@ def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
 
 def _called_callback(case: Case, raised: Raised) -> Hint | None:
     for finding in of_kind(case, "called_callback"):
-        if raised.place is not None and raised.place.line == finding.place.line:
+        at = raised.place
+        is_in_it = function(at) == f"{finding.name}()" and case.observed.spun_s is None
+        if is_in_it or (at is not None and at.line == finding.place.line):
             return Hint(
                 known_exceptions.NOT_CALLED,
                 msg(

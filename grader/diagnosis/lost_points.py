@@ -99,6 +99,11 @@ _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
         msg("`{name}`{where} is where the turtle looks, not where it is."),
         msg("Take the quadrant from x and y of the pose."),
     ),
+    "quiet": (
+        "was not logged",
+        msg("`{code}`{where} logs at the level debug, which is not shown."),
+        msg("Log it with self.get_logger().info(...)."),
+    ),
     "grows": (
         "grew by",
         msg("`{code}`{where} is done with each message, in {near}(): many times a second."),
@@ -119,11 +124,28 @@ _NOT_TAKEN: dict[str, tuple[Message, Message]] = {
         msg("Nothing calls {code}(){where}."),
         msg("Call it where it is needed, or let a timer or a subscription do so."),
     ),
+    "tried": (
+        msg(
+            "What is in `{code}`{where} ends in an exception, and what stands after is not reached."
+        ),
+        msg("Print the exception, or leave out the try/except: it says why."),
+    ),
     "past": (
         msg("`{code}`{where} never comes to its end, and what stands after it is not reached."),
         msg("What is to happen meanwhile belongs in a callback."),
     ),
 }
+#: What tf2 says of a transform that is not found -> what to do.
+_LOOKED_UP = (
+    (
+        "does not exist",
+        msg("Only TransformListener(self.buffer, self) fills a tf2 buffer: is there one?"),
+    ),
+    (
+        "extrapolation into the future",
+        msg("Ask for the newest transform: rclpy.time.Time() for the time, and not now()."),
+    ),
+)
 
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
@@ -206,8 +228,11 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
             continue
         seen = msg(" ({values})", values=excerpt(values)) if values else NOTHING
         words = {"code": excerpt(finding.name), "where": line(finding.place), "seen": seen}
-        cause, help_ = _NOT_TAKEN.get(how, _NOT_TAKEN["past"])
+        is_tried = how == "past" and finding.name.startswith("try")
+        cause, help_ = _NOT_TAKEN["tried" if is_tried else how if how in _NOT_TAKEN else "past"]
         cause = msg(cause.key, **words)
+        if is_tried:
+            help_ = next((advice for text, advice in _LOOKED_UP if text in case.tail), help_)
         if (kept := stays.get(finding.place)) is not None:
             help_ = msg(
                 "Nothing sets {name} after the start: which line should?",
@@ -241,8 +266,10 @@ def _misunderstood(found: Diagnosis, case: Case) -> Diagnosis | None:
 
 def _unspun(case: Case) -> Diagnosis | None:
     """A node that is made, and that nothing spins."""
-    deaf = [e for e in case.observed.ends if e.kind == "subscription" and not e.used]
-    for finding in of_kind(case, "unspun") if deaf or not case.observed.ends else ():
+    ends = case.observed.ends
+    is_deaf = any(end.kind == "subscription" and not end.used for end in ends)
+    is_idle = not any(end.used for end in ends)
+    for finding in of_kind(case, "unspun") if is_deaf or is_idle else ():
         words = {"name": excerpt(finding.name), "kind": excerpt(finding.near)}
         return Diagnosis(
             "unspun",

@@ -186,9 +186,9 @@ def does_nothing(case: Case) -> Diagnosis | None:
 
 
 def is_deaf(case: Case) -> Diagnosis | None:
-    """The program never spins its node, which has a subscription."""
-    has_subscription = any(end.kind == "subscription" for end in case.observed.ends)
-    return never_spins(case) if has_subscription else None
+    """The program never spins its node, which is to hear something or to get an answer."""
+    is_to_hear = any(end.kind != "publisher" for end in case.observed.ends)
+    return never_spins(case) if is_to_hear else None
 
 
 def never_spins(case: Case) -> Diagnosis | None:
@@ -201,6 +201,8 @@ def never_spins(case: Case) -> Diagnosis | None:
     if not observed.ends or (sends and not deaf):
         return None
     none = msg("none of its subscriptions and timers is ever called")
+    if not observed.timers and all("client" in end.kind for end in observed.ends):
+        none = msg("no answer ever reaches it")
     place = deaf[0].place if deaf else None
     help_ = _SPIN
     if (loop := _loop_at_end(case)) is not None:
@@ -230,8 +232,13 @@ def never_spins(case: Case) -> Diagnosis | None:
 
 def ends_early(case: Case) -> Diagnosis | None:
     """The program ended when it had hardly begun."""
-    ended_s = case.ended_s
-    if ended_s is None or ended_s > _SOON_S or case.run.outcome not in ("exited", "finished"):
+    ended_s, observed = case.ended_s, case.observed
+    if observed.ends and all("client" in end.kind and end.used for end in observed.ends):
+        return None  # it has asked, and is done
+    has_ended = case.run.outcome in ("exited", "finished") or case.is_shut_down
+    if ended_s is None or ended_s > _SOON_S or not has_ended:
+        return None
+    if case.is_to_end and not case.run.exit_code:
         return None
     sent = sum(end.used for end in case.observed.ends if end.kind == "publisher")
     what = msg("nothing")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.diagnosis.diagnose import diagnose
+from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Verdict
 from grader.message import plain_text
 from grader.recording.recording import Recordings
@@ -13,7 +14,7 @@ from grader.run.limits import Patience
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.grader.languages.holes import holes
-from tests.submissions.beginners import MISTAKES
+from tests.submissions.beginners import MISTAKES, TUTORIALS
 
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=10))
 #: What loops for ever is not waited for as long as a student's imports would be.
@@ -26,7 +27,27 @@ def test_the_first_line_is_the_cause_and_is_said_in_other_languages(name):
     if "check" in row:  # what it found
         texts = map(plain_text, row["check"])
         lost = [Verdict("check", plain_text("Check"), "failed", 0, 20, *texts)]
-    found = diagnose(Recordings(runs.recorded(name, PLAN, PATIENCE)), lost)
+    expect_said(diagnose(Recordings(runs.recorded(name, PLAN, PATIENCE)), lost), row)
+
+
+@pytest.mark.parametrize("name", TUTORIALS)
+def test_the_first_line_names_the_mistake_in_a_program_with_peers(name):
+    row = TUTORIALS[name]
+    expect_said(runs.graded(name, load_exercise(row["exercise"])).diagnosis, row)
+
+
+def test_a_program_that_shuts_ros_down_itself_and_spins_on_has_not_crashed():
+    of = runs.path_of("tutorials/action_client/right/official").read_text(encoding="utf-8")
+    spin = "    rclpy.spin(action_client)\n"
+    executor = (
+        "executor = rclpy.executors.SingleThreadedExecutor()\n    executor.add_node(action_client)"
+    )
+    loop = f"    {executor}\n    while True:\n        executor.spin_once()\n"
+    result = runs.graded(runs.written(of.replace(spin, loop)), load_exercise("action_client"))
+    assert (result.score, result.diagnosis) == (100, None)
+
+
+def expect_said(found, row):
     assert found is not None
     said = f"{found.cause!s} {found.help!s}"
     begin = 0
@@ -34,5 +55,5 @@ def test_the_first_line_is_the_cause_and_is_said_in_other_languages(name):
         assert piece in said[begin:], f"{found.key}: {said}"
         begin = said.index(piece, begin) + len(piece)
     assert found.key == row["key"], said
-    for language in ("fr", "zh"):
+    for language in ("fr", "zh") if row["key"] != "check" else ():
         assert holes(found.cause, language) == holes(found.help, language) == []

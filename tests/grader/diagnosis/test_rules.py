@@ -22,6 +22,7 @@ from grader.recording.observations import (
     Wait,
 )
 from grader.recording.recording import OwnInterfaces, PublishedTopic, Recordings
+from grader.recording.subject import Endpoint
 from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
 
 
@@ -222,7 +223,7 @@ CAUSES = {
         run_of(said(replace(VELOCITY, is_met=False, place=LINE), POSES), output=UNFIT),
         "has_unfit_qos",
         "Your publisher on /turtle1/cmd_vel (drive.py, line 39) is BEST_EFFORT, the turtle "
-        "listens RELIABLE: nothing arrives. Write 10 instead of the QoS profile.",
+        "listens RELIABLE: nothing arrives. Write 10 instead of the QoS profile, or reliability=",
     ),
     "a coroutine that nobody awaits": (
         run_of(said(), output=NEVER_AWAITED),
@@ -484,6 +485,45 @@ CAUSES = {
 }
 
 
+ADD = "example_interfaces/srv/AddTwoInts"
+#: What only a program with peers gets wrong: the service comes at 2 s.
+ADDS = (Endpoint("service", "/add", ADD, "/adder", 2.0),)
+IN_VAIN = Wait("/add", ADD, 1.0, None)
+AT_SPIN = replace(LINE, text="rclpy.spin(node)")
+UNANSWERED = LintFinding("unanswered", "on_add", "response", LINE)
+WITH_PEERS = {
+    "a request before its service": (
+        run_of(said(replace(end("client", "/add", ADD), used_at=LINE), waits=(IN_VAIN,))),
+        "is_too_early",
+        "You call the service /add (drive.py, line 39) before it is there, which is at 2.0 s",
+    ),
+    "a program that gives up": (
+        run_of(
+            said(
+                end("client", "/add", ADD, 0),
+                waits=(replace(IN_VAIN, lasted_s=0.5),),
+                returned_s=1.5,
+            ),
+            "exited",
+        ),
+        "is_too_early",
+        "Your program ended at 1.5 s, and the service /add came at 2.0 s only.",
+    ),
+    "a service that returns nothing": (
+        raising("TypeError", "", AT_SPIN, lint_findings=(UNANSWERED,)),
+        "unanswered",
+        "on_add() (drive.py, line 39) returns no response, and so your node crashed at 6.0 s.",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WITH_PEERS)
+def test_the_cause_is_named_where_peers_play(name):
+    recording, key, words = WITH_PEERS[name]
+    found = diagnose(Recordings(recording), (), {"": ADDS})
+    assert (found.key, words in str(found.cause)) == (key, True), str(found.cause)
+
+
 @pytest.mark.parametrize("name", CAUSES)
 def test_the_cause_is_named_with_its_place_and_with_what_to_do(name):
     recording, key, words = CAUSES[name]
@@ -501,9 +541,15 @@ def test_the_cause_is_named_with_its_place_and_with_what_to_do(name):
 def test_each_rule_of_the_table_has_a_recording_that_it_explains_first():
     asked = (
         next(
-            (rule for rules in (RULES, DISTURBING) for rule in rules if rule(Case(recording))), None
+            (
+                r
+                for rules in (RULES, DISTURBING)
+                for r in rules
+                if r(Case(recording, peers_have=ADDS))
+            ),
+            None,
         )
-        for recording, *_ in CAUSES.values()
+        for recording, *_ in (CAUSES | WITH_PEERS).values()
     )
     assert {*RULES, *DISTURBING} <= {*asked}
 
