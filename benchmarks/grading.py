@@ -31,6 +31,8 @@ import measuring
 from measuring import ROOT, Cost, Group, load, median, ratio, row, spread
 
 import grader
+from grader import grading
+from grader.exercise.loading import load_exercise
 from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.processes import network
@@ -51,7 +53,9 @@ PHASES = ("start", "discovery", "ticking", "shutdown")
 AT_ONCE = (1, 2, 4)
 #: The share of a processor in the smallest container of Gradescope.
 HALF = 0.5
-TABLES = ("runs", "commands", "rates", "half")
+TABLES = ("runs", "casts", "commands", "rates", "half")
+#: Nodes beside a cast: exercises of which the official solution is run.
+TUTORIALS = ("talker", "service_server", "action_server", "qos")
 #: What `grader run --watch` prints when it has graded.
 GRADED = "Waiting for the next save"
 #: Between two readings of the processor time of a run, to divide it among its phases [s].
@@ -71,6 +75,22 @@ def virtual_run(path: Path) -> tuple[list[float], int]:
     if recording.run.time != "virtual":
         raise RuntimeError(f"{path.stem}: {recording.run.flags}")
     return [begun, marks["met"], marks["connected"], marks["over"], ended], recording.run.ticks
+
+
+def cast_run(path: Path, exercise: str) -> tuple[list[float], int]:
+    """Run the usual case of an exercise with a cast once; also return the ticks."""
+    with grader.open_submission(path) as submission:
+        plan, *_ = grading.plan(submission, load_exercise(exercise))
+        begun = time.monotonic()
+        recording = virtual_time.run(submission, plan)
+        return [begun, time.monotonic()], recording.run.ticks
+
+
+def cast_grading(path: Path, exercise: str) -> tuple[list[float], float]:
+    """Grade a submission with all its cases; also return the score."""
+    begun = time.monotonic()
+    score = grader.grade(path, exercise).score
+    return [begun, time.monotonic()], score
 
 
 def real_run(path: Path) -> tuple[list[float], int]:
@@ -245,6 +265,20 @@ def table_of_runs(env: dict[str, str], repetitions: int, with_real: bool) -> Non
         units.row(name, [whole for whole, *_ in runs], *cells)
 
 
+def table_of_casts(env: dict[str, str], repetitions: int) -> None:
+    """Print what a node beside a cast costs, between two measurements of the yardsticks."""
+    print("\n## A node beside a cast, warm")
+    units = Units(env, 3)
+    for name in TUTORIALS:
+        path = ROOT / "tests" / "submissions" / "tutorials" / name / "right" / "official.py"
+        for what, work in (("run of the usual case", cast_run), ("grading", cast_grading)):
+            with worker() as at_work:
+                at_work.do(work, path, name)
+                done = at_work.do(work, path, name, times=repetitions)
+            units.row(f"{name}: {what}", [whole for whole, *_ in done])
+    Units(env, 3)
+
+
 def table_of_commands(env: dict[str, str], repetitions: int) -> None:
     """Print the costs of `grader run`, cold and warm."""
     print("\n## `grader run` of the reference: three runs, everything written")
@@ -302,6 +336,8 @@ def main() -> None:
         env = os.environ | discovery
         if "runs" in options.only:
             table_of_runs(env, options.repetitions, options.real)
+        if "casts" in options.only:
+            table_of_casts(env, options.repetitions)
         if "commands" in options.only:
             table_of_commands(env, few)
         if "rates" in options.only:

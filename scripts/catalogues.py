@@ -5,7 +5,7 @@
     scripts/catalogues.py holes   list the sentences without a translation
 
 Translators edit `grader/languages/*.json`; the sentences of the simulator's page are in
-`turtlesim_py/live/page/*.json`.
+`turtlesim_py/live/page/*.json`, those of a cast's in `grader/cast/page/live/*.json`.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 LANGUAGES = ("fr", "zh")
+#: The live page of a cast.
+HOPS = ROOT / "grader" / "cast" / "page" / "live"
 #: The number of plural forms.
 FORMS = {"fr": 2, "zh": 1}
 #: The functions whose argument is a sentence, or a pair of singular and plural.
@@ -89,17 +91,18 @@ def of_html(path: Path) -> Iterator[Sentence]:
 
 
 def of_grader() -> Iterator[Sentence]:
-    """Yield the sentences of the grader and its robots; not those that its player shares."""
-    player = ROOT / "grader" / "scenes" / "turtlesim" / "player" / "page"
+    """Yield the sentences of the grader and its robots; not those that its players share."""
+    players = [ROOT / "grader" / "scenes" / "turtlesim" / "player" / "page", HOPS.parent, HOPS]
     shared = set(of_simulator())
-    yield from (each for each in of_page(player) if each not in shared)
+    for player in players:
+        yield from (each for each in of_page(player) if each not in shared)
     readers: dict[str, Callable[[Path], Iterator[Sentence]]] = {
         ".py": of_code,
         ".html": of_template,
     }
     for path in sorted(p for name in ("grader", "grader_robots") for p in (ROOT / name).rglob("*")):
         is_ours = not set(path.relative_to(ROOT).parts) & set(NOT_OURS)
-        if is_ours and path.suffix in readers and path.parent != player:
+        if is_ours and path.suffix in readers and path.parent not in players:
             yield from readers[path.suffix](path)
 
 
@@ -109,6 +112,13 @@ def of_simulator() -> Iterator[Sentence]:
     yield from of_page(live / "page")
     for path in sorted(live.glob("*.py")):
         yield from of_code(path)
+
+
+def of_hops() -> Iterator[Sentence]:
+    """Yield the sentences of the page of a cast, with those of the modules that it shares."""
+    yield from of_page(HOPS)
+    for name in ("choice.js", "grading.js", "language.js", "rosbridge.js"):
+        yield from of_script(ROOT / "turtlesim_py" / "live" / "page" / name)
 
 
 def of_page(folder: Path) -> Iterator[Sentence]:
@@ -122,6 +132,7 @@ def of_page(folder: Path) -> Iterator[Sentence]:
 CATALOGUES: dict[Path, Callable[[], Iterable[Sentence]]] = {
     ROOT / "grader" / "languages": of_grader,
     ROOT / "turtlesim_py" / "live" / "page": of_simulator,
+    HOPS: of_hops,
 }
 
 

@@ -25,7 +25,7 @@ PACKAGES = {
 #: What students write, and what is written as they do.
 STUDENTS = re.compile(
     r"turtlesim_challenge\.starter\b"
-    r"|grader(_robots)?\.exercises\.\w+\.(starter|reference|right)\b"
+    r"|grader(_robots)?\.exercises?(\.\w+)?\.(starter|reference|right)\b"
 )
 #: Doubles of ROS's packages, by whose names they import each other.
 DOUBLES = "grader.inspection.examining.doubles"
@@ -39,7 +39,7 @@ def below(package: str, *names: str) -> set[str]:
 GROUND = below(
     "grader",
     *("message", "translations", "errors", "text", "files", "scratch", "removal", "system"),
-    *("linux", "requirements", "strict_json", "limited", "content", "extensions"),
+    *("linux", "requirements", "strict_json", "limited", "content", "extensions", "yaml_file"),
 )
 #: What the rooms above a run may import of those below it.
 RECORDED = below("grader", "recording", "exercise", "result")
@@ -79,9 +79,17 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.rosidl": below("grader", "message", "errors"),
     "grader.recording": GROUND,
     "grader.scenes": GROUND | {"grader.recording"},
+    "grader.scenes.joined": GROUND | below("grader", "recording") | {"turtlesim_py.__init__"},
     "grader.scenes.turtlesim": GROUND
-    | below("grader", "recording", "scenes.scene", "scenes.live", "rosidl.cdr")
+    | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined", "rosidl.cdr")
     | below("turtlesim_py", "__init__", "world", "scenario", "ros", "live"),
+    # scripted peers, which any scene may have beside it
+    "grader.cast": GROUND
+    | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined", "rosidl")
+    | {"grader.cast.live"},
+    "grader.cast.live": GROUND
+    | below("grader", "cast.replay", "scenes.live")
+    | below("turtlesim_py.live", "feed", "server"),
     # a package is inspected in the submission's process, which sees little of ours
     "grader.inspection": GROUND | below("grader", "recording", "inspection", "rosidl.cdr"),
     "grader.inspection.trace": below("grader", "strict_json", "message"),
@@ -99,7 +107,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"grader.inspection.examining.known"}
     | below("grader", "recording.observations", "recording.recording", "rosidl.definitions"),
     "grader.run": GROUND
-    | below("grader", "submission", "recording", "scenes", "inspection", "run", "rosidl.compiler"),
+    | below("grader", "submission", "recording", "scenes", "inspection", "run", "rosidl.compiler")
+    | {"grader.cast.script"},
     "grader.run.limits": {"grader.message"},
     "grader.run.sandbox": GROUND | {"grader.run.limits"},
     "grader.run.processes": GROUND | below("grader.run", "limits", "sandbox"),
@@ -114,20 +123,21 @@ MAY_IMPORT: dict[str, set[str]] = {
     # what the grader's process and the simulator's have to agree on
     "grader.run.handover": GROUND | below("grader", "recording", "scenes", "run.limits"),
     "grader.run.simulator": GROUND
-    | below("grader", "recording", "scenes", "run.lockstep", "run.processes")
+    | below("grader", "recording", "scenes", "cast", "run.lockstep", "run.processes")
     | below("grader.run", "handover", "limits"),
     # ... which ticks at the wall clock's pace as the node does
     "grader.run.simulator.real_time": GROUND
     | below("grader", "recording", "scenes", "run.lockstep", "run.processes", "run.handover")
     | below("grader", "run.limits", "run.simulator")
     | {"turtlesim_py.ros.program"},
-    "grader.exercise": GROUND | below("grader", "recording", "scenes.scene", "rosidl.definitions"),
+    "grader.exercise": GROUND
+    | below("grader", "recording", "scenes.scene", "rosidl.definitions", "cast"),
     # columns with names, and nothing of turtles but how they move
     "grader.exercise.driven_path": GROUND
     | below("grader", "exercise", "recording", "scenes.scene")
     | below("turtlesim_py.world", "trajectory", "turtle"),
     "grader.exercises": GROUND
-    | below("grader", "recording", "scenes.turtlesim", "exercise")
+    | below("grader", "recording", "scenes.turtlesim", "exercise", "cast.trace")
     | {"turtlesim_py.world"},
     "grader.diagnosis": GROUND | below("grader", "recording", "exercise.verdict"),
     "grader.result": GROUND

@@ -6,7 +6,7 @@ from tools import libc
 
 PACKETS = [
     b"A" + b"\xff" * 24 + b"\1",
-    b'I[["topic /turtle1/pose"], []]',
+    b'I[["/a", "topic /turtle1/pose", "turtlesim/msg/Pose", false, 1, 2, 10]]',
     b"I" + b"[" * 60_000,
     b"M" + bytes(25) + b"\xff" * 4000,
     b"N" + bytes(25) + b"\x1b[31mred" * 50,
