@@ -36,6 +36,8 @@ FORMATS = (
     *("html", "markdown", "csv", "junit", "gradescope", "prairielearn", "autolab"),
     *("moodle-vpl", "github-autograding", "terminal"),
 )
+#: Folders of programs beside peers; of the tutorials, right ones of one file are graded.
+WITH_PEERS = ("tutorials", "hostile_casts")
 #: Files beside the fixtures that are none.
 HELPERS = ("beginners.py", "mutants.py", "packages.py")
 #: The file of a recording that differs between equal runs.
@@ -54,7 +56,12 @@ def lay_out() -> dict[str, tuple[Path, str]]:
         (FIXTURES / "first_lines" / f"{name}.py").write_text(changed(name), encoding="utf-8")
     found: dict[str, tuple[Path, str]] = {}
     for path in sorted(FIXTURES.rglob("*.py")):
-        if path.relative_to(FIXTURES).as_posix() not in HELPERS:
+        kind, *inside = path.relative_to(FIXTURES).parts
+        if kind == "tutorials" and inside[1:] == ["right", path.name]:
+            found[f"{inside[0]}-{path.stem}"] = (path, inside[0])
+        elif kind in WITH_PEERS or path.relative_to(FIXTURES).as_posix() in HELPERS:
+            continue
+        else:
             is_square = path.stem.startswith("square")
             found[path.stem] = (path, "square" if is_square else "turtlesim_challenge")
     for name, text in {
