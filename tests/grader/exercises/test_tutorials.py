@@ -101,6 +101,7 @@ def test_an_exercise_is_in_order(name, capsys):
     assert main(["check-exercise", name]) == 0, capsys.readouterr().out
 
 
+@pytest.mark.timeout(3600)
 @pytest.mark.more
 @pytest.mark.parametrize(("name", "style"), RIGHT)
 def test_each_style_keeps_every_point_three_times_with_one_hash(name, style):
@@ -109,6 +110,7 @@ def test_each_style_keeps_every_point_three_times_with_one_hash(name, style):
     assert len({tuple(r.trace_sha256 for r in (x.run, *x.varied_runs)) for x in results}) == 1
 
 
+@pytest.mark.timeout(3600)
 @pytest.mark.more
 def test_of_all_mistakes_nearly_each_costs_what_it_must():
     missed = []
