@@ -188,11 +188,10 @@ class PeerNode:
         self._recorder.event("got", peer=self.name, topic=absolute(topic), values=values)
 
     def _broadcast(self, _: str, entry: script.PeerFrame) -> None:
-        topic = "/tf" if entry.rate else "/tf_static"
         durability = "volatile" if entry.rate else "transient_local"
         kind = self._types.find(TF)
         quality = script.PeerQuality(100, durability=durability)  # type: ignore[arg-type]
-        publisher = self.node.create_publisher(kind, topic, _qos(quality))
+        publisher = self.node.create_publisher(kind, entry.topic, _qos(quality))
 
         def say() -> None:
             now_ns = self._now_ns()
@@ -212,7 +211,7 @@ class PeerNode:
             moved.x, moved.y, moved.z, turned.x, turned.y, turned.z, turned.w = numbers
             message = kind(transforms=[made])
             publisher.publish(message)
-            self._recorder.said(topic, TF, self.name, message)
+            self._recorder.said(entry.topic, TF, self.name, message)
 
         times = [entry.begin]
         if entry.rate:
@@ -236,9 +235,7 @@ class PeerNode:
             count += 1
             made = self._made(type(response), values) or response
             if entry.delay and not self._recorder.is_full:  # what waits is kept
-                waited: Future[None] = Future()
-                self._soon(entry.delay, lambda: waited.set_result(None))
-                await waited
+                await self._pause(entry.delay)
             event.update(response=self._recorder.plain(made), answered_ns=self._now_ns())
             return made
 

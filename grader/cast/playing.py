@@ -55,7 +55,8 @@ class Playing:
         are_compiled: bool = False,
     ) -> None:
         self._wire = wire
-        self._endpoints: tuple[Any, ...] = ()
+        #: of the program's channels; of the first endpoint where several differ
+        self._types_of: dict[str, str] = {}
         types = Types(definitions, are_compiled=are_compiled)
 
         def now_ns() -> int:
@@ -75,14 +76,9 @@ class Playing:
         return tuple(peer.node for peer in self._peers)
 
     @property
-    def names(self) -> set[str]:
-        """The names of these, with their namespaces."""
-        return {peer.name for peer in self._peers}
-
-    @property
     def has_met(self) -> bool:
         """Whether the program has made a node."""
-        return bool(self._endpoints)
+        return bool(self._types_of)
 
     @property
     def flags(self) -> tuple[Message, ...]:
@@ -91,7 +87,7 @@ class Playing:
 
     def meet(self, endpoints: tuple[Any, ...]) -> None:
         """Note which endpoints the program has now."""
-        self._endpoints = endpoints
+        self._types_of = {each.channel: each.type for each in reversed(endpoints)}
         self._recorder.meet(endpoints)
 
     def record(self) -> None:
@@ -122,5 +118,4 @@ class Playing:
 
     def _type_of(self, kind: str, name: str) -> str:
         """Return the type of a channel that the program uses; '' for none."""
-        channel = f"{kind} {name}"
-        return next((each.type for each in self._endpoints if each.channel == channel), "")
+        return self._types_of.get(f"{kind} {name}", "")

@@ -26,7 +26,6 @@ from grader.rosidl.cdr import deserialise, serialise
 
 #: The most messages, bytes of them and of what is in events, and events of a recording.
 MOST_MESSAGES, MOST_BYTES, MOST_EVENTS = 20_000, 20_000_000, 10_000
-LOG: Final = "rcl_interfaces/msg/Log"
 _FULL: Final = msg("of what was exchanged, the first {n:,} messages and {m:,} bytes were recorded")
 
 
@@ -62,11 +61,6 @@ class CastRecorder:
         self._events: list[dict[str, Any]] = []
         self._bytes = 0
         self.flags: list[Message] = []
-
-    @property
-    def has_heard(self) -> bool:
-        """Whether the program has sent anything but log lines, or serves something."""
-        return bool(self._messages or self._events)
 
     @property
     def is_full(self) -> bool:
@@ -138,14 +132,9 @@ class CastRecorder:
         self._bytes += size
         return True
 
-    def flag(self, remark: Message) -> None:
-        """Add a remark for the result, once."""
-        if remark not in self.flags:
-            self.flags.append(remark)
-
     def _note_full(self) -> None:
         if not self.is_full:
-            self.flag(_FULL.given(n=MOST_MESSAGES, m=MOST_BYTES))
+            self.flags.append(_FULL.given(n=MOST_MESSAGES, m=MOST_BYTES))
             self._events.append({"kind": "full", "time_ns": self._now_ns()})
 
     def trace(self, ticks: int, peers: Iterable[str]) -> CastTrace:

@@ -27,8 +27,6 @@ from grader.yaml_file import Mistake, expect
 
 #: So many peers there are at most, and of each so many things of a kind.
 MOST_PEERS, MOST_EACH = 20, 100
-#: As JSON [characters]: an argument of a process holds it.
-LONGEST: Final = 60_000
 _NAME: Final = re.compile(r"[A-Za-z]\w{0,99}", re.ASCII)
 _TOPIC: Final = re.compile(r"(?!/?cast/)/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
 _TYPE: Final = re.compile(r"[a-z]\w*/(msg|srv|action)/[A-Z]\w*", re.ASCII)
@@ -199,6 +197,11 @@ class PeerFrame:
     translation: tuple[Template, Template, Template] = (0.0, 0.0, 0.0)
     rotation: tuple[Template, Template, Template, Template] = (0.0, 0.0, 0.0, 1.0)
 
+    @property
+    def topic(self) -> str:
+        """That it is broadcast on."""
+        return "/tf" if self.rate else "/tf_static"
+
 
 @dataclass(frozen=True)
 class Peer:
@@ -230,6 +233,12 @@ KINDS: Final[Mapping[str, tuple[type, set[str] | None]]] = {
 _MET: Final[Mapping[str, EndpointKind]] = {
     **{"publishers": "publisher", "subscriptions": "subscription"},
     **{"services": "service", "actions": "action"},
+}
+#: Which attribute names it; where that is '', the name that it is listed by does.
+_NAMED_BY: Final = {
+    **dict.fromkeys(("publishers", "subscriptions"), "topic"),
+    **dict.fromkeys(("services", "calls"), "service"),
+    **dict.fromkeys(("goals", "actions"), "action"),
 }
 #: A type of each kind.
 _TYPES: Final = {
@@ -275,12 +284,11 @@ def endpoints(peers: Mapping[str, Peer]) -> Iterator[Endpoint]:
     for node, peer in peers.items():
         for kind, met in _MET.items():
             for entry in getattr(peer, kind).values():
-                name = getattr(entry, "topic", "") or getattr(entry, met, "")
+                name = absolute(getattr(entry, _NAMED_BY[kind]))
                 for each in entry.types:
-                    yield Endpoint(met, absolute(name), each, absolute(node), entry.begin)
+                    yield Endpoint(met, name, each, absolute(node), entry.begin)
         for frame in peer.frames.values():
-            topic = "/tf" if frame.rate else "/tf_static"
-            yield Endpoint("publisher", topic, TF, absolute(node))
+            yield Endpoint("publisher", frame.topic, TF, absolute(node))
 
 
 def _peer(name: Any, parts: Any, at: tuple[str, ...]) -> Peer:
@@ -308,9 +316,7 @@ def _entry(kind: str, values: Any, at: tuple[str, ...]) -> Any:
         made: Any = strict_json.from_json(made_of, values, OURS)
     except ValueError as error:
         raise Mistake(at, msg("{what}", what=str(error))) from None
-    own = {"publishers": "topic", "subscriptions": "topic", "services": "service"}
-    named = {"actions": "action", "calls": "service", "goals": "action"}
-    if (key := (own | named).get(kind)) and not getattr(made, key):
+    if (key := _NAMED_BY.get(kind)) and not getattr(made, key):
         made = replace(made, **{key: at[-1]})
     for each in fields(made_of):
         value = getattr(made, each.name)

@@ -35,7 +35,7 @@ def lanes(trace: CastTrace) -> list[str]:
 def items(trace: CastTrace, since_ns: int = 0) -> list[dict[str, Any]]:
     """Return all items but the messages before a time, by time."""
     own = lanes(trace)[: -len(trace.peers) or None]
-    readers = dict(_readers(trace))
+    readers = _readers(trace)
     first = bisect_left(trace.messages, since_ns, key=lambda sent: sent.time_ns)
     made = []
     for number, sent in enumerate(trace.messages[first:MOST_ITEMS], first):
@@ -54,14 +54,14 @@ def items(trace: CastTrace, since_ns: int = 0) -> list[dict[str, Any]]:
     return sorted(made, key=lambda item: item["t"])
 
 
-def _readers(trace: CastTrace) -> Iterator[tuple[str, set[str]]]:
-    """Yield topics, and the lanes of those that hear them."""
+def _readers(trace: CastTrace) -> dict[str, set[str]]:
+    """Return the lanes of those that hear a topic, by its name."""
     found: dict[str, set[str]] = {}
     for event in trace.of_kind("endpoint", writes=False):
         found.setdefault(event["channel"].partition(" ")[2], set()).add(event["node"])
     for event in trace.of_kind("offers", what="subscription"):
         found.setdefault(event["name"], set()).add(event["node"])
-    yield from found.items()
+    return found
 
 
 def _of(number: int, event: Event, program: str) -> Iterator[dict[str, Any]]:

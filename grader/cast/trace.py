@@ -14,7 +14,6 @@ from functools import cached_property
 from typing import Any, Final, NamedTuple
 
 from grader import strict_json
-from grader.recording.bag import types_of
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage
 from grader.rosidl.cdr import string, string_of
@@ -107,6 +106,8 @@ class CastTrace:
 
     @cached_property
     def _types(self) -> Any:
+        from grader.recording.bag import types_of  # not before a run: rosbags imports slowly
+
         return types_of(self.definitions)
 
 
@@ -127,10 +128,12 @@ def plain(value: Any) -> Any:
 
 def to_messages(trace: CastTrace) -> list[BagMessage]:
     """Return all messages of a bag, by time."""
-    topics = list(dict.fromkeys(each.topic for each in trace.messages))
-    nodes = list(dict.fromkeys(each.node for each in trace.messages))
-    order = [[topics.index(each.topic), nodes.index(each.node)] for each in trace.messages]
-    facts = {"topics": topics, "nodes": nodes, "order": order, "peers": trace.peers}
+    topics, nodes = dict[str, int](), dict[str, int]()  # -> their numbers
+    order = [
+        [topics.setdefault(each.topic, len(topics)), nodes.setdefault(each.node, len(nodes))]
+        for each in trace.messages
+    ]
+    facts = {"topics": [*topics], "nodes": [*nodes], "order": order, "peers": trace.peers}
     last = {"definitions": trace.definitions, **facts}
     made = [BagMessage(m.time_ns, m.topic, m.type, m.data) for m in trace.messages]
     made += [BagMessage(e["time_ns"], EVENTS, STRING, string(_json(e))) for e in trace.events]

@@ -25,7 +25,7 @@ def add_checks(
     """Add a check for each entry; return the topics that they judge.
 
     Args:
-        cast: the peers, as an exercise.yaml has them.
+        cases: those of the exercise, with their peers.
 
     Raises:
         Mistake: something in it is wrong; its keys name the place.
