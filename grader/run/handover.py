@@ -18,7 +18,7 @@ from grader import strict_json
 from grader.errors import GraderFailure, SceneFailure
 from grader.message import Message, msg
 from grader.recording import transfer
-from grader.recording.beside import Both, CastKeeper
+from grader.recording.beside import CastKeeper, together
 from grader.recording.recording import PublishedTopic
 from grader.recording.subject import Start, Subject, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
@@ -94,26 +94,25 @@ def keeper(plan: Plan, scene: Subject) -> Subject:
     return scene if plan.cast is None or scene.has_cast else CastKeeper(scene)
 
 
-def whole(scene: Subject, trace: Trace, cast: Any) -> Trace:
-    """Return the trace of a scene, with that of the cast beside it (`grader.cast.playing`)."""
-    is_beside = cast is not None and not scene.has_cast
-    return Both(trace, cast.trace(trace.ticks)) if is_beside else trace
-
-
 _LENGTH = Struct("<Q")
 #: Every node has these, and ROS publishes on them by itself.
 USUAL = ("/rosout", "/parameter_events")
 
 
-def leave(path: Path, scene: Subject, trace: Trace, published: Mapping[str, str]) -> None:
+def leave(
+    path: Path, scene: Subject, trace: Trace, published: Mapping[str, str], cast: Any = None
+) -> None:
     """Write the file, in the simulator's process.
 
     Args:
         published: the topics on which the submission has published: topic -> type.
+        cast: that of the run (`grader.cast.playing`); None for none.
     """
+    is_beside = cast is not None and not scene.has_cast
+    kept, by = together(trace, cast.trace(trace.ticks) if is_beside else None, scene)
     topics = {topic: kind for topic, kind in sorted(published.items()) if topic not in USUAL}
     facts = json.dumps(topics).encode()
-    path.write_bytes(_LENGTH.pack(len(facts)) + facts + transfer.pack(trace, scene))
+    path.write_bytes(_LENGTH.pack(len(facts)) + facts + transfer.pack(kept, by))
 
 
 def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]:

@@ -84,7 +84,6 @@ class GradedSimulator:
         self._first_node_s = first_node_s
         self._file = file
         self._scene = load_scene(plan.scene)
-        self._keeper = handover.keeper(plan, self._scene)
         self._feed = FeedWriter.of(shown, STEP_NS)
         self._wire = None if plan.cast is None else WallWire()
         self._cast = make_cast(plan, self._wire, are_compiled=True)
@@ -131,8 +130,8 @@ class GradedSimulator:
             self._feed.close()
         self._topics.update()
         with scene_in_time(self._scene.name):
-            trace = handover.whole(self._scene, self._simulation.trace(), self._cast)
-            handover.leave(self._file, self._keeper, trace, self._topics.types)
+            trace = self._simulation.trace()
+            handover.leave(self._file, self._scene, trace, self._topics.types, self._cast)
             more = () if self._cast is None else self._cast.flags
             flags = [f.serialise() for f in (*self._simulation.flags, *more, *self._flags)]
         self._send("done", reason=reason, flags=flags)

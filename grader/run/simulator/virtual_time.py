@@ -84,7 +84,6 @@ class Lockstep:
             endpoints.make_importable(plan.definitions)
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
-        self._keeper = handover.keeper(plan, self._scene)
         assert STEP_NS == TICK_NS
         self._feed = FeedWriter.of(shown, TICK_NS)
         send = None if self._feed is None else self._feed.write
@@ -168,8 +167,8 @@ class Lockstep:
     def save(self, file: Path) -> None:
         """Write the recording where the grader finds it."""
         with scene_in_time(self._scene.name):
-            trace = handover.whole(self._scene, self._simulation.trace(), self._cast)
-            handover.leave(file, self._keeper, trace, self._registry.published)
+            trace = self._simulation.trace()
+            handover.leave(file, self._scene, trace, self._registry.published, self._cast)
 
     def _next_request(self) -> Advance | None:
         """Return the next `Advance`, after handling the packets before it."""
