@@ -176,7 +176,7 @@ class Turtlesim(Scene):
         """Serve the simulator's page, read-only."""
         from grader.scenes.turtlesim.live import TurtlesimPage
 
-        return TurtlesimPage(port)
+        return TurtlesimPage.serve(port)
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
         """Return the traces of odd nodes."""
