@@ -33,7 +33,6 @@ from robot_py.robot_state import (
     RefusedDescription,
     Robot,
     RobotState,
-    Severity,
 )
 from turtlesim_py.ros import program
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableStart
@@ -194,7 +193,7 @@ class RobotStatePublisher(RclcppNode):
         for log in logs:
             logger = get_logger(log.logger) if log.logger else self.get_logger()
             # one call a severity: rclpy refuses a call site that changes its severity
-            if log.severity is Severity.WARN:
+            if log.severity == "WARN":
                 logger.warning(log.text)
             else:
                 logger.error(log.text)

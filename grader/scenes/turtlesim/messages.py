@@ -34,11 +34,7 @@ Value = TypeVar("Value")
 
 POSE, COLOR, TWIST = "turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"
 STRING, LOG, IMAGE = "std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"
-VECTOR, HEADER, TIME = (
-    "geometry_msgs/msg/Vector3",
-    "std_msgs/msg/Header",
-    "builtin_interfaces/msg/Time",
-)
+VECTOR, HEADER = "geometry_msgs/msg/Vector3", "std_msgs/msg/Header"
 #: Definitions of the types, since there may be no share/ where ROS is not sourced; Jazzy's.
 DEFINITIONS = {
     POSE: "float32 x\nfloat32 y\nfloat32 theta\n"
