@@ -25,18 +25,11 @@ from grader.recording.view import (
     Track,
     View,
 )
+from grader_robots.scene import shapes
 from grader_robots.scene.decoding import Transform
 from grader_robots.scene.frames import Hung, below, hung, tree
 from grader_robots.scene.motion import ODOM, JointMotion, Odometry, fitted, joints, odometry
-from grader_robots.scene.shapes import (
-    in_words,
-    is_finite,
-    name_of,
-    named,
-    place_less,
-    shapes,
-    transform,
-)
+from grader_robots.scene.shapes import is_finite, name_of, named, place_less, transform
 from grader_robots.scene.trace import TICK_NS, RobotTrace
 from robot_py.drawing import NOBODY, body, picture
 from robot_py.model import Model
@@ -205,18 +198,11 @@ def solid(trace: RobotTrace) -> Solid | None:
             numbers[link] = len(frames)
             placings = (Placing(),) if link == ODOM else (None,)
             frames.append(SolidFrame(name_of(link), -1, placings))
-    made, left_out = shapes(robot.model, numbers, {})
     lost = tuple(link for link in robot.model.links if link not in places(trace))
-    return Solid(
-        msg("The robot {name}", name=name_of(robot.model.name)),
-        _solid_words(trace, robot.model, lost, left_out),
-        tuple(frames),
-        made,
-        tuple(tick * TICK_NS for tick in ticks),
-        0.0,
-        way(trace),
-        tuple(map(name_of, lost)),
-        left_out,
+    notes = _notes(trace, robot.model, lost)
+    times_ns = tuple(tick * TICK_NS for tick in ticks)
+    return shapes.solid(
+        robot.model, frames, numbers, lost, notes, times_ns=times_ns, way=way(trace)
     )
 
 
@@ -267,9 +253,7 @@ def circle(trace: RobotTrace) -> tuple[float, float, float] | None:
     return (x, y, radius) if math.isfinite(radius) and radius < 1e3 else None
 
 
-def _solid_words(
-    trace: RobotTrace, model: Model, lost: tuple[str, ...], left_out: tuple[str, ...]
-) -> Message:
+def _notes(trace: RobotTrace, model: Model, lost: tuple[str, ...]) -> list[Message]:
     """What there is to see, for who cannot."""
     notes = []
     if (root := places(trace).get(model.root)) is not None:
@@ -286,7 +270,7 @@ def _solid_words(
         notes.append(
             msg("white, at the origin, for want of a transform: {names}", names=named(lost))
         )
-    return in_words(model, notes, left_out)
+    return notes
 
 
 def sample_ticks(ticks: int) -> tuple[int, ...]:

@@ -216,7 +216,10 @@ def _commands(channel: Channel) -> Iterator[CmdVel]:
 
 def _inputs(channel: Channel) -> Iterator[Event]:
     for data in channel.messages():
-        yield from_json(_object(string_of(data)))
+        words = json.loads(text := string_of(data))
+        if not isinstance(words, dict):
+            raise EventError(f"an event is an object, found {text:.80}")
+        yield from_json(words)
 
 
 def _logs(channel: Channel) -> Iterator[Log]:
@@ -227,13 +230,6 @@ def _logs(channel: Channel) -> Iterator[Log]:
         read.text(), read.text(), read.number("I")
         read.end()
         yield Log(tick, severity, name, text)
-
-
-def _object(text: str) -> dict[str, Any]:
-    words = json.loads(text)
-    if not isinstance(words, dict):
-        raise EventError(f"an event is an object, found {text:.80}")
-    return words
 
 
 def _trajectory(poses: Channel, colors: Channel) -> Trajectory:

@@ -31,10 +31,6 @@ _INTERVENTIONS: dict[type[Event], Message] = {
 _POSE = f"/{FIRST_TURTLE}/pose"
 
 
-def _draws_with_0(event: SetPen) -> bool:
-    return event.width == 0 and not event.off
-
-
 def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER) -> list[Message]:
     """Return the remarks, one sentence each.
 
@@ -65,7 +61,7 @@ def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDE
                     effect=effect,
                 )
             )
-    thin = [event for event in trace.events if isinstance(event, SetPen) and _draws_with_0(event)]
+    thin = [e for e in trace.events if isinstance(e, SetPen) and e.width == 0 and not e.off]
     if thin:
         found.append(
             msg(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import wraps
-from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.exercise.asking import CheckFunction
@@ -179,8 +178,3 @@ def not_followed(facts: PackageFacts) -> Finding | None:
         ),
         msg("Tell whoever runs the course."),
     )
-
-
-def folder_of(path: str) -> str:
-    """The folder of a path, to tell of many files at once."""
-    return str(PurePosixPath(path).parent)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from posixpath import dirname
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
@@ -12,7 +13,6 @@ from grader.message import Message, joined, msg
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,
-    folder_of,
     not_followed,
     of_package,
 )
@@ -176,7 +176,7 @@ def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
         for mesh in description.meshes:
             if mesh.state == "left":
                 yield PackageFault(
-                    folder_of(mesh.path),
+                    dirname(mesh.path),
                     _left(facts, msg("The description"), shown(mesh.uri), mesh.path),
                     msg(
                         "data_files in setup.py (or install() in CMakeLists.txt) has to list "
@@ -258,7 +258,7 @@ def _file(facts: PackageFacts, lacking: Lacking) -> PackageFault:
     path = name.removeprefix("/prefix/")
     if source:
         return PackageFault(
-            folder_of(source),
+            dirname(source),
             _left(facts, by, shown(path), source),
             msg(
                 "Compare the folder in data_files (or install() in CMakeLists.txt) with"
@@ -384,9 +384,7 @@ def _scripts_needed(package: str) -> Message:
 
 def _left(facts: PackageFacts, by: str | Message, wanted: str, source: str) -> Message:
     """Of a file of the package that nothing installs where it is asked for."""
-    pairs: Sequence[tuple[str, str]] = list(
-        zip(facts.setup.installed, facts.setup.sources, strict=True)
-    )
+    pairs = list(zip(facts.setup.installed, facts.setup.sources, strict=True))
     elsewhere = next((path for path, of in pairs if of == source), "")
     values = {"by": by, "wanted": wanted, "source": source, "elsewhere": elsewhere}
     if elsewhere:

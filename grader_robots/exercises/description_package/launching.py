@@ -52,11 +52,7 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     where nothing else passes it.
     """
     if not facts.launches:
-        return Finding(
-            0,
-            msg("The package has no launch file."),
-            installing.WRITE,
-        )
+        return Finding(0, msg("The package has no launch file."), installing.WRITE)
     found = [(each, _judge(facts, each)) for each in facts.for_rviz]
     if not found:
         found = [(facts.launches[0], _gazebo_alone(facts.launches[0]))]
@@ -170,11 +166,8 @@ def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float
     first, *others = (fault.rationale for fault in faults)
     texts = joined([first, *(msg("{fault!u}", fault=each) for each in others)], " ")
     rationale = msg("{file}: {faults}", file=file, faults=texts)
-    return Finding(_share(faults, worth), rationale, faults[0].help)
-
-
-def _share(faults: Sequence[PackageFault], worth: Mapping[str, float]) -> float:
-    return max(0.0, 1.0 - sum(worth[fault.what] for fault in faults))
+    share = max(0.0, 1.0 - sum(worth[fault.what] for fault in faults))
+    return Finding(share, rationale, faults[0].help)
 
 
 def lacking(facts: PackageFacts, launch: LaunchFile) -> list[PackageFault]:

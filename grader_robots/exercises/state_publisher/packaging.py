@@ -133,11 +133,6 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
     )
 
 
-def _programs(facts: PackageFacts) -> set[str]:
-    """The programs of the package that `ros2 run` finds."""
-    return {*(script.name for script in facts.setup.scripts), *facts.plain_programs}
-
-
 def _faults(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
     """What is wrong with the description, one's own node, and the files that it asks for."""
     texts = launching.handed_on(facts, launch)
@@ -187,7 +182,8 @@ def _without_node(facts: PackageFacts, launch: LaunchFile) -> Message:
             "it starts {program} as well, which sends other joint states beside your node's.",
             program=others[0],
         )
-    programs = _programs(facts)
+    # what `ros2 run` finds
+    programs = {*(script.name for script in facts.setup.scripts), *facts.plain_programs}
     if any(n.package == facts.name and n.executable in programs for n in launch.nodes):
         return NOTHING
     meant = filter(None, (_meant(node, facts.name, programs) for node in launch.nodes))

@@ -85,10 +85,7 @@ def _moved(parsed: ParsedUrdf, names: list[str], texts: dict[str, str]) -> Findi
         return no_robot(msg("Not judged: there is no robot to vary."))
     good, first_fault, help_ = 0, NOTHING, NOTHING
     for name in names:
-        if name not in texts:
-            fault, advice = _unnamed(name)
-        else:
-            fault, advice = _fault(name, model, texts[name])
+        fault, advice = _fault(name, model, texts)
         good += not fault
         first_fault, help_ = first_fault or fault, help_ or advice
     is_incomplete = any(each.consequence is Consequence.DROPPED for each in parsed.findings)
@@ -101,15 +98,13 @@ def _moved(parsed: ParsedUrdf, names: list[str], texts: dict[str, str]) -> Findi
     return Finding(good / max(len(names), 1), msg("In the xacro, {told}.", told=first_fault), help_)
 
 
-def _unnamed(name: str) -> tuple[Message, Message]:
-    return (
-        msg("there is no property {name} with a number as its value", name=name),
-        msg('Name it: <xacro:property name="{name}" value="..."/>.', name=name),
-    )
-
-
-def _fault(name: str, model: Model, text: str) -> tuple[Message, Message]:
-    other = parse(text).model if text else None
+def _fault(name: str, model: Model, texts: dict[str, str]) -> tuple[Message, Message]:
+    if name not in texts:
+        return (
+            msg("there is no property {name} with a number as its value", name=name),
+            msg('Name it: <xacro:property name="{name}" value="..."/>.', name=name),
+        )
+    other = parse(texts[name]).model if texts[name] else None
     if other is None:
         return (
             msg("doubling {name} leaves no robot that urdfdom takes", name=name),
