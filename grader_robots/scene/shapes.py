@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -57,7 +57,7 @@ def solid(
     frames: Sequence[SolidFrame],
     numbers: Mapping[str, int],
     lost: Sequence[str],
-    notes: Sequence[Message],
+    notes: Iterable[Message],
     meshes: Mapping[str, Floats] = MappingProxyType({}),
     **more: Any,
 ) -> Solid:

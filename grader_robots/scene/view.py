@@ -7,6 +7,7 @@ white, as RViz shows it.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -71,7 +72,7 @@ def view(trace: RobotTrace) -> View:
             *(_curve(joint, units.get(joint.name, "?")) for joint in shown[:MOST_JOINTS]),
             *_of_way(way, circle(trace)),
         ),
-        drawn=_words(trace, way),
+        drawn=tuple(_words(trace, way)),
         parts=tuple(part for part in (solid(trace), tree(trace)) if part is not None),
     )
 
@@ -158,22 +159,19 @@ def _drawable(values: Floats) -> Floats:
     return np.where(np.abs(values) < FARTHEST, values, np.nan)
 
 
-def _words(trace: RobotTrace, way: Odometry) -> tuple[Message, ...]:
+def _words(trace: RobotTrace, way: Odometry) -> Iterator[Message]:
     there = way.places[np.isfinite(way.places).all(axis=1)]
     if not len(there):
-        return (msg("nothing: no transform from odom to the robot's root was heard"),)
+        yield msg("nothing: no transform from odom to the robot's root was heard")
+        return
     first, last = (text.place(float(row[0]), float(row[1])) for row in (there[0], there[-1]))
-    drawn = [msg("the robot's way in odom, from {first} to {last}", first=first, last=last)]
+    yield msg("the robot's way in odom, from {first} to {last}", first=first, last=last)
     if (round_ := circle(trace)) is not None:
-        centre = text.place(*round_[:2])
-        drawn.append(
-            msg(
-                "the circle nearest to it: {radius:.2f} m around {centre}",
-                radius=round_[2],
-                centre=centre,
-            )
+        yield msg(
+            "the circle nearest to it: {radius:.2f} m around {centre}",
+            radius=round_[2],
+            centre=text.place(*round_[:2]),
         )
-    return tuple(drawn)
 
 
 # The robot ------------------------------------------------------------------------------------
@@ -253,24 +251,18 @@ def circle(trace: RobotTrace) -> tuple[float, float, float] | None:
     return (x, y, radius) if math.isfinite(radius) and radius < 1e3 else None
 
 
-def _notes(trace: RobotTrace, model: Model, lost: tuple[str, ...]) -> list[Message]:
+def _notes(trace: RobotTrace, model: Model, lost: tuple[str, ...]) -> Iterator[Message]:
     """What there is to see, for who cannot."""
-    notes = []
     if (root := places(trace).get(model.root)) is not None:
-        notes.append(
-            msg(
-                "at {place} in {odom} at the end",
-                place=text.place(float(root[0, 3]), float(root[1, 3])),
-                odom=ODOM,
-            )
+        yield msg(
+            "at {place} in {odom} at the end",
+            place=text.place(float(root[0, 3]), float(root[1, 3])),
+            odom=ODOM,
         )
     if (round_ := circle(trace)) is not None:
-        notes.append(msg("its way lies about a circle of {radius:.2f} m", radius=round_[2]))
+        yield msg("its way lies about a circle of {radius:.2f} m", radius=round_[2])
     if lost:
-        notes.append(
-            msg("white, at the origin, for want of a transform: {names}", names=named(lost))
-        )
-    return notes
+        yield msg("white, at the origin, for want of a transform: {names}", names=named(lost))
 
 
 def sample_ticks(ticks: int) -> tuple[int, ...]:

@@ -177,7 +177,7 @@ class Turtlesim(Scene):
 
     def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
         """Return remarks on changes of the arena other than by driving, and on the messages."""
-        return remarks.remarks(TurtleTrace.of(made), published, interfaces)
+        return list(remarks.remarks(TurtleTrace.of(made), published, interfaces))
 
 
 _BESIDE = """\

@@ -170,11 +170,9 @@ def not_followed(facts: PackageFacts) -> Finding | None:
     problem = facts.setup.problem
     if problem is None or problem.kind != "unknown":
         return None
-    return unjudged(
-        msg(
-            "Not judged: {file} could not be followed: {why}.",
-            file=problem.file or "setup.py",
-            why=described(problem),
-        ),
-        msg("Tell whoever runs the course."),
+    why = msg(
+        "Not judged: {file} could not be followed: {why}.",
+        file=problem.file or "setup.py",
+        why=described(problem),
     )
+    return unjudged(why, msg("Tell whoever runs the course."))

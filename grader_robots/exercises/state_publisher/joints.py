@@ -74,10 +74,9 @@ def joint_names(seen: RobotRun, tolerances: Tolerances) -> Finding:
         len(wanted & found) / len(wanted | found),
         _mixed_up(missing, foreign),
         msg(
-            "Compare your names letter by letter with the <joint name=...> of the "
-            "URDF: those of joints, not of links, and none of a fixed joint. "
-            "robot_state_publisher skips what it does not know without a word, and "
-            "the links behind it have no place."
+            "Compare your names letter by letter with the <joint name=...> of the URDF: those of "
+            "joints, not of links, and none of a fixed joint. robot_state_publisher skips what it "
+            "does not know without a word, and the links behind it have no place."
         ),
         (
             seen.moment(
@@ -137,11 +136,8 @@ def joints_move(seen: RobotRun, tolerances: Tolerances) -> Finding:
         fault, seen_of_it = _judge(motion, joint.type, tolerances)
         if fault:
             wrong.append(msg("{joint!r} {movement}", joint=name, movement=fault))
-            where.append(
-                seen.moment(
-                    int(motion.ticks[-1]), msg("{joint}: {movement}", joint=name, movement=fault)
-                )
-            )
+            note = msg("{joint}: {movement}", joint=name, movement=fault)
+            where.append(seen.moment(int(motion.ticks[-1]), note))
         else:
             good.append(msg("{joint!r} {movement}", joint=name, movement=seen_of_it))
     share = len(good) / max(len(seen.moving), 1)

@@ -217,14 +217,11 @@ def _weighed(model: Model | None, mass_kg: float, error: float) -> Finding:
         return no_robot(msg("Not judged: there is no robot to weigh."))
     bare = [each.name for each in model.links.values() if each.collisions and not each.inertial]
     if bare:
-        return Finding(
-            0.5,
-            msg(
-                "The link {link!r} has a collision and no inertial: Gazebo leaves it out.",
-                link=bare[0],
-            ),
-            msg("Give every link that can be bumped into a mass and moments of inertia."),
+        rationale = msg(
+            "The link {link!r} has a collision and no inertial: Gazebo leaves it out.", link=bare[0]
         )
+        help = msg("Give every link that can be bumped into a mass and moments of inertia.")
+        return Finding(0.5, rationale, help)
     mass = sum(each.inertial.mass for each in model.links.values() if each.inertial)
     if abs(mass - mass_kg) > error * mass_kg:
         return Finding(
@@ -278,19 +275,17 @@ def one_source(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     for launch in into:
         second = [node for node in launch.nodes if node.package in JOINT_SOURCES]
         if second:
-            return Finding(
-                0,
-                msg(
-                    "{file} starts {executable} beside Gazebo, which publishes the joints "
-                    "as well: the wheels jump between what turns and what the sliders say.",
-                    file=launch.file,
-                    executable=second[0].executable,
-                ),
-                msg(
-                    "Beside a simulator no joint_state_publisher may run; it belongs into "
-                    "the launch file for RViz alone."
-                ),
+            rationale = msg(
+                "{file} starts {executable} beside Gazebo, which publishes the joints "
+                "as well: the wheels jump between what turns and what the sliders say.",
+                file=launch.file,
+                executable=second[0].executable,
             )
+            help = msg(
+                "Beside a simulator no joint_state_publisher may run; it belongs into "
+                "the launch file for RViz alone."
+            )
+            return Finding(0, rationale, help)
     return Finding(1, msg("Beside Gazebo nothing else publishes joint states."))
 
 
