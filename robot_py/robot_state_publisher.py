@@ -13,12 +13,7 @@ from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.logging import get_logger
 from rclpy.parameter import Parameter
-from rclpy.qos import (
-    DurabilityPolicy,
-    QoSPolicyKind,
-    QoSProfile,
-    qos_profile_sensor_data,
-)
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, qos_profile_sensor_data
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import JointState as JointStateMessage
@@ -26,14 +21,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from robot_py import robot_state
-from robot_py.robot_state import (
-    NodeLog,
-    Parameters,
-    Placed,
-    RefusedDescription,
-    Robot,
-    RobotState,
-)
+from robot_py.robot_state import NodeLog, Parameters, Placed, RefusedDescription, Robot, RobotState
 from turtlesim_py.ros import program
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableStart
 

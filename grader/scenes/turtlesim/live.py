@@ -18,11 +18,7 @@ class TurtlesimPage(LivePage):
 
     def _start(self) -> Mapping[str, Any]:
         self._canvas = Canvas()
-        self._state: dict[str, Any] = {
-            "tick": 0,
-            "background": DEFAULT_BACKGROUND,
-            "turtles": [],
-        }
+        self._state: dict[str, Any] = {"tick": 0, "background": DEFAULT_BACKGROUND, "turtles": []}
         return {**self._state, "drawn": [None], "calls": []}
 
     def _everything(self) -> tuple[Mapping[str, Any], Canvas]:
