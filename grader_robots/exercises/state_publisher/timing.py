@@ -167,16 +167,14 @@ def stamps(seen: RobotRun, tolerances: Tolerances) -> Finding:
     ]
     if unset:
         tick, what = unset[0]
-        return Finding(
-            0,
-            msg(
-                "The stamp of {what} is not set: its time is 0. robot_state_publisher then sends "
-                "nothing for a joint state, and tf2 finds a transform in no time.",
-                what=what,
-            ),
-            msg("Each message has a header, and that a stamp: the node's clock tells the time."),
-            (seen.moment(tick, msg("{what} without a time", what=what)),),
+        rationale = msg(
+            "The stamp of {what} is not set: its time is 0. robot_state_publisher then sends "
+            "nothing for a joint state, and tf2 finds a transform in no time.",
+            what=what,
         )
+        help = msg("Each message has a header, and that a stamp: the node's clock tells the time.")
+        timeless = (seen.moment(tick, msg("{what} without a time", what=what)),)
+        return Finding(0, rationale, help, timeless)
     share = 1.0
     wrong: list[Message] = []
     where: list[Evidence] = []

@@ -111,32 +111,27 @@ def _fault(name: str, model: Model, texts: dict[str, str]) -> tuple[Message, Mes
             msg("Run xacro with the number doubled, and check_urdf on what comes out."),
         )
     if _sizes(model) == _sizes(other):
-        return (
-            msg("doubling {name} changes the size of nothing", name=name),
-            msg(
-                "Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
-                name=name,
-            ),
+        advice = msg(
+            "Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
+            name=name,
         )
+        return msg("doubling {name} changes the size of nothing", name=name), advice
     stays = next(_staying(model, other), "")
-    if stays:
-        return (
-            msg(
-                "doubling {name} changes the size of a part, and nothing does not move along",
-                name=name,
-            )
-            if stays == _NOTHING
-            else msg(
-                "doubling {name} changes the size of a part, and {link} does not move along",
-                name=name,
-                link=shown(stays),
-            ),
-            msg(
-                "Write the origins of wheels and caster with ${{{name}}}, not as numbers.",
-                name=name,
-            ),
+    if not stays:
+        return NOTHING, NOTHING
+    fault = msg(
+        "doubling {name} changes the size of a part, and {link} does not move along",
+        name=name,
+        link=shown(stays),
+    )
+    if stays == _NOTHING:
+        fault = msg(
+            "doubling {name} changes the size of a part, and nothing does not move along", name=name
         )
-    return NOTHING, NOTHING
+    advice = msg(
+        "Write the origins of wheels and caster with ${{{name}}}, not as numbers.", name=name
+    )
+    return fault, advice
 
 
 def _varied(facts: PackageFacts, number: int) -> dict[str, str]:
@@ -224,20 +219,17 @@ def _weighed(model: Model | None, mass_kg: float, error: float) -> Finding:
         return Finding(0.5, rationale, help)
     mass = sum(each.inertial.mass for each in model.links.values() if each.inertial)
     if abs(mass - mass_kg) > error * mass_kg:
-        return Finding(
-            0.5 if mass else 0,
-            msg(
-                "The robot weighs {weight} in all{links}; expected {wanted}, give or take "
-                "{error:g} %.",
-                weight=_grams(mass),
-                links=_each(model),
-                wanted=_grams(mass_kg),
-                error=100 * error,
-            ),
-            msg("<mass value=...> is in kilograms: 1 g is 0.001.")
-            if mass > 100 * mass_kg
-            else msg("Add up the masses of all links. Is each link there, and has it its mass?"),
+        rationale = msg(
+            "The robot weighs {weight} in all{links}; expected {wanted}, give or take {error:g} %.",
+            weight=_grams(mass),
+            links=_each(model),
+            wanted=_grams(mass_kg),
+            error=100 * error,
         )
+        help = msg("Add up the masses of all links. Is each link there, and has it its mass?")
+        if mass > 100 * mass_kg:
+            help = msg("<mass value=...> is in kilograms: 1 g is 0.001.")
+        return Finding(0.5 if mass else 0, rationale, help)
     return Finding(1, msg("The robot weighs {weight} in all.", weight=_grams(mass)))
 
 
