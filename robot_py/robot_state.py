@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from typing import Literal
 
 from robot_py import kinematics
 from robot_py.kinematics import LinkTree
@@ -46,13 +46,6 @@ ROOT_INERTIA = (
 UNKNOWN_TYPE = "Converting unknown joint type of joint '{}' into a fixed joint"
 
 
-class Severity(StrEnum):
-    """The levels of ROS that the two nodes use."""
-
-    WARN = "WARN"
-    ERROR = "ERROR"
-
-
 @dataclass(frozen=True, slots=True)
 class NodeLog:
     """A line that a node would log.
@@ -61,7 +54,7 @@ class NodeLog:
         logger: its logger's name; '' for the node's.
     """
 
-    severity: Severity
+    severity: Literal["WARN", "ERROR"]
     text: str
     logger: str = ""
 
@@ -169,7 +162,7 @@ class Robot:
         for joint in self.tree.joints.values():
             if joint.type in ("planar", "floating"):
                 texts.append(UNKNOWN_TYPE.format(joint.name))
-        return tuple(NodeLog(Severity.WARN, text, "kdl_parser") for text in texts)
+        return tuple(NodeLog("WARN", text, "kdl_parser") for text in texts)
 
     def fixed(self, prefix: str, now_ns: int) -> tuple[Placed, ...]:
         """Return the transforms for /tf_static, by the alphabet of their joints' names."""
@@ -230,10 +223,10 @@ class RobotState:
             return Published(None, (_complaint(state),))
         if state.stamp_ns < 0:
             # the original ends here, by an uncaught exception
-            return Published(None, (NodeLog(Severity.ERROR, NEGATIVE),))
+            return Published(None, (NodeLog("ERROR", NEGATIVE),))
         logs: tuple[NodeLog, ...] = ()
         if self._heard_ns > now_ns:
-            logs = (NodeLog(Severity.WARN, BACKWARDS),)
+            logs = (NodeLog("WARN", BACKWARDS),)
             self._published_ns.clear()
         self._heard_ns = now_ns
         if not self._is_due(state, now_ns):
@@ -265,5 +258,5 @@ class RobotState:
 
 def _complaint(state: JointState) -> NodeLog:
     if not len(state.positions):
-        return NodeLog(Severity.WARN, NO_POSITIONS.format(state.names[0]))
-    return NodeLog(Severity.ERROR, INVALID)
+        return NodeLog("WARN", NO_POSITIONS.format(state.names[0]))
+    return NodeLog("ERROR", INVALID)

@@ -13,12 +13,7 @@ from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.logging import get_logger
 from rclpy.parameter import Parameter
-from rclpy.qos import (
-    DurabilityPolicy,
-    QoSPolicyKind,
-    QoSProfile,
-    qos_profile_sensor_data,
-)
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, qos_profile_sensor_data
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import JointState as JointStateMessage
@@ -26,15 +21,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from robot_py import robot_state
-from robot_py.robot_state import (
-    NodeLog,
-    Parameters,
-    Placed,
-    RefusedDescription,
-    Robot,
-    RobotState,
-    Severity,
-)
+from robot_py.robot_state import NodeLog, Parameters, Placed, RefusedDescription, Robot, RobotState
 from turtlesim_py.ros import program
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableStart
 
@@ -194,7 +181,7 @@ class RobotStatePublisher(RclcppNode):
         for log in logs:
             logger = get_logger(log.logger) if log.logger else self.get_logger()
             # one call a severity: rclpy refuses a call site that changes its severity
-            if log.severity is Severity.WARN:
+            if log.severity == "WARN":
                 logger.warning(log.text)
             else:
                 logger.error(log.text)

@@ -150,7 +150,7 @@ class GraphScene(Scene):
         """Serve a page that shows the timeline as it grows."""
         from grader.cast.live import TimelinePage
 
-        return TimelinePage(port)
+        return TimelinePage.serve(port)
 
     @property
     def player(self) -> Callable[[Playback], str]:

@@ -1,4 +1,4 @@
-"""Pages that are one file: their modules joined into one script, which alone may run in them."""
+"""Pages that play runs, one file each: their modules are one script, which alone may run there."""
 
 from __future__ import annotations
 
@@ -14,44 +14,54 @@ from string import Template
 from typing import Any, Final
 
 import turtlesim_py
-from grader.recording.playback import JudgedCheck, Moment
-from grader.translations import catalogue, current
+from grader.recording.playback import JudgedCheck, Moment, Playback
+from grader.translations import catalogue, current, tr
 
 #: Modules that several pages share: of the page that plays runs, and of the live page.
 PLAYER: Final = Path(__file__).parent / "turtlesim" / "player" / "page"
 LIVE_PAGE: Final = Path(turtlesim_py.__file__).parent / "live" / "page"
 
 
-def fill(
-    page: Template,
-    entry: str,
-    folders: Sequence[Path],
+def render(
+    playback: Playback,
+    page: Path,
     data: dict[str, Any],
-    *,
-    style: str,
-    **texts: str,
+    tick_s: float,
+    folders: Sequence[Path] = (),
+    styles: Sequence[Path] = (),
 ) -> str:
-    """Return a page with its script, its data and its texts.
+    """Return the page that plays runs, in one file.
 
     Args:
-        entry: the module that the script begins with.
-        folders: that modules are searched in, one after another.
-        data: for the script; gets the page's `sentences`.
+        page: its HTML; the module of the same name is the one that runs.
+        data: of this scene, for the script.
+        folders: that modules are searched in, one after another, before those that pages share.
+        styles: besides the one that they share.
     """
-    script = join_modules(entry, folders)
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    data = {**data, "sentences": _sentences(f"{script} {page.template}", current())}
-    return page.substitute(
-        digest=digest,
+    script = join_modules(page.stem, [*folders, PLAYER, LIVE_PAGE])
+    html = page.read_text(encoding="utf-8")
+    data = {
+        "language": current(),
+        "tick_s": tick_s,
+        "title": playback.title,
+        **data,
+        "judged": [_judged(item, tick_s) for item in playback.judged],
+        "sentences": _sentences(f"{script} {html}", current()),
+    }
+    style = (each.read_text(encoding="utf-8") for each in (PLAYER / "player.css", *styles))
+    return Template(html).substitute(
+        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         lang=current(),
-        style=style,
+        style="".join(style),
         data=_in_html(data),
         script=script,
-        **{name: escape(text) for name, text in texts.items()},
+        title=escape(playback.title),
+        summary=escape(playback.summary),
+        noscript=escape(tr("This page needs JavaScript. report.html, beside it, does not.")),
     )
 
 
-def judged(item: JudgedCheck, tick_s: float) -> dict[str, Any]:
+def _judged(item: JudgedCheck, tick_s: float) -> dict[str, Any]:
     """Return a verdict as the script reads it."""
     return {**vars(item), "moments": [_moment(each, tick_s) for each in item.moments]}
 

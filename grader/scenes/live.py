@@ -1,12 +1,21 @@
-"""The interface of a page that shows runs live, and the state of a grading that it shows."""
+"""A page that shows runs live, and the state of a grading that it shows."""
 
 from __future__ import annotations
 
+import threading
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from grader.recording.playback import JudgedCheck
+from grader.translations import current
+
+if TYPE_CHECKING:  # few want a page
+    from turtlesim_py.live.feed import Deliver
+    from turtlesim_py.live.server import LiveServer
+    from turtlesim_py.world.canvas import Canvas
 
 
 @dataclass(frozen=True)
@@ -38,24 +47,97 @@ def content_of(grading: Grading) -> Mapping[str, Any]:
     return {**rest, "checks": checks}
 
 
-class LivePage(Protocol):
-    """A page in a browser, served by this process; viewers can only watch."""
+class LivePage(ABC):
+    """A page in a browser, served by this process; viewers can only watch.
+
+    It knows a run in another process by its news, and is the `turtlesim_py.live.feed.Source` of its
+    server; its methods may be called from any thread. It needs the token, because a submission's
+    process may have the same network and must not see verdicts. There is no ROS graph behind it, so
+    a viewer cannot affect a run.
+    """
+
+    #: The node, for the page; and the folder of another page than the turtles'.
+    ABOUT: ClassVar[Mapping[str, Any]] = {}
+    PAGE: ClassVar[Path | None] = None
+    _server: LiveServer
+
+    def __init__(self, deliver: Deliver) -> None:
+        self.is_watched = False
+        self._has_been_seen = threading.Event()
+        self._deliver = deliver
+        self._lock = threading.Lock()
+        self._grading: Mapping[str, Any] = {}
+        self._start()
+
+    @classmethod
+    def serve(cls, port: int) -> Self:
+        """Serve the page; OSError: that is not possible, as where the port is in use."""
+        from turtlesim_py.live.server import LiveServer, Settings
+
+        settings = Settings(
+            port,
+            is_read_only=True,
+            needs_token=True,
+            has_graph=False,
+            language=current(),  # that of the verdicts
+            page=cls.PAGE,
+        )
+        server = LiveServer(settings, cls.ABOUT)
+        page = cls(server.deliver)
+        page._server = server
+        server.start(page)
+        return page
 
     @property
     def address(self) -> str:
-        """The address to open."""
-
-    def await_viewer(self, patience_s: float) -> bool:
-        """Wait for a viewer; return whether one has come."""
-
-    def update(self, grading: Grading) -> None:
-        """Show the state of the grading."""
-
-    def begin(self) -> None:
-        """Show the scene before a run."""
-
-    def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
-        """Show the news that `grader.scenes.scene.Hooks.send_news` has received, in order."""
+        """The address to open, with the token."""
+        return self._server.address
 
     def close(self) -> None:
         """Stop serving; open pages keep their content."""
+        self._server.stop()
+
+    def await_viewer(self, patience_s: float) -> bool:
+        """Wait for a viewer; return whether one has come."""
+        return self._has_been_seen.wait(patience_s)
+
+    def ask(self, viewer: object) -> None:
+        """Deliver everything to a viewer."""
+        with self._lock:
+            content, canvas = self._everything()
+            self._tell({**content, "grading": self._grading}, canvas, viewer)
+        self._has_been_seen.set()
+
+    def begin(self) -> None:
+        """Show the scene before a run."""
+        with self._lock:
+            self._tell({**self._start(), "begins": True})
+
+    def update(self, grading: Grading) -> None:
+        """Show the state of the grading."""
+        with self._lock:
+            self._grading = content_of(grading)
+            self._tell({**self._nothing_new(), "grading": self._grading})
+
+    def _tell(
+        self, content: Mapping[str, Any], canvas: Canvas | None = None, viewer: object = None
+    ) -> None:
+        from turtlesim_py.live.feed import News
+
+        self._deliver(News(content, canvas, viewer))
+
+    @abstractmethod
+    def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
+        """Show the news that `grader.scenes.scene.Hooks.send_news` has received, in order."""
+
+    @abstractmethod
+    def _start(self) -> Mapping[str, Any]:
+        """Forget the run; return the scene before one."""
+
+    @abstractmethod
+    def _everything(self) -> tuple[Mapping[str, Any], Canvas | None]:
+        """Return the run up to now, and a copy of what is painted."""
+
+    @abstractmethod
+    def _nothing_new(self) -> Mapping[str, Any]:
+        """Return news without a change."""

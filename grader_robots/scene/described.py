@@ -11,16 +11,8 @@ import numpy as np
 from grader.inspection.trace import Description, PackageTrace
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.view import Pixels, Placing, Solid, SolidFrame, Tree, TreeNode
-from grader_robots.scene.shapes import (
-    MOST_NODES,
-    descend,
-    in_words,
-    name_of,
-    named,
-    place_less,
-    placing,
-    shapes,
-)
+from grader_robots.scene import shapes
+from grader_robots.scene.shapes import MOST_NODES, descend, name_of, named, place_less, placing
 from robot_py.drawing import NOBODY, body, picture
 from robot_py.drawing.body import Floats
 from robot_py.kinematics import forward, joint_transform, tree
@@ -69,15 +61,16 @@ def solid(trace: PackageTrace) -> Solid | None:
         else:
             where = placing(joint_transform(joints[link]))
             frames.append(SolidFrame(name_of(link), numbers[joints[link].parent], (where,)))
-    made, left_out = shapes(robot, numbers, meshes(trace))
-    return Solid(
-        msg("The robot {name}", name=name_of(robot.name)),
-        _words(trace, robot, there.lost, left_out),
-        tuple(frames),
-        made,
-        ground_m=there.lowest_m,
-        lost=tuple(map(name_of, there.lost)),
-        left_out=left_out,
+    found = _described(trace)
+    by = name_of(found.by) if found is not None else ""
+    notes = [msg("as {by} describes it, all joints at 0", by=by)]
+    if there.lost:
+        hanging = msg(
+            "white, at the origin, for they hang on nothing: {names}", names=named(there.lost)
+        )
+        notes.append(hanging)
+    return shapes.solid(
+        robot, frames, numbers, there.lost, notes, meshes(trace), ground_m=there.lowest_m
     )
 
 
@@ -158,20 +151,3 @@ def words(trace: PackageTrace) -> Message:
     """What there is to see, for who cannot."""
     found = solid(trace)
     return _why_not(trace) if found is None else found.text
-
-
-def _words(
-    trace: PackageTrace, robot: Model, lost: tuple[str, ...], left_out: tuple[str, ...]
-) -> Message:
-    found = _described(trace)
-    notes = [
-        msg(
-            "as {by} describes it, all joints at 0",
-            by=name_of(found.by) if found is not None else "",
-        )
-    ]
-    if lost:
-        notes.append(
-            msg("white, at the origin, for they hang on nothing: {names}", names=named(lost))
-        )
-    return in_words(robot, notes, left_out)

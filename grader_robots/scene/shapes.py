@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from grader import text
-from grader.message import NOTHING, Message, joined, msg, msg_many, plain_text
-from grader.recording.view import Floats, Placing, Shape
+from grader.message import Message, joined, msg, msg_many, plain_text
+from grader.recording.view import Floats, Placing, Shape, Solid, SolidFrame
 from robot_py.drawing.body import colour_of
 from robot_py.kinematics import matrix, quaternion, translation
 from robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere
@@ -21,7 +23,7 @@ LONGEST_NAME = 60
 _FARTHEST = 1e6
 
 
-def shapes(
+def _shapes(
     model: Model, numbers: Mapping[str, int], meshes: Mapping[str, Floats]
 ) -> tuple[tuple[Shape, ...], tuple[str, ...]]:
     """What the links look like, and what of that is left out, in words.
@@ -48,6 +50,47 @@ def shapes(
                 number = numbers[link.name]
                 found.append(Shape(kind, number, pose, sizes, _hex(colour), colour[3]))  # type: ignore[arg-type]
     return tuple(found), tuple(left_out)
+
+
+def solid(
+    model: Model,
+    frames: Sequence[SolidFrame],
+    numbers: Mapping[str, int],
+    lost: Sequence[str],
+    notes: Iterable[Message],
+    meshes: Mapping[str, Floats] = MappingProxyType({}),
+    **more: Any,
+) -> Solid:
+    """A robot that can be turned.
+
+    Args:
+        numbers, meshes: as of `_shapes`.
+        lost: links that have no place.
+        notes: what there is to see, for who cannot.
+        more: other attributes.
+    """
+    made, left_out = _shapes(model, numbers, meshes)
+    name = name_of(model.name)
+    parts = [
+        msg_many(
+            "The robot {name} with {n:,} link",
+            "The robot {name} with {n:,} links",
+            len(model.links),
+            name=name,
+        ),
+        *notes,
+    ]
+    if left_out:
+        parts.append(msg("not drawn: {names}", names=named(left_out)))
+    return Solid(
+        msg("The robot {name}", name=name),
+        joined(parts, msg("; ")),
+        tuple(frames),
+        made,
+        lost=tuple(map(name_of, lost)),
+        left_out=left_out,
+        **more,
+    )
 
 
 def placing(frame: Floats) -> Placing:
@@ -91,18 +134,6 @@ def place_less(names: Sequence[str]) -> tuple[Message, ...]:
     if not names:
         return ()
     return (msg("white, at the origin - no transform: {names}", names=named(names)),)
-
-
-def in_words(model: Model, parts: Sequence[Message], left_out: Sequence[str]) -> Message:
-    """What there is to see of a robot, for who cannot; parts may be ''."""
-    links = msg_many(
-        "The robot {name} with {n:,} link",
-        "The robot {name} with {n:,} links",
-        len(model.links),
-        name=name_of(model.name),
-    )
-    undrawn = msg("not drawn: {names}", names=named(left_out)) if left_out else NOTHING
-    return joined([links, *(part for part in (*parts, undrawn) if part)], msg("; "))
 
 
 def descend(

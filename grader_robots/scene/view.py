@@ -7,6 +7,7 @@ white, as RViz shows it.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -25,18 +26,11 @@ from grader.recording.view import (
     Track,
     View,
 )
+from grader_robots.scene import shapes
 from grader_robots.scene.decoding import Transform
 from grader_robots.scene.frames import Hung, below, hung, tree
 from grader_robots.scene.motion import ODOM, JointMotion, Odometry, fitted, joints, odometry
-from grader_robots.scene.shapes import (
-    in_words,
-    is_finite,
-    name_of,
-    named,
-    place_less,
-    shapes,
-    transform,
-)
+from grader_robots.scene.shapes import is_finite, name_of, named, place_less, transform
 from grader_robots.scene.trace import TICK_NS, RobotTrace
 from robot_py.drawing import NOBODY, body, picture
 from robot_py.model import Model
@@ -78,7 +72,7 @@ def view(trace: RobotTrace) -> View:
             *(_curve(joint, units.get(joint.name, "?")) for joint in shown[:MOST_JOINTS]),
             *_of_way(way, circle(trace)),
         ),
-        drawn=_words(trace, way),
+        drawn=tuple(_words(trace, way)),
         parts=tuple(part for part in (solid(trace), tree(trace)) if part is not None),
     )
 
@@ -165,22 +159,19 @@ def _drawable(values: Floats) -> Floats:
     return np.where(np.abs(values) < FARTHEST, values, np.nan)
 
 
-def _words(trace: RobotTrace, way: Odometry) -> tuple[Message, ...]:
+def _words(trace: RobotTrace, way: Odometry) -> Iterator[Message]:
     there = way.places[np.isfinite(way.places).all(axis=1)]
     if not len(there):
-        return (msg("nothing: no transform from odom to the robot's root was heard"),)
+        yield msg("nothing: no transform from odom to the robot's root was heard")
+        return
     first, last = (text.place(float(row[0]), float(row[1])) for row in (there[0], there[-1]))
-    drawn = [msg("the robot's way in odom, from {first} to {last}", first=first, last=last)]
+    yield msg("the robot's way in odom, from {first} to {last}", first=first, last=last)
     if (round_ := circle(trace)) is not None:
-        centre = text.place(*round_[:2])
-        drawn.append(
-            msg(
-                "the circle nearest to it: {radius:.2f} m around {centre}",
-                radius=round_[2],
-                centre=centre,
-            )
+        yield msg(
+            "the circle nearest to it: {radius:.2f} m around {centre}",
+            radius=round_[2],
+            centre=text.place(*round_[:2]),
         )
-    return tuple(drawn)
 
 
 # The robot ------------------------------------------------------------------------------------
@@ -205,18 +196,11 @@ def solid(trace: RobotTrace) -> Solid | None:
             numbers[link] = len(frames)
             placings = (Placing(),) if link == ODOM else (None,)
             frames.append(SolidFrame(name_of(link), -1, placings))
-    made, left_out = shapes(robot.model, numbers, {})
     lost = tuple(link for link in robot.model.links if link not in places(trace))
-    return Solid(
-        msg("The robot {name}", name=name_of(robot.model.name)),
-        _solid_words(trace, robot.model, lost, left_out),
-        tuple(frames),
-        made,
-        tuple(tick * TICK_NS for tick in ticks),
-        0.0,
-        way(trace),
-        tuple(map(name_of, lost)),
-        left_out,
+    notes = _notes(trace, robot.model, lost)
+    times_ns = tuple(tick * TICK_NS for tick in ticks)
+    return shapes.solid(
+        robot.model, frames, numbers, lost, notes, times_ns=times_ns, way=way(trace)
     )
 
 
@@ -267,26 +251,18 @@ def circle(trace: RobotTrace) -> tuple[float, float, float] | None:
     return (x, y, radius) if math.isfinite(radius) and radius < 1e3 else None
 
 
-def _solid_words(
-    trace: RobotTrace, model: Model, lost: tuple[str, ...], left_out: tuple[str, ...]
-) -> Message:
+def _notes(trace: RobotTrace, model: Model, lost: tuple[str, ...]) -> Iterator[Message]:
     """What there is to see, for who cannot."""
-    notes = []
     if (root := places(trace).get(model.root)) is not None:
-        notes.append(
-            msg(
-                "at {place} in {odom} at the end",
-                place=text.place(float(root[0, 3]), float(root[1, 3])),
-                odom=ODOM,
-            )
+        yield msg(
+            "at {place} in {odom} at the end",
+            place=text.place(float(root[0, 3]), float(root[1, 3])),
+            odom=ODOM,
         )
     if (round_ := circle(trace)) is not None:
-        notes.append(msg("its way lies about a circle of {radius:.2f} m", radius=round_[2]))
+        yield msg("its way lies about a circle of {radius:.2f} m", radius=round_[2])
     if lost:
-        notes.append(
-            msg("white, at the origin, for want of a transform: {names}", names=named(lost))
-        )
-    return in_words(model, notes, left_out)
+        yield msg("white, at the origin, for want of a transform: {names}", names=named(lost))
 
 
 def sample_ticks(ticks: int) -> tuple[int, ...]:

@@ -59,9 +59,8 @@ class TimeCache:
 
     def __init__(self, length_ns: int) -> None:
         self._length_ns = length_ns
-        self._samples: list[
-            FrameSample
-        ] = []  # the oldest first; of equal stamps, the first to come
+        #: the oldest first; of equal stamps, the first to come
+        self._samples: list[FrameSample] = []
 
     def __len__(self) -> int:
         return len(self._samples)

@@ -38,24 +38,23 @@ class TransformListener:
         self.node = node
         # so that transforms come in while a callback of the node waits for one
         self.group = ReentrantCallbackGroup()
-        self.tf_sub = node.create_subscription(
-            TFMessage,
-            tf_topic,
-            self.callback,
-            _last_100(DurabilityPolicy.VOLATILE) if qos is None else qos,
-            callback_group=self.group,
-        )
-        self.tf_static_sub = node.create_subscription(
-            TFMessage,
-            tf_static_topic,
-            self.static_callback,
-            _last_100(DurabilityPolicy.TRANSIENT_LOCAL) if static_qos is None else static_qos,
-            callback_group=self.group,
+        self.tf_sub = self._listen(tf_topic, self.callback, qos, DurabilityPolicy.VOLATILE)
+        self.tf_static_sub = self._listen(
+            tf_static_topic, self.static_callback, static_qos, DurabilityPolicy.TRANSIENT_LOCAL
         )
         if spin_thread:
             self.executor = SingleThreadedExecutor()
             self.dedicated_listener_thread = Thread(target=self._spin)
             self.dedicated_listener_thread.start()
+
+    def _listen(
+        self, topic: str, callback: Any, qos: QoSProfile | int | None, durability: DurabilityPolicy
+    ) -> Any:
+        if qos is None:
+            qos = QoSProfile(depth=100, durability=durability, history=HistoryPolicy.KEEP_LAST)
+        return self.node.create_subscription(
+            TFMessage, topic, callback, qos, callback_group=self.group
+        )
 
     def _spin(self) -> None:
         self.executor.add_node(self.node)
@@ -84,7 +83,3 @@ class TransformListener:
         """Store transforms of static frames."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, AUTHORITY)
-
-
-def _last_100(durability: DurabilityPolicy) -> QoSProfile:
-    return QoSProfile(depth=100, durability=durability, history=HistoryPolicy.KEEP_LAST)

@@ -145,13 +145,11 @@ class TurtleEndpoints:
             TOPIC_QOS,
             event_callbacks=node.warn_publishers(cmd_vel),
         )
+        srv = interfaces.srv
         self._services = [
-            node.create_service(service, f"{name}/{called}", callback)
-            for service, called, callback in (
-                (interfaces.srv.SetPen, "set_pen", self._on_set_pen),
-                (interfaces.srv.TeleportAbsolute, "teleport_absolute", self._on_teleport_absolute),
-                (interfaces.srv.TeleportRelative, "teleport_relative", self._on_teleport_relative),
-            )
+            self._service(srv.SetPen, arena.set_pen, "r", "g", "b", "width", "off"),
+            self._service(srv.TeleportAbsolute, arena.teleport_absolute, "x", "y", "theta"),
+            self._service(srv.TeleportRelative, arena.teleport_relative, "linear", "angular"),
         ]
         self.action = RotateAction(node, interfaces, arena, name, accepts_goal)
 
@@ -174,20 +172,17 @@ class TurtleEndpoints:
             message_type, topic, TOPIC_QOS, event_callbacks=self._node.warn_subscribers(topic)
         )
 
+    def _service(self, kind: Any, act: Callable[..., None], *fields: str) -> Any:
+        """Serve a method of the arena's by its name, for this turtle, with a request's fields."""
+
+        def serve(request: Any, response: Any) -> Any:
+            act(self._name, *(getattr(request, field) for field in fields))
+            return response
+
+        return self._node.create_service(kind, f"{self._name}/{act.__name__}", serve)
+
     def _on_cmd_vel(self, message: Twist) -> None:
         linear, angular = message.linear, message.angular
         self._arena.command(
             self._name, (linear.x, linear.y, linear.z), (angular.x, angular.y, angular.z)
         )
-
-    def _on_set_pen(self, request: Any, response: Any) -> Any:
-        self._arena.set_pen(self._name, request.r, request.g, request.b, request.width, request.off)
-        return response
-
-    def _on_teleport_absolute(self, request: Any, response: Any) -> Any:
-        self._arena.teleport_absolute(self._name, request.x, request.y, request.theta)
-        return response
-
-    def _on_teleport_relative(self, request: Any, response: Any) -> Any:
-        self._arena.teleport_relative(self._name, request.linear, request.angular)
-        return response

@@ -33,12 +33,13 @@ class Event:
 
     tick: int
 
+    def __init_subclass__(cls, op: str = "") -> None:
+        cls.op = op or cls.op  # `slots` makes each class a second time, without the keyword
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CmdVel(Event):
+class CmdVel(Event, op="cmd_vel"):
     """A velocity command: linear [m/s], angular [rad/s]."""
-
-    op: ClassVar[str] = "cmd_vel"
 
     turtle: str = "turtle1"
     linear: Vector
@@ -46,10 +47,8 @@ class CmdVel(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetPen(Event):
+class SetPen(Event, op="set_pen"):
     """A change of the pen: colour and width [px], each 0-255; `off` other than 0 lifts it."""
-
-    op: ClassVar[str] = "set_pen"
 
     turtle: str = "turtle1"
     r: int
@@ -60,10 +59,8 @@ class SetPen(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TeleportAbsolute(Event):
+class TeleportAbsolute(Event, op="teleport_absolute"):
     """A jump to x, y [m] with heading theta [rad]."""
-
-    op: ClassVar[str] = "teleport_absolute"
 
     turtle: str = "turtle1"
     x: float
@@ -72,10 +69,8 @@ class TeleportAbsolute(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TeleportRelative(Event):
+class TeleportRelative(Event, op="teleport_relative"):
     """A turn by `angular` [rad], then a jump ahead by `linear` [m]."""
-
-    op: ClassVar[str] = "teleport_relative"
 
     turtle: str = "turtle1"
     linear: float
@@ -83,10 +78,8 @@ class TeleportRelative(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RotateAbsolute(Event):
+class RotateAbsolute(Event, op="rotate_absolute"):
     """A rotation goal towards heading theta [rad]."""
-
-    op: ClassVar[str] = "rotate_absolute"
 
     turtle: str = "turtle1"
     theta: float
@@ -94,19 +87,15 @@ class RotateAbsolute(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Cancel(Event):
+class Cancel(Event, op="cancel"):
     """A request to end a rotation goal."""
-
-    op: ClassVar[str] = "cancel"
 
     id: GoalId
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spawn(Event):
+class Spawn(Event, op="spawn"):
     """A new turtle at x, y [m] with heading theta [rad]; an empty name gets one."""
-
-    op: ClassVar[str] = "spawn"
 
     x: float
     y: float
@@ -115,33 +104,25 @@ class Spawn(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Kill(Event):
+class Kill(Event, op="kill"):
     """The end of a turtle."""
-
-    op: ClassVar[str] = "kill"
 
     name: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Clear(Event):
+class Clear(Event, op="clear"):
     """The drawing is wiped."""
 
-    op: ClassVar[str] = "clear"
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reset(Event):
+class Reset(Event, op="reset"):
     """Everything starts again."""
 
-    op: ClassVar[str] = "reset"
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SetParameter(Event):
+class SetParameter(Event, op="param"):
     """A parameter is to be set; `value` is a bool, int, float or str."""
-
-    op: ClassVar[str] = "param"
 
     name: str
     value: bool | int | float | str
@@ -150,19 +131,15 @@ class SetParameter(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Snapshot(Event):
+class Snapshot(Event, op="snapshot"):
     """Of a scenario: keep the drawing as it is after this tick."""
-
-    op: ClassVar[str] = "snapshot"
 
     name: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SnapshotNow(Event):
+class SnapshotNow(Event, op="snapshot_now"):
     """Of a scenario: keep the drawing as it is now, before this tick."""
-
-    op: ClassVar[str] = "snapshot_now"
 
     name: str
 

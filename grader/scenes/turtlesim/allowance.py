@@ -37,6 +37,8 @@ MOST_FLAGS = 20
 _NOT_ALL = msg(
     "what the node sent after its first {number} messages was not taken", number=MOST_EVENTS
 )
+_FIRST_LINES = msg("of the simulator's log the first {number} lines were kept", number=MOST_LOGS)
+_NO_MORE_PICTURES = msg("save_canvas wrote {number} pictures and no more", number=MOST_PICTURES)
 _MANY_AT_A_TIME = msg(
     "more than {number} turtles at a time: the others were refused", number=MOST_TURTLES
 )
@@ -67,31 +69,25 @@ class Allowance:
         if len(self._flags) < MOST_FLAGS:
             self._flags[remark] = None
 
+    def _allow(self, is_within: bool, remark: Message) -> bool:
+        if not is_within:
+            self.refuse(remark)
+        return is_within
+
     @property
     def is_used_up(self) -> bool:
         """Whether nothing more will be served."""
-        if self.events < MOST_EVENTS:
-            return False
-        self.refuse(_NOT_ALL)
-        return True
+        return not self._allow(self.events < MOST_EVENTS, _NOT_ALL)
 
     def may_log(self) -> bool:
         """Whether the simulator may log another line."""
         self.logs += 1
-        if self.logs <= MOST_LOGS:
-            return True
-        self.refuse(
-            msg("of the simulator's log the first {number} lines were kept", number=MOST_LOGS)
-        )
-        return False
+        return self._allow(self.logs <= MOST_LOGS, _FIRST_LINES)
 
     def may_save(self) -> bool:
         """Whether another picture may be written."""
         self.pictures += 1
-        if self.pictures <= MOST_PICTURES:
-            return True
-        self.refuse(msg("save_canvas wrote {number} pictures and no more", number=MOST_PICTURES))
-        return False
+        return self._allow(self.pictures <= MOST_PICTURES, _NO_MORE_PICTURES)
 
     def why_not_hatch(self, turtles: int) -> str:
         """Return why there may be no turtle beside so many others; '' where there may."""

@@ -47,6 +47,22 @@ def adapted(text: str, ros_distro: str) -> str:
 
 #: Endpoints of at most so many turtles are listed: enough to recognise a wrong name.
 _MOST_TURTLES = 20
+#: By their names below a turtle's, or the root; {} is the package of messages.
+_OF_A_TURTLE = (
+    Endpoint("subscription", "/cmd_vel", "geometry_msgs/msg/Twist"),
+    Endpoint("publisher", "/pose", "{}/msg/Pose"),
+    Endpoint("publisher", "/color_sensor", "{}/msg/Color"),
+    Endpoint("service", "/set_pen", "{}/srv/SetPen"),
+    Endpoint("service", "/teleport_absolute", "{}/srv/TeleportAbsolute"),
+    Endpoint("service", "/teleport_relative", "{}/srv/TeleportRelative"),
+    Endpoint("action", "/rotate_absolute", "{}/action/RotateAbsolute"),
+)
+_OF_THE_NODE = (
+    Endpoint("service", "/clear", "std_srvs/srv/Empty"),
+    Endpoint("service", "/reset", "std_srvs/srv/Empty"),
+    Endpoint("service", "/spawn", "{}/srv/Spawn"),
+    Endpoint("service", "/kill", "{}/srv/Kill"),
+)
 
 
 def endpoints_of(trace: TurtleTrace, interfaces: str) -> Sequence[Endpoint]:
@@ -57,26 +73,9 @@ def endpoints_of(trace: TurtleTrace, interfaces: str) -> Sequence[Endpoint]:
     """
     package = interfaces or OLDER
     others = [turtle for turtle in trace.trajectories if turtle != FIRST_TURTLE]
-    found = []
-    for turtle in (FIRST_TURTLE, *others[: _MOST_TURTLES - 1]):
-        found += [
-            Endpoint("subscription", f"/{turtle}/cmd_vel", "geometry_msgs/msg/Twist"),
-            Endpoint("publisher", f"/{turtle}/pose", f"{package}/msg/Pose"),
-            Endpoint("publisher", f"/{turtle}/color_sensor", f"{package}/msg/Color"),
-            Endpoint("service", f"/{turtle}/set_pen", f"{package}/srv/SetPen"),
-            *(
-                Endpoint("service", f"/{turtle}/{name}", f"{package}/srv/{kind}")
-                for name, kind in (
-                    ("teleport_absolute", "TeleportAbsolute"),
-                    ("teleport_relative", "TeleportRelative"),
-                )
-            ),
-            Endpoint("action", f"/{turtle}/rotate_absolute", f"{package}/action/RotateAbsolute"),
-        ]
-    return [
-        *found,
-        Endpoint("service", "/clear", "std_srvs/srv/Empty"),
-        Endpoint("service", "/reset", "std_srvs/srv/Empty"),
-        Endpoint("service", "/spawn", f"{package}/srv/Spawn"),
-        Endpoint("service", "/kill", f"{package}/srv/Kill"),
+    found = [
+        each._replace(name=f"/{turtle}{each.name}")
+        for turtle in (FIRST_TURTLE, *others[: _MOST_TURTLES - 1])
+        for each in _OF_A_TURTLE
     ]
+    return [each._replace(type=each.type.format(package)) for each in (*found, *_OF_THE_NODE)]

@@ -34,11 +34,7 @@ Value = TypeVar("Value")
 
 POSE, COLOR, TWIST = "turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"
 STRING, LOG, IMAGE = "std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"
-VECTOR, HEADER, TIME = (
-    "geometry_msgs/msg/Vector3",
-    "std_msgs/msg/Header",
-    "builtin_interfaces/msg/Time",
-)
+VECTOR, HEADER = "geometry_msgs/msg/Vector3", "std_msgs/msg/Header"
 #: Definitions of the types, since there may be no share/ where ROS is not sourced; Jazzy's.
 DEFINITIONS = {
     POSE: "float32 x\nfloat32 y\nfloat32 theta\n"
@@ -220,7 +216,10 @@ def _commands(channel: Channel) -> Iterator[CmdVel]:
 
 def _inputs(channel: Channel) -> Iterator[Event]:
     for data in channel.messages():
-        yield from_json(_object(string_of(data)))
+        words = json.loads(text := string_of(data))
+        if not isinstance(words, dict):
+            raise EventError(f"an event is an object, found {text:.80}")
+        yield from_json(words)
 
 
 def _logs(channel: Channel) -> Iterator[Log]:
@@ -231,13 +230,6 @@ def _logs(channel: Channel) -> Iterator[Log]:
         read.text(), read.text(), read.number("I")
         read.end()
         yield Log(tick, severity, name, text)
-
-
-def _object(text: str) -> dict[str, Any]:
-    words = json.loads(text)
-    if not isinstance(words, dict):
-        raise EventError(f"an event is an object, found {text:.80}")
-    return words
 
 
 def _trajectory(poses: Channel, colors: Channel) -> Trajectory:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from grader.message import Message, msg, msg_many
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
@@ -31,54 +31,42 @@ _INTERVENTIONS: dict[type[Event], Message] = {
 _POSE = f"/{FIRST_TURTLE}/pose"
 
 
-def _draws_with_0(event: SetPen) -> bool:
-    return event.width == 0 and not event.off
-
-
-def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER) -> list[Message]:
-    """Return the remarks, one sentence each.
+def remarks(
+    trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER
+) -> Iterator[Message]:
+    """Yield the remarks, one sentence each.
 
     Args:
         published: the topics that the submission published on.
         interfaces: the package of turtlesim's messages in the run.
     """
-    found: list[Message] = []
     if interfaces == NEWER:
-        found.append(
-            msg(
-                "The node was run with the messages of {newer}: ROS 2 has them from Kilted on, "
-                "in Jazzy they are those of {older}.",
-                newer=NEWER,
-                older=OLDER,
-            )
+        yield msg(
+            "The node was run with the messages of {newer}: ROS 2 has them from Kilted on, "
+            "in Jazzy they are those of {older}.",
+            newer=NEWER,
+            older=OLDER,
         )
     for kind, effect in _INTERVENTIONS.items():
         calls = [event for event in trace.events if isinstance(event, kind)]
         if calls:
-            found.append(
-                msg_many(
-                    "The node called {call} once, first at {first_s:.2f} s: {effect}.",
-                    "The node called {call} {n} times, first at {first_s:.2f} s: {effect}.",
-                    len(calls),
-                    call=kind.op,
-                    first_s=calls[0].tick * TICK_S,
-                    effect=effect,
-                )
+            yield msg_many(
+                "The node called {call} once, first at {first_s:.2f} s: {effect}.",
+                "The node called {call} {n} times, first at {first_s:.2f} s: {effect}.",
+                len(calls),
+                call=kind.op,
+                first_s=calls[0].tick * TICK_S,
+                effect=effect,
             )
-    thin = [event for event in trace.events if isinstance(event, SetPen) and _draws_with_0(event)]
+    thin = [e for e in trace.events if isinstance(e, SetPen) and e.width == 0 and not e.off]
     if thin:
-        found.append(
-            msg(
-                "The pen's width is 0, first at {first_s:.2f} s: that draws like width "
-                "1; what lifts the pen is off = 1.",
-                first_s=thin[0].tick * TICK_S,
-            )
+        yield msg(
+            "The pen's width is 0, first at {first_s:.2f} s: that draws like width "
+            "1; what lifts the pen is off = 1.",
+            first_s=thin[0].tick * TICK_S,
         )
     if _POSE in published:
-        found.append(
-            msg(
-                "The node published on {topic} itself. Judged is where the turtle really was.",
-                topic=_POSE,
-            )
+        yield msg(
+            "The node published on {topic} itself. Judged is where the turtle really was.",
+            topic=_POSE,
         )
-    return found

@@ -16,7 +16,7 @@ from grader.recording.subject import BagMessage, Behaviour, Endpoint, Start, Tra
 from grader.recording.view import Pictures, View
 from grader.scenes.live import LivePage
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
-from grader.scenes.turtlesim import interfaces, remarks, view
+from grader.scenes.turtlesim import interfaces, messages, remarks, view
 from grader.scenes.turtlesim.interfaces import endpoints_of
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace, behaviour
 from grader.translations import tr
@@ -31,8 +31,7 @@ _TURTLE = f"/{FIRST_TURTLE}"
 class Turtlesim(Scene):
     """The scene, whose parts are in the modules of this folder.
 
-    The modules that need ROS or rosbags are imported where they are used: judging a recording needs
-    no ROS, and running a submission no bags.
+    The modules that need ROS are imported where they are used: judging a recording needs none.
     """
 
     name = "turtlesim"
@@ -119,27 +118,19 @@ class Turtlesim(Scene):
 
     def message_definitions(self) -> Mapping[str, str]:
         """Return the definitions of all messages in its bags."""
-        from grader.scenes.turtlesim import messages
-
         return messages.DEFINITIONS
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
         """List the topics of every turtle, even if it published nothing."""
-        from grader.scenes.turtlesim import messages
-
         for turtle in TurtleTrace.of(made).trajectories:
             yield from messages.topics(turtle).items()
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
         """Serialise a trace as messages, by time."""
-        from grader.scenes.turtlesim import messages
-
         return messages.to_messages(TurtleTrace.of(made))
 
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
         """Parse a bag's channels; see `grader.scenes.turtlesim.messages`."""
-        from grader.scenes.turtlesim import messages
-
         return messages.from_channels(channels, duration_ns // TICK_NS)
 
     def scenario(self, made: Trace) -> dict[str, Any]:
@@ -176,7 +167,7 @@ class Turtlesim(Scene):
         """Serve the simulator's page, read-only."""
         from grader.scenes.turtlesim.live import TurtlesimPage
 
-        return TurtlesimPage(port)
+        return TurtlesimPage.serve(port)
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
         """Return the traces of odd nodes."""
@@ -186,7 +177,7 @@ class Turtlesim(Scene):
 
     def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
         """Return remarks on changes of the arena other than by driving, and on the messages."""
-        return remarks.remarks(TurtleTrace.of(made), published, interfaces)
+        return list(remarks.remarks(TurtleTrace.of(made), published, interfaces))
 
 
 _BESIDE = """\

@@ -89,7 +89,9 @@ def asked_for(event: Event) -> Message:
 def _asked_for(event: Event) -> Message:
     match event:
         case SetPen():
-            return msg("the pen off") if event.off else _pen(event)
+            if event.off:
+                return msg("the pen off")
+            return joined([color(event.r, event.g, event.b), f"{event.width} px"], ", ")
         case TeleportAbsolute():
             place, heading = text.place(event.x, event.y), _degrees(event.theta)
             return msg("to {place}, heading {heading}", place=place, heading=heading)
@@ -106,10 +108,6 @@ def _asked_for(event: Event) -> Message:
         case SetParameter():
             return plain_text(f"{_clipped(event.name)} = {_clipped(str(event.value))}")
     return NOTHING
-
-
-def _pen(event: SetPen) -> Message:
-    return joined([color(event.r, event.g, event.b), f"{event.width} px"], ", ")
 
 
 def _degrees(theta: float) -> str:

@@ -76,15 +76,12 @@ def meshes(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     )
     if len(wrong) > 1:
         text = joined([text, msg(" So {count} more.", count=len(wrong) - 1)])
-    return Finding(
-        1 - len(wrong) / len(meshes),
-        text,
-        msg(
-            "The way to a mesh begins with package:// and your package's name, and "
-            "goes on as below its share folder: package://{name}/meshes/FILE.",
-            name=facts.name,
-        ),
+    help = msg(
+        "The way to a mesh begins with package:// and your package's name, and "
+        "goes on as below its share folder: package://{name}/meshes/FILE.",
+        name=facts.name,
     )
+    return Finding(1 - len(wrong) / len(meshes), text, help)
 
 
 def _instead(facts: PackageFacts, mesh: NamedMesh) -> Message:
@@ -123,27 +120,20 @@ def dependencies(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     needed = used(facts) - DESKTOP
     missing = sorted(needed - declared - covered)
     if facts.setup.manifest:
-        return Finding(
-            0,
-            msg(
-                "package.xml cannot be read for dependencies: {why}.",
-                why=facts.setup.manifest,
-            ),
-            msg("Compare it with one that `ros2 pkg create` writes."),
+        rationale = msg(
+            "package.xml cannot be read for dependencies: {why}.", why=facts.setup.manifest
         )
+        return Finding(0, rationale, msg("Compare it with one that `ros2 pkg create` writes."))
     if not missing:
         used_ = ", ".join(sorted(needed)) or msg("nothing but what every desktop installation has")
         return Finding(1, msg("What it uses is declared: {packages}.", packages=used_))
-    return Finding(
-        1 - len(missing) / len(needed),
-        msg(
-            "package.xml does not declare {missing}, which the package uses: "
-            "`rosdep install` does not bring it, and on another machine it is "
-            "missing.",
-            missing=", ".join(missing),
-        ),
-        msg("Add <exec_depend>{package}</exec_depend>.", package=missing[0]),
+    rationale = msg(
+        "package.xml does not declare {missing}, which the package uses: `rosdep install` does not "
+        "bring it, and on another machine it is missing.",
+        missing=", ".join(missing),
     )
+    help = msg("Add <exec_depend>{package}</exec_depend>.", package=missing[0])
+    return Finding(1 - len(missing) / len(needed), rationale, help)
 
 
 def used(facts: PackageFacts) -> set[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import wraps
-from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.exercise.asking import CheckFunction
@@ -171,16 +170,9 @@ def not_followed(facts: PackageFacts) -> Finding | None:
     problem = facts.setup.problem
     if problem is None or problem.kind != "unknown":
         return None
-    return unjudged(
-        msg(
-            "Not judged: {file} could not be followed: {why}.",
-            file=problem.file or "setup.py",
-            why=described(problem),
-        ),
-        msg("Tell whoever runs the course."),
+    why = msg(
+        "Not judged: {file} could not be followed: {why}.",
+        file=problem.file or "setup.py",
+        why=described(problem),
     )
-
-
-def folder_of(path: str) -> str:
-    """The folder of a path, to tell of many files at once."""
-    return str(PurePosixPath(path).parent)
+    return unjudged(why, msg("Tell whoever runs the course."))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from posixpath import dirname
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
@@ -12,7 +13,6 @@ from grader.message import Message, joined, msg
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,
-    folder_of,
     not_followed,
     of_package,
 )
@@ -57,13 +57,11 @@ def installed(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     if found and (not_known := not_followed(facts)):
         return not_known
     if not found:
-        return Finding(
-            1,
-            msg(
-                "{count} files are installed, and all that is asked for is among them.",
-                count=len(facts.setup.installed),
-            ),
+        rationale = msg(
+            "{count} files are installed, and all that is asked for is among them.",
+            count=len(facts.setup.installed),
         )
+        return Finding(1, rationale)
     first = next(iter(found.values()))
     more = len(first) - 1
     texts = [first[0].rationale]
@@ -80,87 +78,69 @@ def stops(facts: PackageFacts) -> PackageFault | None:
         return None if setup.problem.kind == "unknown" else _ended(facts, setup.problem)
     is_cmake = setup.build_type not in ("", "ament_python")
     if is_cmake and setup.told and setup.told != facts.name:
-        return PackageFault(
-            "name",
-            msg(
-                "CMakeLists.txt says project({told}), and package.xml calls the "
-                "package {name}: {build}.",
-                told=shown(setup.told),
-                name=shown(facts.name),
-                build=_BUILD,
-            ),
-            msg("Both have to be the same name, and the folder in share is called so."),
+        rationale = msg(
+            "CMakeLists.txt says project({told}), and package.xml calls the "
+            "package {name}: {build}.",
+            told=shown(setup.told),
+            name=shown(facts.name),
+            build=_BUILD,
         )
+        help = msg("Both have to be the same name, and the folder in share is called so.")
+        return PackageFault("name", rationale, help)
     if setup.absent:
         return _absent(shown(setup.absent[0]), is_cmake)
     if setup.folders:
-        return PackageFault(
-            "folder",
-            msg(
-                "data_files lists {name!r}, which is a folder: {build} (can't copy: "
-                "not a regular file).",
-                name=shown(setup.folders[0]),
-                build=_BUILD,
-            ),
-            msg(
-                "data_files takes files. List those of a folder of their own, with the "
-                "folder that they come into."
-            ),
+        rationale = msg(
+            "data_files lists {name!r}, which is a folder: {build} (can't copy: "
+            "not a regular file).",
+            name=shown(setup.folders[0]),
+            build=_BUILD,
         )
+        help = msg(
+            "data_files takes files. List those of a folder of their own, with the "
+            "folder that they come into."
+        )
+        return PackageFault("folder", rationale, help)
     return None
 
 
 def _ended(facts: PackageFacts, problem: Obstacle) -> PackageFault:
     """Of a set-up that comes to no end, or is not there."""
     if problem.text.key == "there is no {file}":
-        return PackageFault(
-            "set-up",
-            msg("The package cannot be built: {why}.", why=problem.text),
-            msg(
-                "<build_type> in package.xml is {build_type!r}: ament_python wants a "
-                "setup.py, ament_cmake a CMakeLists.txt. Correct the one, or add the "
-                "other.",
-                build_type=shown(facts.setup.build_type) or "ament_python",
-            ),
+        rationale = msg("The package cannot be built: {why}.", why=problem.text)
+        help = msg(
+            "<build_type> in package.xml is {build_type!r}: ament_python wants a setup.py, "
+            "ament_cmake a CMakeLists.txt. Correct the one, or add the other.",
+            build_type=shown(facts.setup.build_type) or "ament_python",
         )
-    return PackageFault(
-        "set-up",
-        msg(
-            "{what_happens}: {build}.",
-            what_happens=how_it_ends("setup.py", problem),
-            build=_BUILD,
-        ),
-        msg("Run `python3 setup.py --name` in the package's folder: it shows the same."),
+        return PackageFault("set-up", rationale, help)
+    rationale = msg(
+        "{what_happens}: {build}.", what_happens=how_it_ends("setup.py", problem), build=_BUILD
     )
+    help = msg("Run `python3 setup.py --name` in the package's folder: it shows the same.")
+    return PackageFault("set-up", rationale, help)
 
 
 def _absent(name: str, is_cmake: bool) -> PackageFault:
     """Of something that is to be installed, and is not there."""
     if is_cmake:
-        return PackageFault(
-            name,
-            msg(
-                "CMakeLists.txt installs {name!r}, and there is no such folder or file: {build}.",
-                name=name,
-                build=_BUILD,
-            ),
-            msg(
-                "Compare the name with what is there; a folder without files is not in what git, "
-                "or a zip, hands on."
-            ),
-        )
-    return PackageFault(
-        name,
-        msg(
-            "setup.py installs {name!r}, and there is no such file: {build}.",
+        rationale = msg(
+            "CMakeLists.txt installs {name!r}, and there is no such folder or file: {build}.",
             name=name,
             build=_BUILD,
-        ),
-        msg(
-            "Compare the name in data_files with the file's, or use glob(), which lists what is "
-            "there."
-        ),
+        )
+        help = msg(
+            "Compare the name with what is there; a folder without files is not in what git, "
+            "or a zip, hands on."
+        )
+        return PackageFault(name, rationale, help)
+    rationale = msg(
+        "setup.py installs {name!r}, and there is no such file: {build}.", name=name, build=_BUILD
     )
+    help = msg(
+        "Compare the name in data_files with the file's, or use glob(), which lists what is there."
+    )
+    return PackageFault(name, rationale, help)
 
 
 def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
@@ -176,7 +156,7 @@ def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
         for mesh in description.meshes:
             if mesh.state == "left":
                 yield PackageFault(
-                    folder_of(mesh.path),
+                    dirname(mesh.path),
                     _left(facts, msg("The description"), shown(mesh.uri), mesh.path),
                     msg(
                         "data_files in setup.py (or install() in CMakeLists.txt) has to list "
@@ -191,16 +171,14 @@ def _is_installed(launch: LaunchFile) -> bool:
 
 def moved(launch: LaunchFile) -> PackageFault:
     """Of a path that is another where the package is installed in another place."""
-    return PackageFault(
-        launch.moved,
-        msg(
-            "{file} asks for {path}, which is there only as long as the package "
-            "lies where it was installed first.",
-            file=launch.file,
-            path=shown(launch.moved),
-        ),
-        msg("Ask for the share folder: get_package_share_directory(), FindPackageShare()."),
+    rationale = msg(
+        "{file} asks for {path}, which is there only as long as the package "
+        "lies where it was installed first.",
+        file=launch.file,
+        path=shown(launch.moved),
     )
+    help = msg("Ask for the share folder: get_package_share_directory(), FindPackageShare().")
+    return PackageFault(launch.moved, rationale, help)
 
 
 def lacking(facts: PackageFacts, lacks: Lacking) -> PackageFault:
@@ -219,52 +197,42 @@ def _by(lacking: Lacking) -> str | Message:
 def _file(facts: PackageFacts, lacking: Lacking) -> PackageFault:
     name, source, by = lacking.name, lacking.source, _by(lacking)
     if source == lacking.by:
-        return PackageFault(
-            "launch",
-            msg(
-                "{source} is not installed: `ros2 launch {name}` does not find it.",
-                source=source,
-                name=facts.name,
-            ),
-            msg(
-                "data_files in setup.py (or install() in CMakeLists.txt) has to list "
-                "the launch files."
-            ),
+        rationale = msg(
+            "{source} is not installed: `ros2 launch {name}` does not find it.",
+            source=source,
+            name=facts.name,
         )
+        help = msg(
+            "data_files in setup.py (or install() in CMakeLists.txt) has to list the launch files."
+        )
+        return PackageFault("launch", rationale, help)
     if not name.startswith(("/", "~")) or name.startswith(_EMPTY):
-        return PackageFault(
-            name,
-            msg(
-                "{by} asks for {path}, a path from the current folder: it is there "
-                "only for who stands in the right one.",
-                by=by,
-                path=shown(name.removeprefix(_EMPTY)),
-            ),
-            msg("Join it to the package's share folder: get_package_share_directory(NAME)."),
+        rationale = msg(
+            "{by} asks for {path}, a path from the current folder: it is there "
+            "only for who stands in the right one.",
+            by=by,
+            path=shown(name.removeprefix(_EMPTY)),
         )
+        help = msg("Join it to the package's share folder: get_package_share_directory(NAME).")
+        return PackageFault(name, rationale, help)
     if name.startswith("~") or not name.startswith(("/prefix/", "/opt/ros/")):
-        return PackageFault(
-            name,
-            msg(
-                "{by} asks for {path}: a path of one machine, which no other has.",
-                by=by,
-                path=shown(name),
-            ),
-            msg(
-                "Ask for the package's share folder: get_package_share_directory(NAME),"
-                " or FindPackageShare(NAME)."
-            ),
+        rationale = msg(
+            "{by} asks for {path}: a path of one machine, which no other has.",
+            by=by,
+            path=shown(name),
         )
+        help = msg(
+            "Ask for the package's share folder: get_package_share_directory(NAME),"
+            " or FindPackageShare(NAME)."
+        )
+        return PackageFault(name, rationale, help)
     path = name.removeprefix("/prefix/")
     if source:
-        return PackageFault(
-            folder_of(source),
-            _left(facts, by, shown(path), source),
-            msg(
-                "Compare the folder in data_files (or install() in CMakeLists.txt) with"
-                " the path that is asked for."
-            ),
+        help = msg(
+            "Compare the folder in data_files (or install() in CMakeLists.txt) with"
+            " the path that is asked for."
         )
+        return PackageFault(dirname(source), _left(facts, by, shown(path), source), help)
     return PackageFault(
         name,
         msg("{by} asks for {path}, and the package has no such file.", by=by, path=shown(path)),
@@ -276,86 +244,73 @@ def _file(facts: PackageFacts, lacking: Lacking) -> PackageFault:
 
 def _package(facts: PackageFacts, lacking: Lacking) -> PackageFault:
     name, by = lacking.name, _by(lacking)
-    return PackageFault(
-        f"package {name}",
-        msg(
-            "{by} asks for the package {name!r}, which is neither yours ({own}) "
-            "nor among your dependencies.",
-            by=by,
-            name=shown(name),
-            own=facts.name,
-        ),
-        msg(
-            "Was the name copied from another package? If it is meant, package.xml has to name it."
-        ),
+    rationale = msg(
+        "{by} asks for the package {name!r}, which is neither yours ({own}) "
+        "nor among your dependencies.",
+        by=by,
+        name=shown(name),
+        own=facts.name,
     )
+    help = msg(
+        "Was the name copied from another package? If it is meant, package.xml has to name it."
+    )
+    return PackageFault(f"package {name}", rationale, help)
 
 
 def _program(facts: PackageFacts, lacking: Lacking) -> PackageFault:
     name, by = lacking.name, _by(lacking)
     package, _, program = name.partition(" ")
     if package != facts.name:
-        return PackageFault(
-            name,
-            msg(
-                "{by} starts {program!r} of the package {package}, which has no such program.",
-                by=by,
-                program=shown(program),
-                package=package,
-            ),
-            msg("Compare the name: `ros2 pkg executables PACKAGE` lists them."),
-        )
-    where = facts.setup.scripts_folder or "bin"
-    if any(each.name == program for each in facts.setup.scripts):
-        return PackageFault(
-            "scripts",
-            msg(
-                "{by} starts {program!r} of {package}, which is installed in {where}; "
-                "expected lib/{package}: `ros2 launch` and `ros2 run` look there.",
-                by=by,
-                program=shown(program),
-                package=package,
-                where=where,
-            ),
-            _scripts_needed(package),
-        )
-    return PackageFault(
-        "scripts",
-        msg(
-            "{by} starts {program!r} of {package}, and the set-up has no such console script.",
+        rationale = msg(
+            "{by} starts {program!r} of the package {package}, which has no such program.",
             by=by,
             program=shown(program),
             package=package,
-        ),
-        msg("Add it to console_scripts in setup.py: 'NAME = PACKAGE.MODULE:main'."),
+        )
+        help = msg("Compare the name: `ros2 pkg executables PACKAGE` lists them.")
+        return PackageFault(name, rationale, help)
+    where = facts.setup.scripts_folder or "bin"
+    if any(each.name == program for each in facts.setup.scripts):
+        rationale = msg(
+            "{by} starts {program!r} of {package}, which is installed in {where}; "
+            "expected lib/{package}: `ros2 launch` and `ros2 run` look there.",
+            by=by,
+            program=shown(program),
+            package=package,
+            where=where,
+        )
+        return PackageFault("scripts", rationale, _scripts_needed(package))
+    rationale = msg(
+        "{by} starts {program!r} of {package}, and the set-up has no such console script.",
+        by=by,
+        program=shown(program),
+        package=package,
     )
+    help = msg("Add it to console_scripts in setup.py: 'NAME = PACKAGE.MODULE:main'.")
+    return PackageFault("scripts", rationale, help)
 
 
 def unstarted(facts: PackageFacts) -> Iterator[PackageFault]:
     """What keeps colcon from finding the package, or `ros2 run` from starting its programs."""
     if facts.setup.manifest:
-        yield PackageFault(
-            "package.xml",
-            msg(
-                "package.xml cannot be used: {why}. colcon takes the folder for no ROS package.",
-                why=facts.setup.manifest.map_texts(shown),
-            ),
-            msg("Compare it with one that `ros2 pkg create` writes."),
+        rationale = msg(
+            "package.xml cannot be used: {why}. colcon takes the folder for no ROS package.",
+            why=facts.setup.manifest.map_texts(shown),
         )
+        help = msg("Compare it with one that `ros2 pkg create` writes.")
+        yield PackageFault("package.xml", rationale, help)
     for each in facts.setup.scripts:
         if each.fault:
-            yield PackageFault(
-                f"script {each.name}",
-                msg(
-                    "The console script {name!r} cannot start: {why}.",
-                    name=shown(each.name),
-                    why=each.fault.map_texts(shown),
-                ),
-                msg(
-                    "It has the form 'NAME = PACKAGE.MODULE:FUNCTION': the file "
-                    "PACKAGE/MODULE.py has to be there, and the function in it."
-                ),
+            rationale = msg(
+                "The console script {name!r} cannot start: {why}.",
+                name=shown(each.name),
+                why=each.fault.map_texts(shown),
             )
+            help = msg(
+                "It has the form 'NAME = PACKAGE.MODULE:FUNCTION': the file "
+                "PACKAGE/MODULE.py has to be there, and the function in it."
+            )
+            yield PackageFault(f"script {each.name}", rationale, help)
     folder, name = facts.setup.scripts_folder, facts.name
     if facts.setup.scripts and folder.rstrip("/") != f"lib/{name}":
         yield PackageFault(
@@ -384,9 +339,7 @@ def _scripts_needed(package: str) -> Message:
 
 def _left(facts: PackageFacts, by: str | Message, wanted: str, source: str) -> Message:
     """Of a file of the package that nothing installs where it is asked for."""
-    pairs: Sequence[tuple[str, str]] = list(
-        zip(facts.setup.installed, facts.setup.sources, strict=True)
-    )
+    pairs = list(zip(facts.setup.installed, facts.setup.sources, strict=True))
     elsewhere = next((path for path, of in pairs if of == source), "")
     values = {"by": by, "wanted": wanted, "source": source, "elsewhere": elsewhere}
     if elsewhere:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
@@ -52,11 +52,7 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     where nothing else passes it.
     """
     if not facts.launches:
-        return Finding(
-            0,
-            msg("The package has no launch file."),
-            installing.WRITE,
-        )
+        return Finding(0, msg("The package has no launch file."), installing.WRITE)
     found = [(each, _judge(facts, each)) for each in facts.for_rviz]
     if not found:
         found = [(facts.launches[0], _gazebo_alone(facts.launches[0]))]
@@ -68,15 +64,13 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     if finding.share < 1 and ended:
         return replace(ended[0], share=finding.share)
     if finding.share <= WORTH["joints"] + WORTH["rviz"] and (include := _not_followed(best)):
-        return unjudged(
-            msg(
-                "Not judged: {best} leaves it to {include}, a file of another package, to show the "
-                "robot, and nobody knows here what that starts.",
-                best=best.file,
-                include=include,
-            ),
-            msg("This is no fault of the package: tell whoever runs the course."),
+        why = msg(
+            "Not judged: {best} leaves it to {include}, a file of another package, to show the "
+            "robot, and nobody knows here what that starts.",
+            best=best.file,
+            include=include,
         )
+        return unjudged(why, msg("This is no fault of the package: tell whoever runs the course."))
     return finding
 
 
@@ -88,26 +82,21 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
         robot = of_text(launch.file, text)
         if not robot.share:
             return robot
-    if faults := lacking(facts, launch):
+    if faults := list(lacking(facts, launch)):
         return without(launch.file, faults, WORTH)
-    return Finding(
-        1,
-        msg(
-            "{best} starts {publisher} with the description, and what belongs to it.",
-            best=launch.file,
-            publisher=PUBLISHER,
-        ),
+    rationale = msg(
+        "{best} starts {publisher} with the description, and what belongs to it.",
+        best=launch.file,
+        publisher=PUBLISHER,
     )
+    return Finding(1, rationale)
 
 
 def _gazebo_alone(launch: LaunchFile) -> Finding:
-    return Finding(
-        0,
-        msg(
-            "No launch file shows the robot in RViz: {file} puts it into Gazebo.", file=launch.file
-        ),
-        installing.WRITE,
+    rationale = msg(
+        "No launch file shows the robot in RViz: {file} puts it into Gazebo.", file=launch.file
     )
+    return Finding(0, rationale, installing.WRITE)
 
 
 def starts_nothing(facts: PackageFacts, launch: LaunchFile) -> Finding | None:
@@ -170,36 +159,25 @@ def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float
     first, *others = (fault.rationale for fault in faults)
     texts = joined([first, *(msg("{fault!u}", fault=each) for each in others)], " ")
     rationale = msg("{file}: {faults}", file=file, faults=texts)
-    return Finding(_share(faults, worth), rationale, faults[0].help)
+    share = max(0.0, 1.0 - sum(worth[fault.what] for fault in faults))
+    return Finding(share, rationale, faults[0].help)
 
 
-def _share(faults: Sequence[PackageFault], worth: Mapping[str, float]) -> float:
-    return max(0.0, 1.0 - sum(worth[fault.what] for fault in faults))
-
-
-def lacking(facts: PackageFacts, launch: LaunchFile) -> list[PackageFault]:
+def lacking(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
     """What of the three parts a launch file does not have."""
-    publishers = [node for node in launch.nodes if is_publisher(node)]
-    texts = handed_on(facts, launch)
-    undescribed = None if refused(facts, launch) else no_description(facts, launch)
-    parts = [undescribed] if undescribed else []
-    is_needed = not publishers or moves(facts, texts)
+    if not refused(facts, launch) and (undescribed := no_description(facts, launch)):
+        yield undescribed
+    is_needed = not any(map(is_publisher, launch.nodes)) or moves(facts, handed_on(facts, launch))
     has_source = any(is_joint_source(facts, node) for node in launch.nodes)
     if is_needed and not has_source and not includes_simulator(launch):
-        parts.append(
-            PackageFault(
-                "joints",
-                msg(
-                    "nothing publishes /joint_states: the moving joints have no transforms,"
-                    " and RViz shows what hangs on them white."
-                ),
-                msg(
-                    "Start joint_state_publisher_gui, or a node of yours that publishes JointState."
-                ),
-            )
+        rationale = msg(
+            "nothing publishes /joint_states: the moving joints have no transforms,"
+            " and RViz shows what hangs on them white."
         )
-    rviz = _rviz(facts, launch)
-    return [*parts, *([rviz] if rviz else [])]
+        help = msg("Start joint_state_publisher_gui, or a node of yours that publishes JointState.")
+        yield PackageFault("joints", rationale, help)
+    if rviz := _rviz(facts, launch):
+        yield rviz
 
 
 def is_publisher(node: LaunchedNode) -> bool:
@@ -266,11 +244,9 @@ def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | No
     """Of a launch file in which no robot_state_publisher gets a text; None where one does."""
     publishers = [node for node in launch.nodes if is_publisher(node)]
     if not publishers:
-        return PackageFault(
-            "description",
-            msg("it starts no robot_state_publisher."),
-            msg("Start it with the parameter robot_description: the text of your URDF."),
-        )
+        rationale = msg("it starts no robot_state_publisher.")
+        help = msg("Start it with the parameter robot_description: the text of your URDF.")
+        return PackageFault("description", rationale, help)
     if any(text.strip() for text in handed_on(facts, launch)):
         return None
     names = [each.name for each in publishers[0].parameters]
@@ -279,14 +255,11 @@ def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | No
         found = msg("it is empty.")
     elif names:
         found = msg("its parameters are {names}.", names=shown(", ".join(names)))
-    return PackageFault(
-        "description",
-        msg("robot_state_publisher has no robot_description: {found}", found=found),
-        msg(
-            "Give it parameters=[{{'robot_description': ...}}] with the text of the"
-            " URDF, not its path."
-        ),
+    rationale = msg("robot_state_publisher has no robot_description: {found}", found=found)
+    help = msg(
+        "Give it parameters=[{{'robot_description': ...}}] with the text of the URDF, not its path."
     )
+    return PackageFault("description", rationale, help)
 
 
 def _rviz(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
@@ -295,14 +268,12 @@ def _rviz(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
     if any(_has_file(node, missing) for node in started):
         return None
     if started:
-        return PackageFault(
-            "rviz",
-            msg("rviz2 starts without a file that is there: it shows an empty grid."),
-            msg(
-                "Save RViz's settings into the package, install the file, and start "
-                "rviz2 with arguments=['-d', FILE]."
-            ),
+        rationale = msg("rviz2 starts without a file that is there: it shows an empty grid.")
+        help = msg(
+            "Save RViz's settings into the package, install the file, and start "
+            "rviz2 with arguments=['-d', FILE]."
         )
+        return PackageFault("rviz", rationale, help)
     files = [path for path in facts.setup.installed if path.endswith(".rviz")]
     by_hand = not any(is_rviz(n) for each in facts.launches for n in each.nodes)
     if files and by_hand:

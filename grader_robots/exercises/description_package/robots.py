@@ -44,14 +44,12 @@ def urdf(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     if not facts.descriptions:
         if facts.not_known is not None:
             return not_judged(facts.not_known, msg("no description was found"))
-        return Finding(
-            0,
-            msg(
-                "There is no robot description: no launch file hands one to "
-                "robot_state_publisher, and no file in the package is a URDF."
-            ),
-            msg("A URDF is a file with <robot name=...>; it belongs into the folder urdf."),
+        rationale = msg(
+            "There is no robot description: no launch file hands one to "
+            "robot_state_publisher, and no file in the package is a URDF."
         )
+        help = msg("A URDF is a file with <robot name=...>; it belongs into the folder urdf.")
+        return Finding(0, rationale, help)
     links = 0
     for description in facts.descriptions:
         finding = of_description(facts, description)
@@ -91,32 +89,25 @@ def best_of(facts: PackageFacts, judge: Callable[[ParsedUrdf, int], Finding]) ->
 def of_text(where: str | Message, text: str) -> Finding:
     """What a text is as a robot's description: no share where robot_state_publisher refuses it."""
     if not text.strip():
-        return Finding(
-            0,
-            msg("{where}: the description is empty.", where=where),
-            msg("Which file does it come from?"),
-        )
+        rationale = msg("{where}: the description is empty.", where=where)
+        help = msg("Which file does it come from?")
+        return Finding(0, rationale, help)
     if "<" not in text:
-        return Finding(
-            0,
-            msg(
-                "{where}: robot_description is {text!r}, which is no URDF.",
-                where=where,
-                text=shown(text),
-            ),
-            msg("Hand on what is in the file, not its path."),
+        rationale = msg(
+            "{where}: robot_description is {text!r}, which is no URDF.",
+            where=where,
+            text=shown(text),
         )
+        return Finding(0, rationale, msg("Hand on what is in the file, not its path."))
     if raw := _XACRO.search(text):
-        return Finding(
-            0,
-            msg(
-                "{where}: xacro has not been run on it: {found!r} is left in what "
-                "robot_state_publisher gets, which understands plain URDF alone.",
-                where=where,
-                found=shown(raw[0]),
-            ),
-            msg("Hand on what xacro makes of the file: Command(['xacro ', path])."),
+        rationale = msg(
+            "{where}: xacro has not been run on it: {found!r} is left in what "
+            "robot_state_publisher gets, which understands plain URDF alone.",
+            where=where,
+            found=shown(raw[0]),
         )
+        help = msg("Hand on what xacro makes of the file: Command(['xacro ', path]).")
+        return Finding(0, rationale, help)
     reading = parse(text)
     model = reading.model
     for consequence, share in ((Consequence.REFUSED, 0.0), (Consequence.DROPPED, FAULTY)):
@@ -132,28 +123,22 @@ def of_text(where: str | Message, text: str) -> Finding:
                 if consequence is Consequence.REFUSED
                 else msg("the rest of that part is dropped, and the robot shows without it")
             )
-            return Finding(
-                share,
-                msg(
-                    "{where}: urdfdom says {text!r}{line}: {consequence}.",
-                    where=where,
-                    text=shown(findings[0].text),
-                    line=line,
-                    consequence=what,
-                ),
-                _help(findings[0].text),
+            rationale = msg(
+                "{where}: urdfdom says {text!r}{line}: {consequence}.",
+                where=where,
+                text=shown(findings[0].text),
+                line=line,
+                consequence=what,
             )
+            return Finding(share, rationale, _help(findings[0].text))
     assert model is not None
     fault = next(faults(model), "")
     if fault:
-        return Finding(
-            FAULTY,
-            msg("{where}: {fault}", where=where, fault=fault),
-            msg(
-                "urdfdom accepts this without a word; what RViz and simulators make of "
-                "it is not what is meant."
-            ),
+        help = msg(
+            "urdfdom accepts this without a word; what RViz and simulators make of "
+            "it is not what is meant."
         )
+        return Finding(FAULTY, msg("{where}: {fault}", where=where, fault=fault), help)
     return Finding(1, NOTHING)
 
 
@@ -318,17 +303,15 @@ _ADVICE: Final = (
     (
         "No such file or directory",
         msg(
-            "A name in <xacro:include filename=...> is looked for beside the file "
-            "that includes it, where it is installed: is it there, and in "
-            "data_files?"
+            "A name in <xacro:include filename=...> is looked for beside the file that includes "
+            "it, where it is installed: is it there, and in data_files?"
         ),
     ),
     (
         "a file of another package",
         msg(
-            "$(find NAME) takes the name of a package: of your own, as package.xml "
-            "has it, for your own files. Another one has to be installed where this"
-            " is graded."
+            "$(find NAME) takes the name of a package: of your own, as package.xml has it, for "
+            "your own files. Another one has to be installed where this is graded."
         ),
     ),
     (

@@ -63,11 +63,9 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
     included = [launch for launch in facts.launches if includes_spawner(launch)]
     if not found and not included:
         if is_asked:
-            return Finding(
-                0,
-                msg("No launch file puts the robot into Gazebo."),
-                msg("Start create of ros_gz_sim with -topic robot_description and -name."),
-            )
+            rationale = msg("No launch file puts the robot into Gazebo.")
+            help = msg("Start create of ros_gz_sim with -topic robot_description and -name.")
+            return Finding(0, rationale, help)
         if stopped := _stopped(facts, [each for each in facts.launches if each.problem]):
             return stopped  # it may be the one that was to
         return Finding(1, msg("No launch file puts the robot into Gazebo, and none need."))
@@ -76,16 +74,11 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
     for launch, node in found:
         fault = next(_faults(facts, launch, node), "")
         if fault:
-            return Finding(
-                0,
-                msg(
-                    "{file}: {program} {fault}",
-                    file=launch.file,
-                    program=node.executable,
-                    fault=fault,
-                ),
-                msg("Compare the arguments with `ros2 run PACKAGE PROGRAM --help`."),
+            rationale = msg(
+                "{file}: {program} {fault}", file=launch.file, program=node.executable, fault=fault
             )
+            help = msg("Compare the arguments with `ros2 run PACKAGE PROGRAM --help`.")
+            return Finding(0, rationale, help)
     launches = [launch for launch, _ in found] or included
     return Finding(1, msg("{file} puts the robot into Gazebo.", file=launches[0].file))
 

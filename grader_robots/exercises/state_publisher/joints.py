@@ -52,39 +52,30 @@ def joint_names(seen: RobotRun, tolerances: Tolerances) -> Finding:
     taken = [state for state in states if state.is_taken]
     if len(taken) < len(states):
         bad = next(state for state in states if not state.is_taken)
-        return Finding(
-            0.5 * len(taken) / len(states),
-            msg(
-                "A JointState has {names} names and {positions} positions: "
-                "robot_state_publisher ignores it as invalid.",
-                names=len(bad.names),
-                positions=len(bad.positions),
-            ),
-            msg(
-                "`name` and `position` belong together, one number for each name, in "
-                "the same order."
-            ),
-            (seen.moment(bad.tick, msg("names and positions are not as many")),),
+        rationale = msg(
+            "A JointState has {names} names and {positions} positions: "
+            "robot_state_publisher ignores it as invalid.",
+            names=len(bad.names),
+            positions=len(bad.positions),
         )
+        help = msg(
+            "`name` and `position` belong together, one number for each name, in the same order."
+        )
+        where = (seen.moment(bad.tick, msg("names and positions are not as many")),)
+        return Finding(0.5 * len(taken) / len(states), rationale, help, where)
     wanted, found = set(seen.moving), set(seen.joints)
     if wanted == found:
         return Finding(1, msg("The joint states name {joints}.", joints=listed(sorted(wanted))))
     missing, foreign = sorted(wanted - found), sorted(found - wanted)
-    return Finding(
-        len(wanted & found) / len(wanted | found),
-        _mixed_up(missing, foreign),
-        msg(
-            "Compare your names letter by letter with the <joint name=...> of the "
-            "URDF: those of joints, not of links, and none of a fixed joint. "
-            "robot_state_publisher skips what it does not know without a word, and "
-            "the links behind it have no place."
-        ),
-        (
-            seen.moment(
-                states[0].tick, msg("names {joints}", joints=listed(sorted(set(states[0].names))))
-            ),
-        ),
+    help = msg(
+        "Compare your names letter by letter with the <joint name=...> of the URDF: those of "
+        "joints, not of links, and none of a fixed joint. robot_state_publisher skips what it "
+        "does not know without a word, and the links behind it have no place."
     )
+    note = msg("names {joints}", joints=listed(sorted(set(states[0].names))))
+    where = (seen.moment(states[0].tick, note),)
+    share = len(wanted & found) / len(wanted | found)
+    return Finding(share, _mixed_up(missing, foreign), help, where)
 
 
 def _mixed_up(missing: list[str], foreign: list[str]) -> Message:
@@ -137,11 +128,8 @@ def joints_move(seen: RobotRun, tolerances: Tolerances) -> Finding:
         fault, seen_of_it = _judge(motion, joint.type, tolerances)
         if fault:
             wrong.append(msg("{joint!r} {movement}", joint=name, movement=fault))
-            where.append(
-                seen.moment(
-                    int(motion.ticks[-1]), msg("{joint}: {movement}", joint=name, movement=fault)
-                )
-            )
+            note = msg("{joint}: {movement}", joint=name, movement=fault)
+            where.append(seen.moment(int(motion.ticks[-1]), note))
         else:
             good.append(msg("{joint!r} {movement}", joint=name, movement=seen_of_it))
     share = len(good) / max(len(seen.moving), 1)

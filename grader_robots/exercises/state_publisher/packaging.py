@@ -44,11 +44,9 @@ def package(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """
     trace = recordings.nominal.package
     if trace is None:
-        return Finding(
-            0,
-            msg("It is no package: there is no setup.py around the node."),
-            msg("`ros2 pkg create --build-type ament_python NAME` makes one."),
-        )
+        rationale = msg("It is no package: there is no setup.py around the node.")
+        help = msg("`ros2 pkg create --build-type ament_python NAME` makes one.")
+        return Finding(0, rationale, help)
     facts = PackageFacts.of(trace)
     if facts is None:
         return nothing()
@@ -58,20 +56,16 @@ def package(recordings: Recordings, tolerances: Tolerances) -> Finding:
     runs = [*(each.name for each in scripts if not each.fault), *facts.plain_programs]
     wrong = list(_wrong(facts))
     if runs and not wrong:
-        return Finding(
-            1,
-            msg(
-                "`ros2 run {package} {program}` can start it.", package=facts.name, program=runs[0]
-            ),
+        rationale = msg(
+            "`ros2 run {package} {program}` can start it.", package=facts.name, program=runs[0]
         )
-    return Finding(
-        0.5 if runs or scripts else 0,
-        joined(wrong, " ") if wrong else msg("setup.py names no console script."),
-        msg(
-            "What `ros2 run` starts is a console script in the entry_points of "
-            "setup.py; `colcon build` in a workspace says what else is wrong."
-        ),
+        return Finding(1, rationale)
+    rationale = joined(wrong, " ") if wrong else msg("setup.py names no console script.")
+    help = msg(
+        "What `ros2 run` starts is a console script in the entry_points of "
+        "setup.py; `colcon build` in a workspace says what else is wrong."
     )
+    return Finding(0.5 if runs or scripts else 0, rationale, help)
 
 
 def _wrong(facts: PackageFacts) -> Iterator[Message]:
@@ -105,15 +99,12 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if trace is not None and facts is None:
         return nothing()
     if facts is None or not facts.launches:
-        return Finding(
-            0,
-            msg("There is no launch file in a package."),
-            msg(
-                "A launch file starts {program} with the robot's description and your node, so "
-                "that nobody has to type both.",
-                program=PUBLISHER,
-            ),
+        help = msg(
+            "A launch file starts {program} with the robot's description and your node, so "
+            "that nobody has to type both.",
+            program=PUBLISHER,
         )
+        return Finding(0, msg("There is no launch file in a package."), help)
     best = max((_judge(facts, each) for each in facts.launches), key=lambda found: found.share)
     for each in facts.launches:
         if best.share < 1 and each.problem is not None and each.problem.kind == "unknown":
@@ -131,11 +122,6 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
     return stopped or Finding(
         1, msg("{file} starts {program} and your node.", file=launch.file, program=PUBLISHER)
     )
-
-
-def _programs(facts: PackageFacts) -> set[str]:
-    """The programs of the package that `ros2 run` finds."""
-    return {*(script.name for script in facts.setup.scripts), *facts.plain_programs}
 
 
 def _faults(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
@@ -187,7 +173,8 @@ def _without_node(facts: PackageFacts, launch: LaunchFile) -> Message:
             "it starts {program} as well, which sends other joint states beside your node's.",
             program=others[0],
         )
-    programs = _programs(facts)
+    # what `ros2 run` finds
+    programs = {*(script.name for script in facts.setup.scripts), *facts.plain_programs}
     if any(n.package == facts.name and n.executable in programs for n in launch.nodes):
         return NOTHING
     meant = filter(None, (_meant(node, facts.name, programs) for node in launch.nodes))

@@ -50,20 +50,14 @@ class RobotRun:
 
     def no_joint_states(self) -> Finding:
         """For a run in which none came."""
-        return Finding(
-            0,
-            joined(
-                [
-                    msg("No joint state came on /joint_states."),
-                    how_it_ended(self.recordings.nominal),
-                ]
-            ),
-            msg(
-                "Does your node publish sensor_msgs/msg/JointState there, and does its "
-                "loop or its timer get its turn? Who calls rclpy.spin() in a loop never"
-                " comes back to it."
-            ),
+        rationale = joined(
+            [msg("No joint state came on /joint_states."), how_it_ended(self.recordings.nominal)]
         )
+        help = msg(
+            "Does your node publish sensor_msgs/msg/JointState there, and does its loop or its "
+            "timer get its turn? Who calls rclpy.spin() in a loop never comes back to it."
+        )
+        return Finding(0, rationale, help)
 
     def moment(self, tick: int, note: Message) -> Evidence:
         """A tick as evidence, in the place where the robot was then."""

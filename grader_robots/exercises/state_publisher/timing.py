@@ -84,13 +84,12 @@ def publishes(seen: RobotRun, tolerances: Tolerances) -> Finding:
         if not 0.95 * low <= found.hertz <= 1.05 * high:
             wrong.append(_NOT_AS_OFTEN.given(low=low, high=high, **values))
         elif found.steady < tolerances["rate_share"]:
-            wrong.append(
-                msg(
-                    "{what} came {hertz:.0f} times a second, but only {steady:.0f}% of the time",
-                    steady=100 * found.steady,
-                    **values,
-                )
+            unsteady = msg(
+                "{what} came {hertz:.0f} times a second, but only {steady:.0f}% of the time",
+                steady=100 * found.steady,
+                **values,
             )
+            wrong.append(unsteady)
         else:
             good.append(msg("{what} came {hertz:.0f} times a second, steadily", **values))
             continue
@@ -102,12 +101,10 @@ def publishes(seen: RobotRun, tolerances: Tolerances) -> Finding:
         share = min(share, 0.5)
     if not wrong:
         return Finding(1, sentence(good))
-    return Finding(
-        share,
-        sentence(wrong),
-        msg("One message of each kind, from one timer at a fixed rate, is what others can follow."),
-        tuple(where),
+    help = msg(
+        "One message of each kind, from one timer at a fixed rate, is what others can follow."
     )
+    return Finding(share, sentence(wrong), help, tuple(where))
 
 
 def too_seldom(seen: RobotRun, tolerances: Tolerances) -> Message:
@@ -170,17 +167,14 @@ def stamps(seen: RobotRun, tolerances: Tolerances) -> Finding:
     ]
     if unset:
         tick, what = unset[0]
-        return Finding(
-            0,
-            msg(
-                "The stamp of {what} is not set: its time is 0. robot_state_publisher "
-                "then sends nothing for a joint state, and tf2 finds a transform in no "
-                "time.",
-                what=what,
-            ),
-            msg("Each message has a header, and that a stamp: the node's clock tells the time."),
-            (seen.moment(tick, msg("{what} without a time", what=what)),),
+        rationale = msg(
+            "The stamp of {what} is not set: its time is 0. robot_state_publisher then sends "
+            "nothing for a joint state, and tf2 finds a transform in no time.",
+            what=what,
         )
+        help = msg("Each message has a header, and that a stamp: the node's clock tells the time.")
+        timeless = (seen.moment(tick, msg("{what} without a time", what=what)),)
+        return Finding(0, rationale, help, timeless)
     share = 1.0
     wrong: list[Message] = []
     where: list[Evidence] = []
@@ -193,26 +187,20 @@ def stamps(seen: RobotRun, tolerances: Tolerances) -> Finding:
     alone = [t for t in seen.sent if t.child.lstrip("/") == seen.root and t.stamp_ns not in stamps]
     if len(way) and len(alone) > (1 - tolerances["same_share"]) * len(way):
         share -= SAME
-        wrong.append(
-            msg(
-                "{count} of {total} transforms on /tf have a stamp that no joint state "
-                "has: what belongs to one moment should say so",
-                count=len(alone),
-                total=len(way),
-            )
+        apart = msg(
+            "{count} of {total} transforms on /tf have a stamp that no joint state "
+            "has: what belongs to one moment should say so",
+            count=len(alone),
+            total=len(way),
         )
+        wrong.append(apart)
         where.append(seen.moment(alone[0].tick, msg("a stamp of its own")))
     if not wrong:
         return Finding(1, msg("All stamps are set, increase, and are the same in both messages."))
-    return Finding(
-        share,
-        sentence(wrong),
-        msg(
-            "Ask the clock once for each step, and use that time in the joint state"
-            " and the transform."
-        ),
-        tuple(where),
+    help = msg(
+        "Ask the clock once for each step, and use that time in the joint state and the transform."
     )
+    return Finding(share, sentence(wrong), help, tuple(where))
 
 
 def _not_later(seen: RobotRun) -> int | None:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Evidence, Expected, Finding
+from grader.exercise.verdict import Expected, Finding
 from grader.message import Message, msg, msg_many
 from grader.recording.view import Floats
 from grader_robots.exercises.state_publisher.seen import RobotRun, listed, of_run, sentence
@@ -27,9 +27,8 @@ CIRCLE, HEIGHT, HEADING, QUATERNION = 0.35, 0.15, 0.3, 0.2
 #: The square of a quaternion's length may be off 1 by this.
 DENORMALIZED = 0.01
 _ONE_TRANSFORM = msg(
-    "robot_state_publisher sends what lies inside of the robot, from your "
-    "joint states; your node sends one transform, from {odom!r} to the root"
-    " link, and no other.",
+    "robot_state_publisher sends what lies inside of the robot, from your joint states; your node "
+    "sends one transform, from {odom!r} to the root link, and no other.",
     odom=ODOM,
 )
 
@@ -57,60 +56,46 @@ def odometry(seen: RobotRun, tolerances: Tolerances) -> Finding:
     if len(way) < tolerances["least_messages"]:
         return _absent(seen)
     if not (np.abs(way.places) < 1e6).all() or not np.isfinite(way.quaternions).all():
-        return Finding(
-            0,
-            msg(
-                "A transform from {parent} to {child} holds what is no number.",
-                parent=ODOM,
-                child=seen.root,
-            ),
-            msg("Which of your terms can become nan or inf?"),
-            (seen.moment(int(way.ticks[0]), msg("no number")),),
+        rationale = msg(
+            "A transform from {parent} to {child} holds what is no number.",
+            parent=ODOM,
+            child=seen.root,
         )
+        help = msg("Which of your terms can become nan or inf?")
+        return Finding(0, rationale, help, (seen.moment(int(way.ticks[0]), msg("no number")),))
     faults = [*_circle(way, tolerances), *_height(way, tolerances), *_turned(way, tolerances)]
     wanted = _wanted(tolerances)
     if faults:
-        where: tuple[Evidence, ...] = (seen.moment(int(way.ticks[-1]), faults[0].text),)
         share = 1 - sum(fault.costs for fault in faults)
         return Finding(
             max(share, 0.0),
             sentence([fault.text for fault in faults]),
             msg("{help} Look at the transform that you send on /tf.", help=faults[0].help),
-            where,
+            (seen.moment(int(way.ticks[-1]), faults[0].text),),
             expected=wanted,
         )
     _, _, radius, _ = fitted(way.places[:, :2])
     height = float(np.median(way.places[:, 2]))
-    return Finding(
-        1,
-        msg(
-            "{root} goes in a circle of {radius:.2f} m at a height of {height:.2f} "
-            "m, upright and looking where it goes.",
-            root=seen.root,
-            radius=radius,
-            height=height,
-        ),
-        expected=wanted,
+    rationale = msg(
+        "{root} goes in a circle of {radius:.2f} m at a height of {height:.2f} "
+        "m, upright and looking where it goes.",
+        root=seen.root,
+        radius=radius,
+        height=height,
     )
+    return Finding(1, rationale, expected=wanted)
 
 
 def _wanted(tolerances: Tolerances) -> tuple[Expected, ...]:
     """For the plots of the robot as a whole."""
     radius = tolerances["radius_least_m"], tolerances["radius_most_m"]
     height = tolerances["height_least_m"], tolerances["height_most_m"]
-    return (
-        Expected(
-            FROM_CENTRE,
-            msg("constant, {least:g} to {most:g} m", least=radius[0], most=radius[1]),
-            radius,
-        ),
-        Expected(
-            HEIGHT_CURVE,
-            msg("constant, {least:g} to {most:g} m", least=height[0], most=height[1]),
-            height,
-        ),
-        Expected(HEADING_CURVE, msg("where it goes: it turns on as the robot goes round")),
+    constant = (
+        Expected(curve, msg("constant, {least:g} to {most:g} m", least=span[0], most=span[1]), span)
+        for curve, span in ((FROM_CENTRE, radius), (HEIGHT_CURVE, height))
     )
+    heading = msg("where it goes: it turns on as the robot goes round")
+    return (*constant, Expected(HEADING_CURVE, heading))
 
 
 def _absent(seen: RobotRun) -> Finding:
@@ -202,18 +187,14 @@ def _height(way: Odometry, tolerances: Tolerances) -> list[WayFault]:
         )
         return [WayFault(text, HEIGHT, msg("A robot that walks on level ground keeps its height."))]
     if not low <= height <= high:
-        return [
-            WayFault(
-                msg(
-                    "its height is {height:.3g} m; expected {low} to {high} m",
-                    height=height,
-                    low=low,
-                    high=high,
-                ),
-                HEIGHT,
-                msg("The legs reach below the root link: how high must that be for them to stand?"),
-            )
-        ]
+        text = msg(
+            "its height is {height:.3g} m; expected {low} to {high} m",
+            height=height,
+            low=low,
+            high=high,
+        )
+        help = msg("The legs reach below the root link: how high must that be for them to stand?")
+        return [WayFault(text, HEIGHT, help)]
     return []
 
 
@@ -229,19 +210,14 @@ def _turned(way: Odometry, tolerances: Tolerances) -> list[WayFault]:
         return [WayFault(text, QUATERNION + HEADING, help)]
     if float(np.abs(squares - 1).max()) >= DENORMALIZED:
         worst = float(np.sqrt(squares[int(np.argmax(np.abs(squares - 1)))]))
-        faults.append(
-            WayFault(
-                msg("its quaternion has the length {length:.3g} instead of 1", length=worst),
-                QUATERNION,
-                msg("A turn by an angle about z is z = sin(angle / 2), w = cos(angle / 2)."),
-            )
-        )
+        text = msg("its quaternion has the length {length:.3g} instead of 1", length=worst)
+        help = msg("A turn by an angle about z is z = sin(angle / 2), w = cos(angle / 2).")
+        faults.append(WayFault(text, QUATERNION, help))
     with np.errstate(all="ignore"):
         upright = np.degrees(np.arccos(np.clip((w * w - x * x - y * y + z * z) / squares, -1, 1)))
     if not float(np.quantile(upright, 0.95)) <= tolerances["upright_deg"]:
         text = msg(
-            "it does not stand upright, but leans by {angle:.0f} degrees",
-            angle=np.median(upright),
+            "it does not stand upright, but leans by {angle:.0f} degrees", angle=np.median(upright)
         )
         order = msg(
             "A Quaternion has the order x, y, z, w: is yours w first, or turned about x or y?"
@@ -251,16 +227,11 @@ def _turned(way: Odometry, tolerances: Tolerances) -> list[WayFault]:
     errors = heading_errors(way)
     off = _usual_deg(errors)
     if abs(off) > tolerances["heading_deg"]:
-        faults.append(
-            WayFault(
-                msg(
-                    "it looks {angle:.0f} degrees beside the direction in which it goes",
-                    angle=abs(off),
-                ),
-                HEADING,
-                _why_beside(off, is_steady=bool(abs(np.exp(1j * errors).mean()) > 0.9)),
-            )
+        text = msg(
+            "it looks {angle:.0f} degrees beside the direction in which it goes", angle=abs(off)
         )
+        is_steady = bool(abs(np.exp(1j * errors).mean()) > 0.9)
+        faults.append(WayFault(text, HEADING, _why_beside(off, is_steady=is_steady)))
     return faults
 
 
@@ -270,14 +241,12 @@ def _why_beside(off: float, *, is_steady: bool) -> Message:
         return msg("It goes backwards: turn its heading by pi, or go round the other way.")
     if is_steady and abs(abs(off) - 90) < 20:
         return msg(
-            "It looks along the radius, and on a circle one goes at a right angle "
-            "to that: the heading is the angle on the circle plus pi / 2, or minus "
-            "where one goes clockwise."
+            "It looks along the radius, and on a circle one goes at a right angle to that: the "
+            "heading is the angle on the circle plus pi / 2, or minus where one goes clockwise."
         )
     return msg(
-        "Its heading has to grow as the angle on the circle does, in radians, a"
-        " quarter turn ahead of that; half of it stands in a quaternion: z = "
-        "sin(heading / 2), w = cos(heading / 2)."
+        "Its heading has to grow as the angle on the circle does, in radians, a quarter turn ahead "
+        "of that; half of it stands in a quaternion: z = sin(heading / 2), w = cos(heading / 2)."
     )
 
 
@@ -348,18 +317,14 @@ def reachable(seen: RobotRun, tolerances: Tolerances) -> Finding:
                 why=why_refused(refused),
             )
             return Finding(0, sentence([rationale]), _ONE_TRANSFORM, where)
-        return Finding(
-            0,
-            msg(
-                "{count} of {total} links have no place in {odom!r}: {links}.",
-                count=len(lost),
-                total=len(seen.links),
-                odom=ODOM,
-                links=listed(lost),
-            ),
-            _ONE_TRANSFORM,
-            where,
+        rationale = msg(
+            "{count} of {total} links have no place in {odom!r}: {links}.",
+            count=len(lost),
+            total=len(seen.links),
+            odom=ODOM,
+            links=listed(lost),
         )
+        return Finding(0, rationale, _ONE_TRANSFORM, where)
     return Finding(
         1, msg("All {total} links have a place in {odom!r}.", total=len(seen.links), odom=ODOM)
     )

@@ -85,10 +85,7 @@ def _moved(parsed: ParsedUrdf, names: list[str], texts: dict[str, str]) -> Findi
         return no_robot(msg("Not judged: there is no robot to vary."))
     good, first_fault, help_ = 0, NOTHING, NOTHING
     for name in names:
-        if name not in texts:
-            fault, advice = _unnamed(name)
-        else:
-            fault, advice = _fault(name, model, texts[name])
+        fault, advice = _fault(name, model, texts)
         good += not fault
         first_fault, help_ = first_fault or fault, help_ or advice
     is_incomplete = any(each.consequence is Consequence.DROPPED for each in parsed.findings)
@@ -101,47 +98,40 @@ def _moved(parsed: ParsedUrdf, names: list[str], texts: dict[str, str]) -> Findi
     return Finding(good / max(len(names), 1), msg("In the xacro, {told}.", told=first_fault), help_)
 
 
-def _unnamed(name: str) -> tuple[Message, Message]:
-    return (
-        msg("there is no property {name} with a number as its value", name=name),
-        msg('Name it: <xacro:property name="{name}" value="..."/>.', name=name),
-    )
-
-
-def _fault(name: str, model: Model, text: str) -> tuple[Message, Message]:
-    other = parse(text).model if text else None
+def _fault(name: str, model: Model, texts: dict[str, str]) -> tuple[Message, Message]:
+    if name not in texts:
+        return (
+            msg("there is no property {name} with a number as its value", name=name),
+            msg('Name it: <xacro:property name="{name}" value="..."/>.', name=name),
+        )
+    other = parse(texts[name]).model if texts[name] else None
     if other is None:
         return (
             msg("doubling {name} leaves no robot that urdfdom takes", name=name),
             msg("Run xacro with the number doubled, and check_urdf on what comes out."),
         )
     if _sizes(model) == _sizes(other):
-        return (
-            msg("doubling {name} changes the size of nothing", name=name),
-            msg(
-                "Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
-                name=name,
-            ),
+        advice = msg(
+            "Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
+            name=name,
         )
+        return msg("doubling {name} changes the size of nothing", name=name), advice
     stays = next(_staying(model, other), "")
-    if stays:
-        return (
-            msg(
-                "doubling {name} changes the size of a part, and nothing does not move along",
-                name=name,
-            )
-            if stays == _NOTHING
-            else msg(
-                "doubling {name} changes the size of a part, and {link} does not move along",
-                name=name,
-                link=shown(stays),
-            ),
-            msg(
-                "Write the origins of wheels and caster with ${{{name}}}, not as numbers.",
-                name=name,
-            ),
+    if not stays:
+        return NOTHING, NOTHING
+    fault = msg(
+        "doubling {name} changes the size of a part, and {link} does not move along",
+        name=name,
+        link=shown(stays),
+    )
+    if stays == _NOTHING:
+        fault = msg(
+            "doubling {name} changes the size of a part, and nothing does not move along", name=name
         )
-    return NOTHING, NOTHING
+    advice = msg(
+        "Write the origins of wheels and caster with ${{{name}}}, not as numbers.", name=name
+    )
+    return fault, advice
 
 
 def _varied(facts: PackageFacts, number: int) -> dict[str, str]:
@@ -222,30 +212,24 @@ def _weighed(model: Model | None, mass_kg: float, error: float) -> Finding:
         return no_robot(msg("Not judged: there is no robot to weigh."))
     bare = [each.name for each in model.links.values() if each.collisions and not each.inertial]
     if bare:
-        return Finding(
-            0.5,
-            msg(
-                "The link {link!r} has a collision and no inertial: Gazebo leaves it out.",
-                link=bare[0],
-            ),
-            msg("Give every link that can be bumped into a mass and moments of inertia."),
+        rationale = msg(
+            "The link {link!r} has a collision and no inertial: Gazebo leaves it out.", link=bare[0]
         )
+        help = msg("Give every link that can be bumped into a mass and moments of inertia.")
+        return Finding(0.5, rationale, help)
     mass = sum(each.inertial.mass for each in model.links.values() if each.inertial)
     if abs(mass - mass_kg) > error * mass_kg:
-        return Finding(
-            0.5 if mass else 0,
-            msg(
-                "The robot weighs {weight} in all{links}; expected {wanted}, give or take "
-                "{error:g} %.",
-                weight=_grams(mass),
-                links=_each(model),
-                wanted=_grams(mass_kg),
-                error=100 * error,
-            ),
-            msg("<mass value=...> is in kilograms: 1 g is 0.001.")
-            if mass > 100 * mass_kg
-            else msg("Add up the masses of all links. Is each link there, and has it its mass?"),
+        rationale = msg(
+            "The robot weighs {weight} in all{links}; expected {wanted}, give or take {error:g} %.",
+            weight=_grams(mass),
+            links=_each(model),
+            wanted=_grams(mass_kg),
+            error=100 * error,
         )
+        help = msg("Add up the masses of all links. Is each link there, and has it its mass?")
+        if mass > 100 * mass_kg:
+            help = msg("<mass value=...> is in kilograms: 1 g is 0.001.")
+        return Finding(0.5 if mass else 0, rationale, help)
     return Finding(1, msg("The robot weighs {weight} in all.", weight=_grams(mass)))
 
 
@@ -283,19 +267,17 @@ def one_source(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     for launch in into:
         second = [node for node in launch.nodes if node.package in JOINT_SOURCES]
         if second:
-            return Finding(
-                0,
-                msg(
-                    "{file} starts {executable} beside Gazebo, which publishes the joints "
-                    "as well: the wheels jump between what turns and what the sliders say.",
-                    file=launch.file,
-                    executable=second[0].executable,
-                ),
-                msg(
-                    "Beside a simulator no joint_state_publisher may run; it belongs into "
-                    "the launch file for RViz alone."
-                ),
+            rationale = msg(
+                "{file} starts {executable} beside Gazebo, which publishes the joints "
+                "as well: the wheels jump between what turns and what the sliders say.",
+                file=launch.file,
+                executable=second[0].executable,
             )
+            help = msg(
+                "Beside a simulator no joint_state_publisher may run; it belongs into "
+                "the launch file for RViz alone."
+            )
+            return Finding(0, rationale, help)
     return Finding(1, msg("Beside Gazebo nothing else publishes joint states."))
 
 

@@ -62,17 +62,15 @@ def _driven(model: Model | None) -> Finding:
     found = list(_turning(model, frames))
     pairs = [each for each in combinations(found, 2) if _is_pair(*each)]
     if not pairs:
-        return Finding(
-            0,
-            msg(
-                "No two wheels drive the robot: continuous joints turn {links}.",
-                links=", ".join(shown(each.link.name) for each in found) or msg("nothing"),
-            ),
-            msg(
-                "It takes a wheel on each side, on a joint of the type continuous whose <axis> "
-                "points from one wheel to the other."
-            ),
+        rationale = msg(
+            "No two wheels drive the robot: continuous joints turn {links}.",
+            links=", ".join(shown(each.link.name) for each in found) or msg("nothing"),
         )
+        help = msg(
+            "It takes a wheel on each side, on a joint of the type continuous whose <axis> "
+            "points from one wheel to the other."
+        )
+        return Finding(0, rationale, help)
     faults = min((list(_faults(model, frames, *each)) for each in pairs), key=len)
     if not faults:
         left, right = (shown(each.link.name) for each in pairs[0])

@@ -100,7 +100,7 @@ def test_what_a_program_says_stays_text(browser, tmp_path):
 def test_a_live_page_grows(recorded, browser):
     made = recorded["talker"].nominal.trace
     every = timeline.items(made)
-    served = TimelinePage(0)
+    served = TimelinePage.serve(0)
     try:
         page = browser.new_page()
         page.goto(served.address)

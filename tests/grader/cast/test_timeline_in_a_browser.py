@@ -238,7 +238,7 @@ def test_nobody_is_kept_from_reading_it_in_the_report(
 
 @pytest.fixture
 def live() -> Iterator[TimelinePage]:
-    served = TimelinePage(0)
+    served = TimelinePage.serve(0)
     yield served
     served.close()
 

@@ -10,7 +10,7 @@ from grader.run import real_time, simulator_process, virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
-from grader.scenes.turtlesim.live import Mirror
+from grader.scenes.turtlesim.live import TurtlesimPage
 from tests.grader.run.conftest import LIMITS
 from tests.runs import SUBMISSIONS
 from turtlesim_py.live.feed import News
@@ -25,7 +25,7 @@ class Onlooker:
         self.told: list[object] = []
         self.ticks: list[int] = []
         self.wholes: list[News] = []
-        self.mirror = Mirror(lambda news: news.canvas and self.wholes.append(news))
+        self.mirror = TurtlesimPage(lambda news: news.canvas and self.wholes.append(news))
 
     def begins(self, plan, time):
         self.told.append((plan.start, time))

@@ -57,20 +57,15 @@ class Animation:
                 pixels[:] = number + 1
                 self._runs += (row, first, last)
                 changed += 1
-        if changed:
-            self._op(frame, number, changed)
+        if self._ops and self._ops[-1][:2] == [frame, number]:
+            self._ops[-1][2] += changed
+        elif changed:
+            self._ops.append([frame, number, changed])
 
     def wipe(self, frame: int) -> None:
         """Remove all paint."""
         self._paint[:] = 0
         self._ops.append([frame, WIPED, 0])
-
-    def _op(self, frame: int, color: int, runs: int) -> None:
-        last = self._ops[-1] if self._ops else None
-        if last is not None and last[:2] == [frame, color]:
-            last[2] += runs
-        else:
-            self._ops.append([frame, color, runs])
 
     def background(self, frame: int, color: Sequence[int]) -> None:
         """Set the colour that shows where there is no paint."""

@@ -1,19 +1,27 @@
-"""The page that plays runs: one file, without network, and with one script."""
+"""The page that plays runs: one file, without network, and with one script.
+
+It has the line of code behind each call, and the first difference of two runs. The submission's
+process counts the messages that it sends by a name, the simulator those that arrive. Where the
+counts agree, each belongs to its line; else only the line of the first is known.
+"""
 
 from __future__ import annotations
 
 import base64
-from string import Template
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from grader.recording.playback import Playback, PlayedRun
+from grader.recording.playback import Line, Playback, PlayedRun, Sent
 from grader.scenes import joined
-from grader.scenes.turtlesim.player import runs
 from grader.scenes.turtlesim.player.replay import animate
 from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
-from grader.translations import current, tr
 from turtlesim_py.world import picture
+from turtlesim_py.world.events import to_json
 from turtlesim_py.world.turtle import TICK_S
+
+#: Services of the node, not of a turtle.
+_OF_THE_NODE = frozenset(("clear", "reset", "spawn", "kill"))
 
 
 def render(playback: Playback) -> str:
@@ -23,25 +31,12 @@ def render(playback: Playback) -> str:
         RecordingError: a run cannot be played.
     """
     data = {
-        "language": current(),
-        "tick_s": TICK_S,
         "sprites": {SPRITE: base64.b64encode(picture.sprite(SPRITE).tobytes()).decode()},
         "sprite": SPRITE,
-        "title": playback.title,
         "runs": [_run(run) for run in playback.runs],
-        "judged": [joined.judged(item, TICK_S) for item in playback.judged],
         "other": None if playback.other is None else _other(playback, playback.other),
     }
-    return joined.fill(
-        Template((joined.PLAYER / "player.html").read_text(encoding="utf-8")),
-        "player",
-        [joined.PLAYER, joined.LIVE_PAGE],
-        data,
-        style=(joined.PLAYER / "player.css").read_text(encoding="utf-8"),
-        title=playback.title,
-        summary=playback.summary,
-        noscript=tr("This page needs JavaScript. report.html, beside it, does not."),
-    )
+    return joined.render(playback, joined.PLAYER / "player.html", data, TICK_S)
 
 
 def _run(run: PlayedRun) -> dict[str, Any]:
@@ -50,7 +45,7 @@ def _run(run: PlayedRun) -> dict[str, Any]:
         "title": run.title,
         "outcome": run.outcome,
         **animation,
-        **runs.with_lines(animation["calls"], run.sent),
+        **with_lines(animation["calls"], run.sent),
     }
 
 
@@ -61,7 +56,58 @@ def _other(playback: Playback, other: Playback) -> dict[str, Any]:
         "summary": other.summary,
         "runs": [_run(run) for run in other.runs],
         "differences": [
-            runs.first_difference(TurtleTrace.of(one.trace), TurtleTrace.of(two.trace))
+            first_difference(TurtleTrace.of(one.trace), TurtleTrace.of(two.trace))
             for one, two in traces
         ],
     }
+
+
+def with_lines(calls: Sequence[Mapping[str, Any]], sent: Sequence[Sent]) -> dict[str, Any]:
+    """Return `{"calls", "lines"}`: each call has its `line`, an index, where that is known."""
+    by_name = defaultdict(list)
+    for index, call in enumerate(calls):
+        by_name[_name(call)].append(index)
+    known: dict[int, int] = {}
+    lines: dict[Line, int] = {}
+    for each in sent:
+        where = [line for line, times in each.order for _ in range(min(times, len(calls) + 1))]
+        came = by_name[each.name]
+        # the simulator has missed some, or another process sends by this name too
+        surely = where if each.times == len(came) else where[:1]
+        for index, line in zip(came, surely, strict=False):
+            known[index] = lines.setdefault(each.lines[line], len(lines))
+    return {
+        "calls": [
+            {**call, "line": known[index]} if index in known else call
+            for index, call in enumerate(calls)
+        ],
+        "lines": [{"file": line.file, "line": line.line, "text": line.text} for line in lines],
+    }
+
+
+def _name(call: Mapping[str, Any]) -> str:
+    """Return the topic or service that a call came by; '' where it came by none."""
+    if call["op"] in _OF_THE_NODE:
+        return f"/{call['op']}"
+    return f"/{call['turtle']}/{call['op']}" if "turtle" in call else ""
+
+
+def first_difference(mine: TurtleTrace, other: TurtleTrace) -> dict[str, Any] | None:
+    """Return the first tick whose inputs differ, with these; None where none does.
+
+    `{"tick", "mine": [...], "other": [...]}`, with the inputs of that tick as JSON.
+    """
+    first, second = _by_tick(mine), _by_tick(other)
+    for tick in sorted(first.keys() | second.keys()):
+        if first.get(tick, []) != second.get(tick, []):
+            return {"tick": tick, "mine": first.get(tick, []), "other": second.get(tick, [])}
+    return None
+
+
+def _by_tick(trace: TurtleTrace) -> dict[int, list[Any]]:
+    """Return the inputs by tick, without the ids of goals, which are random."""
+    by_tick: dict[int, list[Any]] = defaultdict(list)
+    for event in trace.events:
+        data = to_json(event)
+        by_tick[event.tick].append({key: data[key] for key in data if key not in ("id", "tick")})
+    return dict(by_tick)

@@ -16,7 +16,7 @@ from websockets.sync.client import connect
 from grader.recording.playback import JudgedCheck
 from grader.scenes import load_scene
 from grader.scenes.live import Grading
-from grader.scenes.turtlesim.live import Mirror
+from grader.scenes.turtlesim.live import TurtlesimPage
 from tests.programs import DEADLINE_S
 from turtlesim_py.live.feed import Feed, News
 from turtlesim_py.world.arena import Arena
@@ -140,7 +140,7 @@ def test_nobody_comes_in_without_the_token_not_even_on_this_machine(page):
 
 def test_a_wipe_takes_away_what_was_drawn_before_it():
     told: list[News] = []
-    mirror = Mirror(told.append)
+    mirror = TurtlesimPage(told.append)
     stroke = [[1, 2, 3], [10, 20, 30]]
     states = [{"tick": 1, "drawn": [stroke], "calls": []}]
     states += [{"tick": 2, "drawn": [None, stroke], "calls": []}]

@@ -17,10 +17,10 @@ from grader.recording.playback import JudgedCheck, Line, Playback, PlayedRun, Se
 from grader.recording.subject import Start
 from grader.scenes import joined
 from grader.scenes.turtlesim.driving import drive
-from grader.scenes.turtlesim.player import page, runs
+from grader.scenes.turtlesim.player import page
 from grader.scenes.turtlesim.player.animation import WIPED
+from grader.scenes.turtlesim.player.page import first_difference
 from grader.scenes.turtlesim.player.replay import MOST_TICKS, animate
-from grader.scenes.turtlesim.player.runs import first_difference
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import pen, twist
 from tests.grader.driving import Spiral
@@ -196,7 +196,7 @@ LINES = (Line("a.py", 5, "go"), Line("a.py", 9, "stop"))
 
 
 def lines_of(sent: Sent) -> list[int | None]:
-    made = runs.with_lines([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
+    made = page.with_lines([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
     lines = [line["line"] for line in made["lines"]]
     found = [call.get("line") for call in made["calls"]]
     return [None if each is None else lines[each] for each in found]

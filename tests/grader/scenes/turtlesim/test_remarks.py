@@ -31,11 +31,11 @@ def told(trace: TurtleTrace) -> list[str]:
 
 
 def test_there_is_nothing_to_say_about_driving_and_pens(trace):
-    assert remarks(trace, ["/turtle1/cmd_vel", "/somewhere/else"]) == []
+    assert not list(remarks(trace, ["/turtle1/cmd_vel", "/somewhere/else"]))
 
 
 def test_the_messages_of_newer_releases_are_named_and_the_older_are_not(trace):
-    assert remarks(trace, [], "turtlesim") == remarks(trace, [], "") == []
+    assert not [*remarks(trace, [], "turtlesim"), *remarks(trace, [], "")]
     (said,) = remarks(trace, [], "turtlesim_msgs")
     assert "run with the messages of turtlesim_msgs: ROS 2 has them from Kilted on" in str(said)
 
@@ -88,4 +88,4 @@ def test_a_pen_of_width_0_draws_and_says_so(trace):
         "The pen's width is 0, first at 0.80 s: that draws like width 1; what lifts the pen is "
         "off = 1."
     ]
-    assert remarks(replace(trace, events=(*trace.events, pens[0])), []) == []
+    assert told(replace(trace, events=(*trace.events, pens[0]))) == []
