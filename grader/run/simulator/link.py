@@ -18,7 +18,6 @@ from grader.run.lockstep.protocol import (
     MOST_SENT_BYTES,
     PROGRESS,
     Advance,
-    Interests,
     Kind,
     Mail,
     Note,
@@ -148,7 +147,7 @@ class StudentLink:
         except Refused:
             self.break_off(msg("its process does not read what it has asked for"))
 
-    def receive(self) -> Interests | Advance | None:
+    def receive(self) -> Table | Advance | None:
         """Return the next request; None when there will be no other: see `silence`.
 
         Raises:
@@ -174,7 +173,7 @@ class StudentLink:
                     self.silence = "gone"
                 case Note():
                     self._handle(packet)
-                case Interests() | Advance():
+                case Table() | Advance():
                     return packet
                 case _:
                     self.break_off(msg("its process sent what only a simulator says"))
