@@ -117,7 +117,7 @@ def _try(
         try:
             with ExitStack() as students:
                 for number, program in enumerate(programs, 1):
-                    each = _start(program, number, submission, plan, context, held)
+                    each = _start(program, number, submission, plan, context, held, running)
                     students.enter_context(each.student.ended_at_exit(gently=False))
                     running.append(each)
                 pids = json.dumps([each.student.pid for each in running])
@@ -165,11 +165,13 @@ def _start(
     plan: Plan,
     context: RunContext,
     held: ExitStack,
+    running: Sequence[_Running],
 ) -> _Running:
     """Start a program; what it needs is released when the context is left.
 
     Args:
         program: one of several, with its number, from 1; None where the submission starts one.
+        running: those that were started before.
     """
     name, arguments = "", plan.arguments
     if program is None:
@@ -189,6 +191,7 @@ def _start(
             fds,
             virtual_environment({}),
             fork_servers.for_student(submission.root),
+            beside=running[0].student if running else None,
         )
     return _Running(name, moved, student, account, theirs)
 

@@ -415,7 +415,7 @@ def main(argv: list[str]) -> int:
     students = json.loads(pids)
     limits = Patience(**json.loads(patience))
     links = [
-        StudentLink(socket.socket(fileno=int(link)), int(page), pid, limits)
+        StudentLink(socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
         for link, page, pid in zip(ends[::2], ends[1::2], students, strict=True)
     ]
 

@@ -156,6 +156,8 @@ def install(
     hooks.install_in_threads(witness)
     hooks.install(witness)
     hooks.install_actions(witness)
+    if number > 1:
+        time_and_chance.vary_chance(number)
     if number:
         link.connect()  # waits for the turn of this program
     return link
