@@ -26,6 +26,8 @@ from grader.rosidl.cdr import deserialise, serialise
 
 #: The most messages, bytes of them and of what is in events, and events of a recording.
 MOST_MESSAGES, MOST_BYTES, MOST_EVENTS = 20_000, 20_000_000, 10_000
+#: What is recorded of a reader or writer.
+ENDPOINT: Final = ("node", "channel", "type", "writes", "reliability", "durability", "depth")
 _FULL: Final = msg("of what was exchanged, the first {n:,} messages and {m:,} bytes were recorded")
 
 
@@ -71,14 +73,14 @@ class CastRecorder:
         """Note the program's readers and writers, and hear those that are asked for.
 
         Args:
-            endpoints: `grader.run.lockstep.protocol.StudentEndpoint`s.
+            endpoints: `grader.run.lockstep.protocol.EndpointInfo`s, without their numbers.
         """
         self._writers = {}
         for each in endpoints:
             kind, _, name = each.channel.partition(" ")
             if each not in self._endpoints and len(self._endpoints) <= MOST_EVENTS:
                 self._endpoints.add(each)
-                self.event("endpoint", **each._asdict())
+                self.event("endpoint", **dict(zip(ENDPOINT, each, strict=False)))
             if kind == "topic" and each.writes:
                 self._writers.setdefault(name, set()).add(each.node)
                 if name in self._topics and (name, each.type) not in self._tapped:

@@ -55,6 +55,7 @@ class RunContext:
         server: ForkServer | None = None,
         *,
         more: Sequence[Path] = (),
+        beside: SubmissionProcess | None = None,
     ) -> tuple[Submission, SubmissionProcess]:
         """Start the submission's process; return it after the submission's copy for this run.
 
@@ -64,6 +65,7 @@ class RunContext:
             env: environment variables beside those of both processes.
             server: the server that it is forked from, if possible; None for a cold start.
             more: folders that it may read besides.
+            beside: another of the submission's, with which it shares the limits.
         """
         is_apart = bool(self.namespaces)
         confinement = levels.prepare(
@@ -74,7 +76,7 @@ class RunContext:
         command = ProcessCommand(
             words(submission), env, submission.root, fds, self.namespaces, confinement.order
         )
-        return submission, SubmissionProcess(command, server, self.budget)
+        return submission, SubmissionProcess(command, server, self.budget, beside)
 
 
 @contextmanager

@@ -21,16 +21,15 @@ from grader.run.lockstep import real
 from grader.run.lockstep.faults import guarded
 from grader.run.lockstep.protocol import (
     EPOCH_NS,
-    FOREVER,
     MOST_SENT,
     MOST_SENT_BYTES,
     NEVER,
     PIECE_BYTES,
     PROGRESS,
     PROGRESS_BYTES,
+    SHIFT,
     TICK_NS,
     Advance,
-    Interests,
     Kind,
     Mail,
     Note,
@@ -40,7 +39,6 @@ from grader.run.lockstep.protocol import (
     ProtocolError,
     Reply,
     State,
-    StudentEndpoint,
     Table,
     decode,
     encode,
@@ -48,23 +46,17 @@ from grader.run.lockstep.protocol import (
 )
 from grader.run.lockstep.registry import (
     Arrived,
-    Endpoint,
     EndpointRegistry,
     Reader,
     Writer,
-    policies,
 )
 
-UNBOUNDED = 0xFFFFFFFF
 #: The costs of sending a message, 20 us, and of counting the endpoints of a channel.
 SEND_UNITS = 4
 QUESTION_UNITS = 4
 #: How long we may go on without a request, in real time [s]: the simulator would think that the
 #: program hangs.
 LONGEST_ALONE_S = 0.25
-#: How long DDS may take to find what is there, where the program asks for it, in real time [s]. A
-#: run in which it takes longer is made again, in real time.
-DDS_PATIENCE_S = 60.0
 
 
 class SimulatorSockets:
@@ -155,16 +147,20 @@ class Agreed:
     Attributes:
         tick: the simulator's tick in that reply; the program may be further by now.
         foreseen: the last tick of the forecast.
+        until_ns: other programs may do something from then on.
         parcels: the messages of the forecast that have not been delivered, by tick.
         replied_s: when the reply came, in real time [s].
         has_mail: whether something was mailed since, which the forecast does not consider.
+        has_mail_for_others: whether some of it is for other programs, which must get it now.
     """
 
     tick: int = 0
     foreseen: int = 0
+    until_ns: int = NEVER
     parcels: deque[Parcel] = field(default_factory=deque)
     replied_s: float = 0.0
     has_mail: bool = False
+    has_mail_for_others: bool = False
 
 
 class SimulatorLink(EndpointRegistry):
@@ -173,7 +169,7 @@ class SimulatorLink(EndpointRegistry):
     Attributes:
         tick: the last that has begun for the program.
         graph_epoch: how often the endpoints were connected anew.
-        is_listening: whether a thread waits for what the simulator publishes.
+        is_listening: whether a thread waits for what others publish.
         on_arrival: called after something may have arrived.
         on_standstill: called when no thread of the program has a deadline.
         on_over: called when the run is over, before this process ends for it.
@@ -186,6 +182,7 @@ class SimulatorLink(EndpointRegistry):
         connection: socket.socket,
         page: int,
         refuse: Callable[[Message], None],
+        number: int = 0,
     ) -> None:
         """Link a program with its simulator.
 
@@ -193,8 +190,9 @@ class SimulatorLink(EndpointRegistry):
             connection: to the simulator, which sends its first table when it is ready.
             page: a descriptor of the page that both have.
             refuse: called with what the program does that virtual time cannot follow.
+            number: of a program among several, from 1; 0 for one alone.
         """
-        super().__init__(lambda: EPOCH_NS + scheduler.now_ns)
+        super().__init__(lambda: EPOCH_NS + scheduler.now_ns, number or 1)
         self.refuse = refuse
         self.tick = 0
         self.graph_epoch = 0
@@ -205,74 +203,75 @@ class SimulatorLink(EndpointRegistry):
         self.is_recorded = False
         self._scheduler = scheduler
         self._sockets = SimulatorSockets(connection, page, refuse)
-        self._agreed = Agreed()
-        #: what the simulator knows of our endpoints; None until it has introduced itself
-        self._interests: Interests | None = None
+        self._agreed = Agreed(until_ns=0 if number else NEVER)
+        self._now_ns = 0
+        self._is_introduced = False
         self._sent = self._sent_bytes = 0
-        #: the readers for responses, by the numbers that requests carry
-        self._clients: dict[int, Reader] = {}
-        self._client_numbers: dict[Reader, int] = {}
         self._for_late: list[Parcel] = []
-        #: what DDS was last waited for, at which epoch, and until when
-        self._dds_wait = ("", 0, 0.0)
 
     # Time -------------------------------------------------------------------------------------
 
     @guarded
     def advance(self, deadline_ns: int) -> None:
         """Move time to the next event: our deadline, or something from the simulator."""
-        scheduler = self._scheduler
-        if deadline_ns < (self.tick + 1) * TICK_NS:
+        scheduler, agreed = self._scheduler, self._agreed
+        free_ns = min((self.tick + 1) * TICK_NS, agreed.until_ns)
+        if deadline_ns < free_ns and not agreed.has_mail_for_others:
             scheduler.set_now(max(deadline_ns, scheduler.now_ns))
             return
         self.connect()
         if deadline_ns == NEVER:
             self.on_standstill()
-        target = min(deadline_ns // TICK_NS, FOREVER)
-        most = 1 if self.is_listening() else UNBOUNDED
-        if self._agreed.has_mail or not self._use_forecast(target, most):
-            self._exchange(target, most)
-        scheduler.set_now(max(scheduler.now_ns, self.tick * TICK_NS))
+        listens = self.is_listening()
+        if self._agreed.has_mail or not self._use_forecast(deadline_ns, listens=listens):
+            self._exchange(deadline_ns, listens=listens)
+        scheduler.set_now(max(scheduler.now_ns, self._now_ns))
         self.on_arrival()
 
-    def _use_forecast(self, target: int, most: int) -> bool:
+    def _use_forecast(self, deadline_ns: int, *, listens: bool) -> bool:
         """Let forecast ticks pass; return whether any has."""
-        last = min(target, self.tick + most, self._agreed.foreseen)
+        last = min(deadline_ns // TICK_NS, self._agreed.foreseen)
+        if listens:
+            last = min(last, self.tick + 1)
         if self.tick >= last or real.monotonic() > self._agreed.replied_s + LONGEST_ALONE_S:
             return False
-        self._move_to(last)
+        self._move_to(last * TICK_NS)
         return True
 
-    def _move_to(self, tick: int) -> None:
-        """Move time to a tick, and deliver the messages up to it."""
-        self.tick = tick
-        self._sockets.write_tick(tick)
+    def _move_to(self, now_ns: int) -> None:
+        """Move on to a time, and deliver the messages up to then."""
+        self._now_ns = now_ns
+        if now_ns // TICK_NS > self.tick:
+            self.tick = now_ns // TICK_NS
+            self._sockets.write_tick(self.tick)
         parcels = self._agreed.parcels
-        while parcels and parcels[0].time_ns <= tick * TICK_NS:
+        while parcels and parcels[0].time_ns <= now_ns:
             self._deliver(parcels.popleft())
 
     def synchronise(self) -> None:
         """Have the simulator catch up with our tick and our mail; no time passes."""
         self.connect()
         if self._agreed.has_mail or self.tick > self._agreed.tick:
-            self._exchange(self.tick, 0)
+            self._exchange()
 
-    def _exchange(self, target: int, most: int) -> None:
-        """Ask for time, and handle the reply."""
-        self._sockets.send(Advance(target, most, self.tick, self._agreed.has_mail))
-        table = None
+    def _exchange(self, deadline_ns: int = 0, *, listens: bool = False) -> None:
+        """Ask for time, to a deadline or, without one, for none, and handle the reply."""
+        now_ns = self._scheduler.now_ns
+        self._sockets.send(Advance(deadline_ns, listens, self.tick, now_ns, self._agreed.has_mail))
+        removed: list[int] = []
         while not isinstance(packet := self._sockets.receive(), Reply):
             if not isinstance(packet, Table):
                 self._sockets.fail(packet, "a reply")
-            table = packet
-            self._add(table)
+            removed += packet.removed
+            self.add_others(packet)
             self._connect_anew()
-        parcels = deque(packet.parcels)
-        self._agreed = Agreed(packet.tick, packet.foreseen, parcels, real.monotonic())
-        self._move_to(packet.tick)
-        if table is not None:
-            for number in table.removed:
-                self.others.pop(number, None)
+        self._agreed = Agreed(
+            *(packet.now_ns // TICK_NS, packet.foreseen, packet.until_ns),
+            *(deque(packet.parcels), real.monotonic()),
+        )
+        self._move_to(packet.now_ns)
+        if removed:
+            self.remove_others(removed)
             self._connect_anew()
         if packet.state == State.OVER:
             self.on_over()
@@ -298,9 +297,8 @@ class SimulatorLink(EndpointRegistry):
         number = super().ask(writer, client, data)
         for remote in writer.remote:
             client.awaited += 1
-            self._mail(
-                Parcel(remote.number, self._number(client), number, self._scheduler.now_ns, data)
-            )
+            now_ns = self._scheduler.now_ns
+            self._mail(Parcel(remote.number, client.number, number, now_ns, data))
         self._has_sent(data, writer.local)
         return number
 
@@ -322,65 +320,47 @@ class SimulatorLink(EndpointRegistry):
             self.on_arrival()
         self._scheduler.charge(SEND_UNITS)
 
-    def _number(self, client: Reader) -> int:
-        number = self._client_numbers.setdefault(client, len(self._client_numbers) + 1)
-        self._clients[number] = client
-        return number
-
     def _mail(self, parcel: Parcel) -> None:
-        self._agreed.has_mail = True
-        rest = self._sockets.mail(list(pieces(encode(Mail([parcel])))))
-        while rest:
-            self._exchange(self.tick, 0)
+        rest = list(pieces(encode(Mail([parcel]))))
+        while True:
             self._agreed.has_mail = True
-            rest = self._sockets.mail(rest)
+            self._agreed.has_mail_for_others |= parcel.endpoint >> SHIFT != 0
+            if not (rest := self._sockets.mail(rest)):
+                return
+            self._exchange()
 
     def _deliver(self, parcel: Parcel) -> None:
         endpoint, client, number, time_ns, data = parcel
-        arrived = Arrived(data, EPOCH_NS + time_ns, number)
-        writer = self.others[endpoint]
-        if writer.kind == "response":
-            reader = self._clients[client]
-            reader.awaited -= 1
+        arrived = Arrived(data, EPOCH_NS + time_ns, number, client or None)
+        reader = self.own.get(endpoint)
+        if isinstance(reader, Reader):
+            reader.awaited -= reader.kind == "response"
             reader.items.append(arrived)
-        elif isinstance(writer, Writer):
-            arrived.client = client or None  # of a request: the simulator's reader for the response
+        elif isinstance(writer := self.others.get(endpoint), Writer):
             self.deliver(writer, arrived)
 
     # Connections ------------------------------------------------------------------------------
 
     def connect(self) -> None:
-        """Connect our endpoints with the simulator's, and send it our interests."""
-        if self._interests is None:
-            self._interests = Interests(())
-            self._add(self._sockets.introduction())
+        """Connect our endpoints with those of others, which get our table."""
+        if not self._is_introduced:
+            self._is_introduced = True
+            self.add_others(self._sockets.introduction())
             self._connect_anew()
         if not self.changed:
             return
-        self.changed = False
+        table = self.pop_table()
         self._connect_anew()
-        interests = Interests(tuple(sorted(map(_introduced, (*self.writers, *self.readers)))))
-        if interests != self._interests:
-            self._interests = interests
+        if table.added or table.removed:
             if self.tick > self._agreed.tick:  # forecast for the readers that there were
-                self._exchange(self.tick, 0)
+                self._exchange()
             self._agreed.parcels.clear()
             self._agreed.foreseen = self.tick
-            self._sockets.send(interests)
+            self._sockets.send(table)
             if self.is_recorded:  # hidden readers of what is new, before anything is published
-                self._exchange(self.tick, 0)
-
-    def _add(self, table: Table) -> None:
-        """Add the new endpoints of the simulator's table."""
-        for entry in table.added:
-            kind = Writer if entry.writes else Reader
-            qos = policies(entry.reliability, entry.durability, entry.depth)
-            other = kind(entry.channel, entry.type, qos, entry.id)
-            self.others[entry.id] = other
-            other.is_hidden = entry.is_hidden
+                self._exchange()
 
     def _connect_anew(self) -> None:
-        self._is_unpaired = True
         before = {writer: set(writer.remote) for writer in self.writers if writer.is_lasting}
         self.pair()
         for writer, known in before.items():
@@ -399,27 +379,6 @@ class SimulatorLink(EndpointRegistry):
         for parcel in parcels:
             self._mail(parcel)
 
-    def await_dds(self, what: str) -> None:
-        """Wait a little, in real time, until DDS has found what we know to be there.
-
-        After `DDS_PATIENCE_S` the run ends, to be made again in real time: DDS has lost something.
-        """
-        now_s = real.monotonic()
-        if self._dds_wait[:2] != (what, self.graph_epoch):
-            self._dds_wait = (what, self.graph_epoch, now_s + DDS_PATIENCE_S)
-        if now_s > self._dds_wait[2]:
-            lack = f"DDS did not tell of an {what} in {DDS_PATIENCE_S:.0f} s"
-            self.note(Kind.FAILED, msg("virtual time does not work here: {lack}", lack=lack))
-            real.leave(0)
-        real.sleep(0.0005)
-
     def note(self, kind: Kind, remark: Message = NOTHING) -> None:
         """Send the simulator a note about this process."""
         self._sockets.send(Note(kind, remark))
-
-
-def _introduced(endpoint: Endpoint) -> StudentEndpoint:
-    qos = endpoint.qos
-    numbers = int(qos.reliability), int(qos.durability), max(0, qos.depth)
-    writes, kind = isinstance(endpoint, Writer), endpoint.type.rstrip()
-    return StudentEndpoint(endpoint.node, endpoint.channel, kind, writes, *numbers)

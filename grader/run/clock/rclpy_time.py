@@ -5,8 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 import sys
-from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import rclpy
@@ -23,10 +22,9 @@ from grader.message import msg
 from grader.run.clock import executor
 from grader.run.clock.link import SimulatorLink
 from grader.run.clock.scheduler import Runner, Scheduler
-from grader.run.lockstep import actions, endpoints, faults, rclpy_clocks, waitsets
+from grader.run.lockstep import actions, endpoints, faults, graph, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import NEVER
 from grader.run.lockstep.rclpy_clocks import RclpyClocks
-from grader.run.lockstep.registry import Writer
 from grader.run.lockstep.waitsets import Waiter, WaitSet
 
 #: The costs of a wait, and of the work that it finds on top [units].
@@ -34,27 +32,6 @@ WAIT_UNITS = 2
 WORK_UNITS = 8
 #: The costs of the first, second, ... of several polls in a row that find nothing [ns].
 EMPTY_NS = (*(250_000,) * 8, 2_000_000)
-#: Methods of a node's that query the graph.
-QUESTIONS = (
-    "count_clients",
-    "count_publishers",
-    "count_services",
-    "count_subscribers",
-    "get_client_names_and_types_by_node",
-    "get_fully_qualified_node_names",
-    "get_node_names",
-    "get_node_names_and_namespaces",
-    "get_node_names_and_namespaces_with_enclaves",
-    "get_publisher_names_and_types_by_node",
-    "get_publishers_info_by_topic",
-    "get_service_names_and_types",
-    "get_service_names_and_types_by_node",
-    "get_subscriber_names_and_types_by_node",
-    "get_subscriptions_info_by_topic",
-    "get_topic_names_and_types",
-)
-#: A node's name and namespace.
-NodeName = tuple[str, str]
 
 
 def prepare() -> None:
@@ -67,7 +44,6 @@ def prepare() -> None:
 def install(
     scheduler: Scheduler,
     link: SimulatorLink,
-    nodes: Sequence[NodeName],
     *,
     compares_stamps: bool,
     on_deadlock: Callable[[], None],
@@ -75,7 +51,6 @@ def install(
     """Replace rclpy's clocks and waits, after `prepare`.
 
     Args:
-        nodes: the simulator's.
         compares_stamps: whether a node's clock returns another time each time it is asked.
         on_deadlock: called once, when nothing can ever happen any more.
     """
@@ -92,7 +67,7 @@ def install(
     endpoints.install(link)
     actions.install()
     _guard_entities()
-    _replace_questions(link, nodes)
+    graph.install()
     _order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
     _replace_ok(scheduler)
@@ -135,10 +110,6 @@ class VirtualWaiter(Waiter):
     def is_alone(self) -> bool:
         """Whether the program has but one thread."""
         return len(self._scheduler.runners) == 1
-
-    def await_dds(self, what: str) -> None:
-        """Wait a little for DDS, in real time."""
-        self._link.await_dds(what)
 
     def before_wait(self) -> None:
         """Let others run first, if any can."""
@@ -184,7 +155,7 @@ class VirtualWaiter(Waiter):
                     break
 
     def is_listening(self) -> bool:
-        """Whether a blocked wait set would hear what the simulator publishes, or asks."""
+        """Whether a blocked wait set would hear what others publish, or ask."""
         for wait_set, _ in self._waiting:
             for reader in wait_set.readers:
                 if reader.hears:
@@ -192,7 +163,7 @@ class VirtualWaiter(Waiter):
         return False
 
     def on_standstill(self) -> None:
-        """Report a deadlock, unless something may still come from the simulator."""
+        """Report a deadlock, unless something may still come from others."""
         is_hopeful = self.is_listening() or any(
             reader.awaited > 0 for wait_set, _ in self._waiting for reader in wait_set.readers
         )
@@ -232,65 +203,6 @@ def clock_event_class(scheduler: Scheduler) -> type:
             return self._is_set
 
     return ClockEvent
-
-
-# Questions about the graph --------------------------------------------------------------------
-
-
-def _replace_questions(link: SimulatorLink, nodes: Sequence[NodeName]) -> None:
-    """Have a node's queries wait, in no virtual time, until DDS has found all that is there.
-
-    Args:
-        nodes: the simulator's.
-    """
-    seen_epochs: set[int] = set()
-
-    def replace(name: str) -> None:
-        ask = getattr(rclpy.node.Node, name)
-
-        @functools.wraps(ask)
-        def asked(self: Any, *args: Any, **kwargs: Any) -> Any:
-            link.before_question()
-            if link.graph_epoch not in seen_epochs:
-                seen_epochs.add(link.graph_epoch)
-                while not _is_complete(link, self.handle, nodes):
-                    link.await_dds("graph")
-            return faults.pass_on(ask, self, *args, **kwargs)
-
-        setattr(rclpy.node.Node, name, asked)
-
-    for question in QUESTIONS:
-        if hasattr(rclpy.node.Node, question):
-            replace(question)
-
-
-def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[NodeName]) -> bool:
-    """Whether DDS shows the simulator's nodes, and each of its endpoints with those of ours."""
-    if not set(nodes) <= set(node.get_node_names_and_namespaces()):
-        return False
-    expected = Counter(
-        [
-            (each.channel, isinstance(each, Writer))
-            for each in link.others.values()
-            if not each.is_hidden
-        ]
-        + [(reader.channel, False) for reader in link.readers]
-        + [(writer.channel, True) for writer in link.writers]
-    )
-    for (channel, writes), number in expected.items():
-        kind, _, name = channel.partition(" ")
-        if kind == "topic":
-            count = node.get_count_publishers if writes else node.get_count_subscribers
-        elif kind == "request" and not writes:
-            count = node.get_count_services
-        else:
-            continue
-        if count(name) != number:
-            return False
-    theirs = (each for each in link.others.values() if isinstance(each, Writer))
-    topics = {each.name for each in theirs if each.kind == "topic"}
-    ask = _rclpy.rclpy_get_publisher_names_and_types_by_node
-    return topics <= {topic for name in nodes for topic, _ in ask(node, False, *name)}
 
 
 # What else is replaced ------------------------------------------------------------------------

@@ -177,6 +177,9 @@ for _class in (_VirtualDatetime, _VirtualDate):
 
 # Chance ---------------------------------------------------------------------------------------
 
+#: Where all random bytes come from, and the seeds of generators that are given none.
+_source, _seeds = random.Random(0), [itertools.count(1)]
+
 
 def seed_chance() -> Callable[[], object]:
     """Seed every source of random numbers, and fix the number of processors.
@@ -184,19 +187,17 @@ def seed_chance() -> Callable[[], object]:
     Returns:
         A function that returns their state: equal states mean that nothing was drawn between.
     """
-    source = random.Random(0)
-    seeds = itertools.count(1)
     real_seed = random.Random.seed
 
     def urandom(size: int, /) -> bytes:
-        drawn: bytes = pass_on(source.randbytes, size)
+        drawn: bytes = pass_on(_source.randbytes, size)
         return drawn
 
     def getrandom(size: int, flags: int = 0) -> bytes:
         return urandom(size)
 
     def seed(self: random.Random, a: Any = None, version: int = 2) -> None:
-        pass_on(real_seed, self, next(seeds) if a is None else a, version)
+        pass_on(real_seed, self, next(_seeds[0]) if a is None else a, version)
 
     class Random(_random.Random):
         """As its base, which seeds itself from the system in C."""
@@ -205,7 +206,7 @@ def seed_chance() -> Callable[[], object]:
             self.seed(*args)
 
         def seed(self, a: Any = None, /) -> None:
-            pass_on(super().seed, next(seeds) if a is None else a)
+            pass_on(super().seed, next(_seeds[0]) if a is None else a)
 
     Random.__module__, Random.__qualname__ = "_random", "Random"
     _random.Random = Random  # type: ignore[misc]
@@ -227,7 +228,14 @@ def seed_chance() -> Callable[[], object]:
     os.sched_getaffinity = lambda _: set(range(PROCESSORS))
     if hasattr(os, "process_cpu_count"):  # CPython 3.13
         os.process_cpu_count = lambda: PROCESSORS
-    return lambda: (source.getstate(), repr(seeds), random.getstate())
+    return lambda: (_source.getstate(), repr(_seeds), random.getstate())
+
+
+def vary_chance(number: int) -> None:
+    """Have a program, the second or a later one, draw others than the first."""
+    _source.seed(number)
+    _seeds[0] = itertools.count(number << 32)
+    random.seed(number)
 
 
 def replace_user_and_devices() -> None:

@@ -213,7 +213,18 @@ ENTITIES: tuple[Assumption, ...] = (
     *_arity("Clock", add_clock_callback=4, remove_clock_callback=1),
     *_has(CPP, "ClockType", "ROS_TIME", "STEADY_TIME", "SYSTEM_TIME"),
     Assumption("a clock's override", _overridden_clock),
-    *_has(CPP, "", "RCLError", "rclpy_resolve_name", "rclpy_get_publisher_names_and_types_by_node"),
+    *_has(CPP, "", "RCLError", "NodeNameNonExistentError", "rclpy_resolve_name"),
+    *_has(CPP, "", "rmw_matched_status_t", "rmw_requested_qos_incompatible_event_status_t"),
+    *_has(CPP, "", "rclpy_get_topic_names_and_types", "rclpy_get_service_names_and_types"),
+    *_has(CPP, "", *(f"rclpy_get_{n}_info_by_topic" for n in ("publishers", "subscriptions"))),
+    *(
+        _has(CPP, "", f"rclpy_get_{which}_names_and_types_by_node")[0]
+        for which in ("publisher", "subscriber", "service", "client")
+    ),
+    *_arity("Node", get_node_names_and_namespaces=0, get_action_names_and_types=0),
+    *_arity("Node", get_node_names_and_namespaces_with_enclaves=0),
+    *_arity("Node", get_action_client_names_and_types_by_node=2),
+    *_arity("Node", get_action_server_names_and_types_by_node=2),
 )
 
 #: Of rclpy's Python, as a program uses it.
@@ -226,8 +237,7 @@ PROGRAM: tuple[Assumption, ...] = (
     *_has("rclpy.client", "Client", "call"),
     *_has("rclpy.timer", "Rate", "sleep"),
     *_has("rclpy.action", "ActionClient", "send_goal", "_get_result", "_cancel_goal"),
-    *_has("rclpy.node", "Node", "__init__", "handle", "get_node_names_and_namespaces"),
-    *_has("rclpy.node", "Node", "count_publishers", "count_subscribers"),
+    *_has("rclpy.node", "Node", "__init__"),
     # what `clock.rclpy_time` puts in its place
     *_arity("ClockEvent", __init__=0, wait_until_steady=2, wait_until_system=2, wait_until_ros=2),
     *_arity("ClockEvent", set=0, clear=0, is_set=0),

@@ -1,8 +1,8 @@
 """rclpy's publishers, subscriptions, clients and services, whose messages go by our registry.
 
 Each is a subclass of rclpy's own class in C++, put into its place in rclpy's extension module, so
-that the Python of rclpy stays as it is. The entity in DDS is there as ever: the graph shows it, and
-events of its quality of service come from it. Used by both sides of the link.
+that the Python of rclpy stays as it is. The entity in DDS is there as ever, and nobody asks it.
+Used by both sides of the link.
 """
 
 from __future__ import annotations
@@ -23,8 +23,16 @@ from grader.rosidl import classes, handles
 from grader.rosidl.cdr import deserialise, is_made, serialise
 from grader.rosidl.definitions import Definitions
 from grader.run.lockstep.faults import as_python_does, pass_on
-from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
+from grader.run.lockstep.registry import (
+    Arrived,
+    Endpoint,
+    EndpointRegistry,
+    NodeEntry,
+    Reader,
+    Writer,
+)
 
+_Node = _rclpy.Node
 _Publisher, _Subscription = _rclpy.Publisher, _rclpy.Subscription
 _Client, _Service = _rclpy.Client, _rclpy.Service
 _StateMachine = _rclpy.LifecycleStateMachine
@@ -102,14 +110,6 @@ def deserialized(data: bytes, kind: Any) -> Any:
     return pass_on(_deserialize, data, kind)
 
 
-class Node(_rclpy.Node):
-    """A node that knows its context."""
-
-    def __init__(self, name: str, namespace: str, context: Any, *more: Any) -> None:
-        pass_on(super().__init__, name, namespace, context, *more)
-        self.is_valid: Callable[[], bool] = context.ok
-
-
 class Registered:
     """The base of our endpoint classes.
 
@@ -145,6 +145,16 @@ class Registered:
         """As in rclpy."""
         REGISTRY.remove(self.endpoints)
         super().destroy_when_not_in_use()  # type: ignore[misc]
+
+
+class Node(Registered, _rclpy.Node):
+    """A node that knows its context."""
+
+    def __init__(self, name: str, namespace: str, context: Any, *more: Any) -> None:
+        pass_on(_Node.__init__, self, name, namespace, context, *more)
+        self.is_valid: Callable[[], bool] = context.ok
+        channel = f"node {self.get_fully_qualified_name()}"
+        self.register(self, NodeEntry(channel, "", QoSProfile(depth=10), logs=bool(more[-1])))
 
 
 class Publisher(Registered, _rclpy.Publisher):

@@ -4,10 +4,9 @@ The student's process drives, over a SOCK_SEQPACKET socket pair:
 
 | from | packet | meaning |
 |---|---|---|
-| simulator | `Table` | these endpoints of mine are new, these are gone; first of all packets |
-| student | `Interests` | these are my readers and writers |
-| student | `Advance` | run until this tick, but not more than so many ticks |
-| simulator | `Reply` | this tick is over; here are messages, some of ticks to come |
+| both | `Table` | these endpoints are new, these are gone; the simulator begins with one |
+| student | `Advance` | let time move, to this deadline or until something comes |
+| simulator | `Reply` | so late it is; here are messages, some of ticks to come |
 | student | `Note` | something about the student's process; not answered |
 
 With the first table the simulator sends the end of a second socket pair, on which `Mail` goes to
@@ -39,13 +38,13 @@ from grader.message import NOTHING, Message
 #: A tick's length [ns]. As in turtlesim_py.world.arena, whose import would cost a student's
 #: process numpy and Pillow.
 TICK_NS = 16_000_000
-#: More ticks than any run has; "until something happens".
-FOREVER = 1 << 40
 #: The run starts on 15 June 2025 at 15:06:40 UTC, 1000 s after the machine did.
 EPOCH_NS = 1_750_000_000 * 10**9
 BOOT_NS = 1000 * 10**9
 #: No deadline [ns since the start of the run].
 NEVER = 1 << 62
+#: The number of an endpoint's process stands above so many bits of its own.
+SHIFT = 20
 
 #: The most that is sent at once: a socket accepts no longer packet as a whole.
 PIECE_BYTES = 150_000
@@ -59,11 +58,11 @@ MORE, LAST = b"+", b"-"
 #: there when that side ends silently. Its part of the page is the least that can be mapped.
 PROGRESS, PROGRESS_BYTES = Struct("<Q"), mmap.PAGESIZE
 
-_HEAD = Struct("<cQIQ?")
+_HEAD = Struct("<cQIQQ?")
 _PARCEL = Struct("<IIQQI")
-_CHANNEL = re.compile(r"[a-z]+ /[\w/]{0,300}", re.ASCII)
+_CHANNEL = re.compile(r"[a-z]+ /[\w/]{0,600}", re.ASCII)
 _NAME = re.compile(r"/[\w/]{0,600}", re.ASCII)
-_TYPE = re.compile(r"\w{1,100}/\w{1,10}/\w{1,200}", re.ASCII)
+_TYPE = re.compile(r"\w{1,100}/\w{1,10}/\w{1,200} ?", re.ASCII)
 #: The most that is kept of each text of a remark [characters].
 _LONGEST_REMARK = 1000
 
@@ -99,8 +98,9 @@ class Parcel(NamedTuple):
     """A message on the link.
 
     Attributes:
-        endpoint: the number of the simulator's endpoint in the tables.
-        client: the number of the student's client that asks or is answered; 0 for a topic.
+        endpoint: the number, in the tables, of the reader that gets it; of the simulator's
+            messages on a topic, that of its writer.
+        client: of a request, the number of the reader for its response; else 0.
         number: the sequence number of the request; on a topic, of the message.
         time_ns: when it was sent, from the start of the run [ns]; from the simulator, in a tick.
         data: the message in CDR, as DDS would carry it.
@@ -116,40 +116,16 @@ class Parcel(NamedTuple):
 Parcels = list[Parcel]
 
 
-@dataclass(frozen=True)
-class EndpointInfo:
-    """A reader or writer of the simulator, as the student's side needs to know it.
-
-    Attributes:
-        is_hidden: it only records, and the program's graph does not show it.
-    """
-
-    id: int
-    channel: str
-    type: str
-    writes: bool
-    reliability: int
-    durability: int
-    depth: int
-    is_hidden: bool = False
-
-
-@dataclass(frozen=True)
-class Table:
-    """Endpoints that appeared and disappeared since the last table.
-
-    A removed one may still have sent something that comes with the next `Reply`.
-    """
-
-    added: tuple[EndpointInfo, ...]
-    removed: tuple[int, ...] = ()
-
-
-class StudentEndpoint(NamedTuple):
-    """A reader or writer of the student's process, as the simulator needs to know it.
+class EndpointInfo(NamedTuple):
+    """A node, reader or writer of a process, as others need to know it.
 
     Attributes:
         node: the name of its node, with the namespace.
+        channel: what it is connected to; of a node, "node /name".
+        type: the ROS type; '' for a node. One that ends with a space is not the other side's type
+            of that name, and meets no other.
+        id: its number on the link: that of its process above `SHIFT`, 0 for the simulator.
+        is_hidden: it only records, and the program's graph does not show it.
     """
 
     node: str
@@ -159,43 +135,56 @@ class StudentEndpoint(NamedTuple):
     reliability: int = 1
     durability: int = 2
     depth: int = 10
+    id: int = 0
+    is_hidden: bool = False
 
 
 @dataclass(frozen=True)
-class Interests:
-    """The readers and writers of the student's process, in order."""
+class Table:
+    """What appeared and disappeared in a process since its last table.
 
-    endpoints: tuple[StudentEndpoint, ...]
+    A removed one may still have sent something that comes with the next `Reply`.
+    """
+
+    added: tuple[EndpointInfo, ...]
+    removed: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
 class Advance:
-    """Run until `target`, but not more than `most` ticks.
+    """Let time move.
 
     Attributes:
+        target_ns: the program's next deadline; 0 for a reply at once.
+        listens: whether it waits for messages besides.
         reached: the tick up to which the student's side has used what was foreseen.
+        now_ns: the time that it has reached by itself.
         has_mailed: whether mail was sent since the last one.
     """
 
-    target: int
-    most: int
+    target_ns: int
+    listens: bool
     reached: int
+    now_ns: int
     has_mailed: bool = False
 
 
 @dataclass(frozen=True)
 class Reply:
-    """Where the simulator stands.
+    """Where the run stands.
 
     Attributes:
+        now_ns: the time.
         foreseen: the tick up to which the messages are those that will be sent, if the student's
             side sends nothing meanwhile.
+        until_ns: the program may let time move by itself before this.
         parcels: by tick.
     """
 
-    tick: int
+    now_ns: int
     state: State
     foreseen: int
+    until_ns: int = NEVER
     parcels: Parcels = field(default_factory=list)
 
 
@@ -214,25 +203,22 @@ class Note:
     remark: Message = NOTHING
 
 
-Packet = Table | Interests | Advance | Reply | Mail | Note
+Packet = Table | Advance | Reply | Mail | Note
 
 
 def encode(packet: Packet) -> bytes:
     """Encode a packet."""
     match packet:
-        case Advance(target, most, reached, has_mailed):
-            return _HEAD.pack(b"A", target, most, reached, has_mailed)
-        case Reply(tick, state, foreseen, parcels):
-            return _HEAD.pack(b"R", tick, state, foreseen, False) + _parcels(parcels)
+        case Advance(target_ns, listens, reached, now_ns, has_mailed):
+            return _HEAD.pack(b"A", target_ns, listens, reached, now_ns, has_mailed)
+        case Reply(now_ns, state, foreseen, until_ns, parcels):
+            return _HEAD.pack(b"R", now_ns, state, foreseen, until_ns, False) + _parcels(parcels)
         case Mail(parcels):
-            return _HEAD.pack(b"M", 0, 0, 0, False) + _parcels(parcels)
+            return _HEAD.pack(b"M", 0, 0, 0, 0, False) + _parcels(parcels)
         case Note(kind, remark):
-            return _HEAD.pack(b"N", 0, kind, 0, False) + json.dumps(remark.serialise()).encode()
-        case Interests(endpoints):
-            return b"I" + json.dumps(endpoints).encode()
+            return _HEAD.pack(b"N", 0, kind, 0, 0, False) + json.dumps(remark.serialise()).encode()
         case Table(added, removed):
-            data = {"added": [vars(endpoint) for endpoint in added], "removed": removed}
-            return b"T" + json.dumps(data).encode()
+            return b"T" + json.dumps([added, removed]).encode()
 
 
 def decode(data: bytes) -> Packet:
@@ -242,21 +228,16 @@ def decode(data: bytes) -> Packet:
         ProtocolError: the bytes are no packet.
     """
     try:
-        match data[:1]:
-            case b"T":
-                made = json.loads(data[1:])
-                added = tuple(EndpointInfo(**entry) for entry in made["added"])
-                return Table(added, tuple(made["removed"]))
-            case b"I":
-                return _interests(json.loads(data[1:]))
-        name, number, other, further, flag = _HEAD.unpack_from(data)
+        if data[:1] == b"T":
+            return _table(*json.loads(data[1:]))
+        name, number, other, further, last, flag = _HEAD.unpack_from(data)
         match name:
             case b"N":
                 return Note(Kind(other), Message.parse(json.loads(data[_HEAD.size :]), _remarked))
             case b"A":
-                return Advance(number, other, further, flag)
+                return Advance(number, bool(other), further, last, flag)
             case b"R":
-                return Reply(number, State(other), further, _read_parcels(data))
+                return Reply(number, State(other), further, last, _read_parcels(data))
             case b"M":
                 return Mail(_read_parcels(data))
     except Exception as error:
@@ -295,15 +276,23 @@ def _read_parcels(data: bytes) -> Parcels:
     return found
 
 
-def _interests(data: Any) -> Interests:
-    endpoints = tuple(StudentEndpoint(*values) for values in data)
+def _table(added: Any, removed: Any) -> Table:
+    endpoints = tuple(EndpointInfo(*values) for values in added)
     for each in endpoints:
-        forms = ((_NAME, each.node), (_CHANNEL, each.channel), (_TYPE, each.type))
-        if not all(form.fullmatch(text) for form, text in forms) or type(each.writes) is not bool:
+        forms = [(_NAME, each.node), (_CHANNEL, each.channel)]
+        forms += [] if each.channel.startswith("node ") else [(_TYPE, each.type)]
+        if not all(form.fullmatch(text) for form, text in forms):
             raise ValueError(f"no endpoint: {each!r:.200}")
-        if not all(type(number) is int and 0 <= number < 1 << 32 for number in each[4:]):
-            raise ValueError(f"no quality of service: {each!r:.200}")
-    return Interests(endpoints)
+        if not type(each.writes) is type(each.is_hidden) is bool:
+            raise ValueError(f"no endpoint: {each!r:.200}")
+        _must_be_numbers(each[4:8])
+    _must_be_numbers(removed)
+    return Table(endpoints, tuple(removed))
+
+
+def _must_be_numbers(values: Any) -> None:
+    if not all(type(number) is int and 0 <= number < 1 << 32 for number in values):
+        raise ValueError(f"no numbers of an endpoint: {values!r:.200}")
 
 
 # Packets of any length over a socket ---------------------------------------------------------

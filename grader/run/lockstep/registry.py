@@ -19,12 +19,14 @@ from rclpy.qos import (
     QoSCompatibility,
     QoSDurabilityPolicy,
     QoSHistoryPolicy,
+    QoSPolicyKind,
     QoSProfile,
     QoSReliabilityPolicy,
     qos_check_compatible,
 )
 
 from grader.message import Message
+from grader.run.lockstep.protocol import SHIFT, EndpointInfo, Table
 
 Kind = TypeVar("Kind", bound="Endpoint")
 
@@ -37,8 +39,8 @@ class Arrived:
         data: in CDR.
         time_ns: when it was sent, on the clock of the run.
         number: of a request, or which of a topic's messages it is.
-        client: the client of a request: its reader for responses in this process, or the number
-            by which the other process knows it; None for a topic.
+        client: the client of a request: its reader for responses in this process, or the number of
+            one in another; None for a topic.
     """
 
     data: bytes
@@ -49,16 +51,17 @@ class Arrived:
 
 @dataclass(eq=False)
 class Endpoint:
-    """A reader or writer of this process, or on the student's side one of the simulator's.
+    """A node, reader or writer of this process or of another.
 
     Attributes:
         channel: what it is connected to.
         type: the ROS type, "geometry_msgs/msg/Twist"; of a service, that of the whole.
         qos: its quality of service.
-        number: by which the student's side knows one of the simulator's.
-        matches, unfit: how many counterparts it has had in all, here and in the simulator: those
-            that DDS connects, and those whose quality of service does not fit.
+        number: by which all processes know it.
+        matches, unfit: how many counterparts it has had in all, in any process: those that DDS
+            connects, and those whose quality of service does not fit.
         matched: how many of the former it has. All three are counted on the student's side.
+        policy: the policy that did not fit the last of the latter.
         node: the name of its node, with the namespace.
         is_hidden: it only records: neither counts nor graphs show it.
     """
@@ -70,6 +73,7 @@ class Endpoint:
     matches: int = 0
     unfit: int = 0
     matched: int = 0
+    policy: QoSPolicyKind = QoSPolicyKind.INVALID
     node: str = "/"
     is_hidden: bool = False
 
@@ -83,10 +87,30 @@ class Endpoint:
         """The kind of channel: topic, request, response."""
         return self.channel.partition(" ")[0]
 
+    def info(self) -> EndpointInfo:
+        """Return its entry in a table."""
+        qos = self.qos
+        policies = int(qos.reliability), int(qos.durability), max(0, qos.depth)
+        writes = isinstance(self, Writer) or (isinstance(self, NodeEntry) and self.logs)
+        return EndpointInfo(
+            *(self.node, self.channel, self.type, writes, *policies, self.number, self.is_hidden)
+        )
+
     @property
     def is_lasting(self) -> bool:
         """Whether late readers get a writer's last messages, or a reader wants them."""
         return bool(self.qos.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL)
+
+
+@dataclass(eq=False)
+class NodeEntry(Endpoint):
+    """A node.
+
+    Attributes:
+        logs: whether it publishes on /rosout, by rclpy's C++.
+    """
+
+    logs: bool = True
 
 
 @dataclass(eq=False)
@@ -95,8 +119,8 @@ class Reader(Endpoint):
 
     Attributes:
         message: the class of its messages.
-        awaited: of a client's, how many responses from the other process are still to come.
-        hears: whether it hears the other process's on a topic, or its requests.
+        awaited: of a client's, how many responses from other processes are still to come.
+        hears: whether it hears others' messages on a topic, or their requests.
     """
 
     message: Any = None
@@ -122,7 +146,7 @@ class Writer(Endpoint):
         is_stream: a topic without an answer, as pose, is no reason to stop ticking.
         history: what late readers get.
         local: the readers of this process that hear it.
-        remote: the other process's readers that hear it, as far as they are known.
+        remote: the readers of other processes that hear it, as far as they are known.
     """
 
     sent: int = 0
@@ -140,14 +164,26 @@ class EndpointRegistry:
     """All endpoints of this process. The two sides of the link derive from it.
 
     Attributes:
-        others: on the student's side the simulator's endpoints, by their numbers.
+        nodes, writers, readers: those that it has now.
+        own: all of these, by their numbers.
+        others: those of other processes, in the same way.
     """
 
-    def __init__(self, now_ns: Callable[[], int]) -> None:
-        """`now_ns` returns the time that messages are stamped with."""
+    def __init__(self, now_ns: Callable[[], int], member: int = 0) -> None:
+        """Begin without any.
+
+        Args:
+            now_ns: returns the time that messages are stamped with.
+            member: the number of this process; 0 for the simulator.
+        """
+        self.nodes: list[Endpoint] = []
         self.writers: list[Writer] = []
         self.readers: list[Reader] = []
+        self.own: dict[int, Endpoint] = {}
         self.others: dict[int, Endpoint] = {}
+        self._last_number = member << SHIFT
+        self._added: dict[int, EndpointInfo] = {}
+        self._removed: list[int] = []
         #: endpoints were added or removed, and the other side of the link does not know
         self.changed = False
         #: called with what the program does that virtual time cannot follow: "the submission ..."
@@ -160,20 +196,46 @@ class EndpointRegistry:
     # Which there are --------------------------------------------------------------------------
 
     def add(self, endpoint: Endpoint) -> None:
-        """Register a new reader or writer."""
+        """Register a new node, reader or writer, and number it."""
         self.changed = self._is_unpaired = True
-        if isinstance(endpoint, Writer):
-            self.writers.append(endpoint)
-        elif isinstance(endpoint, Reader):
-            self.readers.append(endpoint)
+        endpoint.number = self._last_number = self._last_number + 1
+        self.own[endpoint.number] = endpoint
+        self._of_its_kind(endpoint).append(endpoint)
+        self._added[endpoint.number] = endpoint.info()
 
     def remove(self, endpoints: Iterable[Endpoint]) -> None:
-        """Remove readers and writers; removing one twice does no harm."""
+        """Remove some; removing one twice does no harm."""
         for endpoint in endpoints:
-            of_its_kind: list[Any] = self.writers if isinstance(endpoint, Writer) else self.readers
-            if endpoint in of_its_kind:
-                of_its_kind.remove(endpoint)
-                self.changed = self._is_unpaired = True
+            if self.own.pop(endpoint.number, None) is None:
+                continue
+            self.changed = self._is_unpaired = True
+            self._of_its_kind(endpoint).remove(endpoint)
+            if self._added.pop(endpoint.number, None) is None:
+                self._removed.append(endpoint.number)
+
+    def _of_its_kind(self, endpoint: Endpoint) -> list[Any]:
+        if isinstance(endpoint, Writer):
+            return self.writers
+        return self.readers if isinstance(endpoint, Reader) else self.nodes
+
+    def pop_table(self) -> Table:
+        """Return the changes since the last table."""
+        self.changed = False
+        table = Table(tuple(self._added.values()), tuple(self._removed))
+        self._added, self._removed = {}, []
+        return table
+
+    def add_others(self, table: Table) -> None:
+        """Add what is new in another process."""
+        for entry in table.added:
+            self.others[entry.id] = other_endpoint(entry)
+        self._is_unpaired = True
+
+    def remove_others(self, numbers: Iterable[int]) -> None:
+        """Remove what has gone in another process."""
+        for number in numbers:
+            self.others.pop(number, None)
+        self._is_unpaired = True
 
     def pair(self) -> None:
         """Find which endpoints are connected with each other; late readers get what is kept."""
@@ -213,7 +275,9 @@ class EndpointRegistry:
                 for endpoint in (writer, reader):
                     endpoint.matched += fits
                     endpoint.matches += fits and is_new
-                    endpoint.unfit += is_new and not fits
+                    if is_new and not fits:
+                        endpoint.unfit += 1
+                        endpoint.policy = _unfit(writer.qos, reader.qos)
 
     def connect(self) -> None:
         """Connect what belongs together; before anything is sent."""
@@ -285,10 +349,29 @@ def suits(writer: Endpoint, reader: Endpoint) -> bool:
     return bool(compatibility != QoSCompatibility.ERROR)
 
 
-def policies(reliability: int, durability: int, depth: int) -> QoSProfile:
-    """Return the quality of service of a simulator's endpoint, from its entry in a table."""
-    return QoSProfile(
-        depth=depth,
-        reliability=QoSReliabilityPolicy(reliability),
-        durability=QoSDurabilityPolicy(durability),
+def _unfit(offered: QoSProfile, requested: QoSProfile) -> QoSPolicyKind:
+    """Return the policy that DDS names where one or two do not fit."""
+    reliable = QoSReliabilityPolicy.RELIABLE
+    is_reliability = requested.reliability == reliable != offered.reliability
+    return QoSPolicyKind.RELIABILITY if is_reliability else QoSPolicyKind.DURABILITY
+
+
+def other_endpoint(entry: EndpointInfo) -> Endpoint:
+    """Return a node, reader or writer of another process, from its entry in a table.
+
+    Raises:
+        ValueError: it has no quality of service.
+    """
+    qos = QoSProfile(
+        depth=max(1, entry.depth),
+        reliability=QoSReliabilityPolicy(entry.reliability),
+        durability=QoSDurabilityPolicy(entry.durability),
     )
+    facts = (entry.channel, entry.type, qos, entry.id)
+    made: Endpoint
+    if entry.channel.startswith("node "):
+        made = NodeEntry(*facts, logs=entry.writes)
+    else:
+        made = Writer(*facts) if entry.writes else Reader(*facts)
+    made.node, made.is_hidden = entry.node, entry.is_hidden
+    return made

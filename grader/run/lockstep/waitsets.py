@@ -14,7 +14,7 @@ from grader.run.lockstep.faults import pass_on
 from grader.run.lockstep.protocol import NEVER
 from grader.run.lockstep.registry import Endpoint, Reader
 
-_WaitSet, _Timer, _EventHandle = _rclpy.WaitSet, _rclpy.Timer, _rclpy.EventHandle
+_Timer, _EventHandle = _rclpy.Timer, _rclpy.EventHandle
 
 
 class Waiter:
@@ -26,16 +26,13 @@ class Waiter:
 
     @property
     def graph_epoch(self) -> int:
-        """The number of changes of the graph: after one, DDS may have events for us."""
+        """The number of changes of the graph: after one, there may be events."""
         return -1
 
     @property
     def is_alone(self) -> bool:
         """Whether the program has but one thread."""
         return True
-
-    def await_dds(self, what: str) -> None:
-        """Wait a little for DDS, in real time; end the run where that is in vain."""
 
     def before_wait(self) -> None:
         """Called before a wait set checks whether something is ready."""
@@ -120,12 +117,19 @@ class MatchedStatus(_rclpy.rmw_matched_status_t):
     current_count_change = 0
 
 
-class EventHandle(_rclpy.EventHandle):
-    """An event of DDS: counterparts have come or gone, or their quality of service does not fit.
+class UnfitStatus(_rclpy.rmw_requested_qos_incompatible_event_status_t):
+    """How many there have been whose quality of service does not fit, and why the last did not."""
 
-    We know counterparts as soon as they are there, and report those that come and go. About what
-    does not fit DDS knows more than we do, so a wait set waits until DDS has reported it. Other
-    events are about real time or real networks, and never come.
+    total_count = 0
+    total_count_change = 0
+    last_policy_kind = 0
+
+
+class EventHandle(_rclpy.EventHandle):
+    """An event: counterparts have come or gone, or their quality of service does not fit.
+
+    We know them as soon as they are there. Other events are about real time or real networks, and
+    never come.
     """
 
     #: it is to be destroyed
@@ -135,8 +139,7 @@ class EventHandle(_rclpy.EventHandle):
         pass_on(_EventHandle.__init__, self, parent, kind)
         self._endpoint: Endpoint = parent.endpoints[0]
         self._counts_matches = kind.name.endswith("_MATCHED")
-        #: only DDS can report it
-        self.is_unfit = bool(kind.name.endswith("_INCOMPATIBLE_QOS"))
+        self._counts_unfit = bool(kind.name.endswith("_INCOMPATIBLE_QOS"))
         #: how many there had been and were at the last report to the program
         self._reported = (0, 0)
 
@@ -146,28 +149,29 @@ class EventHandle(_rclpy.EventHandle):
         _EventHandle.destroy_when_not_in_use(self)
 
     def is_due(self) -> bool:
-        """Whether there is something to report; DDS may still have to find it."""
-        if self.is_gone:
-            return False
-        if self.is_unfit:
-            return self._endpoint.unfit > self._reported[0]
-        return self._counts_matches and self._matches() != self._reported
+        """Whether there is something to report."""
+        return not self.is_gone and self._counted() != self._reported
 
-    def _matches(self) -> tuple[int, int]:
-        return self._endpoint.matches, self._endpoint.matched
+    def _counted(self) -> tuple[int, int]:
+        if self._counts_matches:
+            return self._endpoint.matches, self._endpoint.matched
+        return (self._endpoint.unfit, 0) if self._counts_unfit else (0, 0)
 
     def take_event(self) -> Any:
         """As in rclpy."""
-        if not self._counts_matches:
-            status = pass_on(_EventHandle.take_event, self)
-            if self.is_unfit and status is not None:
-                self._reported = (status.total_count, 0)
-            return status
-        status = MatchedStatus.__new__(MatchedStatus)
-        before, self._reported = self._reported, self._matches()
-        status.total_count, status.current_count = self._reported
+        before, self._reported = self._reported, self._counted()
+        status: Any
+        if self._counts_matches:
+            status = MatchedStatus.__new__(MatchedStatus)
+            status.current_count = self._reported[1]
+            status.current_count_change = self._reported[1] - before[1]
+        elif self._counts_unfit:
+            status = UnfitStatus.__new__(UnfitStatus)
+            status.last_policy_kind = int(self._endpoint.policy)
+        else:
+            return pass_on(_EventHandle.take_event, self)
+        status.total_count = self._reported[0]
         status.total_count_change = self._reported[0] - before[0]
-        status.current_count_change = self._reported[1] - before[1]
         return status
 
 
@@ -181,8 +185,7 @@ class WaitSet:
         ready_guards: the guard conditions that were triggered.
     """
 
-    def __init__(self, *sizes_and_context: Any) -> None:
-        self._context = sizes_and_context[-1]
+    def __init__(self, *_: Any) -> None:
         self.clear_entities()
 
     def clear_entities(self) -> None:
@@ -306,20 +309,7 @@ class WaitSet:
         if not any(due):
             self._quiet_epoch = epoch
             return []
-        awaited = [e for e, is_due in zip(self._events, due, strict=True) if is_due and e.is_unfit]
-        while not self._has_dds(awaited):
-            WAITER.await_dds("event")
         return due
-
-    def _has_dds(self, events: list[EventHandle]) -> bool:
-        """Whether DDS reports all of these."""
-        if not events:
-            return True
-        real = _WaitSet(0, 0, 0, 0, 0, len(events), self._context)
-        real.clear_entities()
-        places = [real.add_event(event) for event in events]
-        real.wait(0)
-        return all(real.is_ready("event", place) for place in places)
 
     def _next_timer(self) -> int:
         """Return when the first timer is due."""

@@ -47,7 +47,7 @@ class FamilyUsage(NamedTuple):
 
 
 class LimitsGuard:
-    """Watches the descendants of a process until it is stopped.
+    """Watches the descendants of a process, or of several, until it is stopped.
 
     Attributes:
         remark: what they used too much of, for the result; NOTHING for none.
@@ -68,14 +68,20 @@ class LimitsGuard:
             printed_bytes: returns how much they have printed.
         """
         self.remark = NOTHING
-        self._family, self._limits, self._end = Family(ancestor), limits, end
-        self._printed_bytes = printed_bytes
+        self._family, self._limits = Family(ancestor), limits
+        self._ends, self._printed_bytes = [end], [printed_bytes]
         self._budget, self._seen_ticks = budget or CpuBudget(), 0
         self._has_ended = False
         self._next_close_measurement, self._available = 0.0, 0
         self._is_over = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
+
+    def add(self, ancestor: int, end: Callable[[], None], printed_bytes: Callable[[], int]) -> None:
+        """Watch the descendants of another process as well: the limits are those of all."""
+        self._ends.append(end)
+        self._printed_bytes.append(printed_bytes)
+        self._family.add(ancestor)
 
     def stop(self) -> None:
         """Stop measuring."""
@@ -98,7 +104,8 @@ class LimitsGuard:
 
     def _end_all(self) -> None:
         self._has_ended = True
-        self._end()
+        for end in tuple(self._ends):
+            end()
 
     def _is_too_much(self) -> bool:
         limits = self._limits
@@ -116,7 +123,7 @@ class LimitsGuard:
             )
         if found.tasks > limits.tasks + NEAR:
             return True
-        if self._printed_bytes() > limits.output_bytes:
+        if sum(printed() for printed in tuple(self._printed_bytes)) > limits.output_bytes:
             self.remark = msg(
                 "the node and what it started printed more than {size}, and were ended: a run may "
                 "print no more",
@@ -156,15 +163,20 @@ class LimitsGuard:
 
 
 class Family:
-    """The descendants of a process, found anew for each measurement."""
+    """The descendants of some processes, found anew for each measurement."""
 
     def __init__(self, ancestor: int) -> None:
-        self._ancestor = ancestor
+        self._ancestors = {ancestor}
         #: Processes that are not in the family, and never will be.
         self._others: set[int] = set()
 
+    def add(self, ancestor: int) -> None:
+        """Add the descendants of another process."""
+        self._ancestors = {*self._ancestors, ancestor}  # it may be read meanwhile
+        self._others = set()
+
     def usage(self) -> FamilyUsage:
-        """Measure their usage quickly, without the ancestor."""
+        """Measure their usage quickly, without the ancestors."""
         members = self._members()
         memory = sum(member.memory_bytes for member in members.values())
         tasks = sum(member.tasks for member in members.values())
@@ -177,14 +189,14 @@ class Family:
 
     def _members(self) -> dict[int, ProcessStat]:
         there = linux.process_ids()
-        self._others &= there
+        self._others = self._others & there
         found = {
             pid: stat for pid in there - self._others if (stat := linux.process_stat(pid)).state
         }
-        ancestor = {self._ancestor}
-        members = {pid: found[pid] for pid in linux.below(ancestor, found)}
+        ancestors = self._ancestors
+        members = {pid: found[pid] for pid in linux.below(ancestors, found)}
         # one whose parent has just ended has a new one, and is found the next time
-        rest = {pid: found[pid] for pid in found.keys() - members.keys() - ancestor}
+        rest = {pid: found[pid] for pid in found.keys() - members.keys() - ancestors}
         self._others |= linux.below(self._others | {0}, rest)
         return members
 

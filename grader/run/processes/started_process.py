@@ -272,18 +272,25 @@ class SubmissionProcess(StartedProcess):
         command: ProcessCommand,
         server: ForkServer | None = None,
         budget: CpuBudget | None = None,
+        beside: SubmissionProcess | None = None,
     ) -> None:
         """Start it; see `StartedProcess`.
 
         Args:
             budget: of the grading, which ends it and its descendants; None for none.
+            beside: another of the same submission, with which it shares the limits.
         """
         self._guard: LimitsGuard | None = None
         self._excess = NOTHING
         super().__init__(command, server)
-        self._guard = LimitsGuard(
-            *(self._child.pid, self.kill), budget=budget, printed_bytes=lambda: self.printed_bytes
-        )
+        watched = (self._child.pid, self.kill)
+        if beside is not None and beside._guard is not None:
+            self._guard = beside._guard
+            self._guard.add(*watched, lambda: self.printed_bytes)
+        else:
+            self._guard = LimitsGuard(
+                *watched, budget=budget, printed_bytes=lambda: self.printed_bytes
+            )
 
     def ends_for_excess(self) -> bool:
         """Measure its usage once more; return whether it is ended for too much, now or before."""

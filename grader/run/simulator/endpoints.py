@@ -1,4 +1,4 @@
-"""The simulator's readers and writers in virtual time, numbered, with their outgoing messages."""
+"""The simulator's readers and writers in virtual time, with their outgoing messages."""
 
 from __future__ import annotations
 
@@ -11,15 +11,20 @@ from grader.message import Message, msg
 from grader.run.lockstep.endpoints import deserialized
 from grader.run.lockstep.protocol import (
     EPOCH_NS,
+    SHIFT,
     TICK_NS,
     EndpointInfo,
-    Interests,
     Parcel,
     Parcels,
-    StudentEndpoint,
     Table,
 )
-from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
+from grader.run.lockstep.registry import (
+    Arrived,
+    EndpointRegistry,
+    NodeEntry,
+    Reader,
+    Writer,
+)
 
 #: The longest message that a reader accepts [bytes]; DDS has no limit, but no parameter is longer.
 LONGEST_MESSAGE: Final = 2_000_000
@@ -27,6 +32,8 @@ LONGEST_MESSAGE: Final = 2_000_000
 MOST_UNREAD, LARGE = 64_000_000, 4_096
 #: So much may wait for the student's side [bytes] before a reply sends it.
 MOST_OUTGOING = 32_000_000
+#: Nodes, readers and writers of the student's side at once; a node of rclpy's has ten.
+MOST_ENDPOINTS = 10_000
 #: Different topics of the student's side that are kept for the result.
 MOST_TOPICS = 1_000
 
@@ -38,7 +45,7 @@ class SimulatorEndpoints(EndpointRegistry):
 
     Attributes:
         published: the topics on which the student's side has published: topic -> type.
-        theirs: the readers and writers that it has now.
+        theirs: its readers and writers, as a recording knows them.
     """
 
     def __init__(self, now_ns: Callable[[], int], flag: Callable[[Message], None]) -> None:
@@ -48,57 +55,37 @@ class SimulatorEndpoints(EndpointRegistry):
         self.tick = 0
         #: since the last call of `pop_outgoing` something was sent that may be waited for
         self.answered = False
-        self._last_number = 0
-        self._by_number: dict[int, Endpoint] = {}
-        self._added: list[EndpointInfo] = []
-        self._removed: list[int] = []
         self._outgoing: Parcels = []
         self._outgoing_bytes = 0
         self._unread_bytes = 0  # at most: what was read since is not subtracted
-        self._read = frozenset[str]()
-        self.theirs: tuple[StudentEndpoint, ...] = ()
+        self.theirs: tuple[EndpointInfo, ...] = ()
         #: what hidden readers have received, and since when [ns, on the clock of the run]
         self._heard: list[tuple[str, str, int, bytes]] = []
         self._heard_ns = EPOCH_NS
         self.published: dict[str, str] = {}
         self._may_have_unread = True
 
-    def add(self, endpoint: Endpoint) -> None:
-        """Number a new endpoint."""
-        super().add(endpoint)
-        endpoint.number = self._last_number = self._last_number + 1
-        self._by_number[endpoint.number] = endpoint
-        qos = endpoint.qos
-        policies = (int(qos.reliability), int(qos.durability), max(1, qos.depth))
-        writes = isinstance(endpoint, Writer)
-        self._added.append(
-            EndpointInfo(
-                *(endpoint.number, endpoint.channel, endpoint.type, writes, *policies),
-                is_hidden=endpoint.is_hidden,
-            )
-        )
-
-    def remove(self, endpoints: Iterable[Endpoint]) -> None:
-        """Remove endpoints."""
-        gone = [e for e in endpoints if self._by_number.pop(e.number, None)]
-        super().remove(gone)
-        self._removed += [endpoint.number for endpoint in gone]
-
-    def pop_table(self) -> Table:
-        """Return the changes since the last table."""
-        self.changed = False
-        gone = set(self._removed)
-        added = tuple(entry for entry in self._added if entry.id not in gone)
-        table = Table(added, tuple(self._removed))
-        self._added, self._removed = [], []
-        return table
-
     # What the student's side reads and publishes ----------------------------------------------
 
-    def note(self, interests: Interests) -> None:
-        """Note what the student's side reads and publishes."""
-        self.theirs = interests.endpoints
-        self._read = frozenset(each.channel for each in self.theirs if not each.writes)
+    def note(self, table: Table, member: int = 1) -> None:
+        """Note what a program reads and publishes now.
+
+        Raises:
+            ValueError: it has no such numbers, or there is no such quality of service.
+        """
+        numbers = [*(each.id for each in table.added), *table.removed]
+        if any(number >> SHIFT != member for number in numbers):
+            raise ValueError("numbers of another process")
+        if len(self.others) + len(table.added) > MOST_ENDPOINTS:
+            raise ValueError("too many endpoints")
+        self.add_others(table)
+        self.remove_others(table.removed)
+        self.pair()
+        shown = (each for each in self.others.values() if not isinstance(each, NodeEntry))
+        entries = (each.info() for each in shown)
+        self.theirs = tuple(
+            sorted(e._replace(type=e.type.rstrip(), id=0, is_hidden=False) for e in entries)
+        )
         types: dict[str, set[str]] = {}
         for each in self.theirs:
             kind, _, topic = each.channel.partition(" ")
@@ -116,24 +103,11 @@ class SimulatorEndpoints(EndpointRegistry):
                     msg("the node published on more than {number} topics", number=MOST_TOPICS)
                 )
 
-    def is_read(self, writer: Writer) -> bool:
-        """Whether the student's side reads what this writer writes."""
-        return writer.channel in self._read
-
-    def count_readers(self, writer: Writer) -> int:
-        """Return how many hear a writer; all readers on the student's side count as one."""
-        return super().count_readers(writer) + self.is_read(writer)
-
-    def count_writers(self, reader: Reader) -> int:
-        """Return how many a reader hears; all writers on the student's side count as one."""
-        theirs = any(each.writes and each.channel == reader.channel for each in self.theirs)
-        return super().count_writers(reader) + theirs
-
     def others_are_read(self, writers: Iterable[Writer]) -> bool:
         """Whether the student's side reads a topic of ours that is not one of these."""
         known = {writer.channel for writer in writers}
         return any(
-            writer.is_stream and writer.channel in self._read and writer.channel not in known
+            writer.is_stream and writer.remote and writer.channel not in known
             for writer in self.writers
         )
 
@@ -166,29 +140,30 @@ class SimulatorEndpoints(EndpointRegistry):
         """Send to readers in this process at once, to the student's side with the next reply."""
         super().publish(writer, data)
         self._may_have_unread = self._may_have_unread or bool(writer.local)
-        if self.is_read(writer) or writer.is_lasting:
-            self._send(writer, 0, writer.sent, data)
+        if writer.remote or writer.is_lasting:
+            self._send(writer.number, 0, writer.sent, data, is_answer=not writer.is_stream)
 
     def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
         """Send a request in the same way; its response comes to the client's number."""
         number = super().ask(writer, client, data)
         self._may_have_unread = self._may_have_unread or bool(writer.local)
-        if self.is_read(writer):
-            self._send(writer, client.number, number, data)
+        for reader in writer.remote:
+            self._send(reader.number, client.number, number, data)
         return number
 
     def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
         """Send a response in the same way."""
         super().respond(writer, to, data)
         if isinstance(to.client, int):
-            self._send(writer, to.client, to.number, data)
+            self._send(to.client, 0, to.number, data)
 
-    def _send(self, writer: Writer, client: int, number: int, data: bytes) -> None:
-        self._outgoing.append(Parcel(writer.number, client, number, self.tick * TICK_NS, data))
+    def _send(
+        self, to: int, client: int, number: int, data: bytes, *, is_answer: bool = True
+    ) -> None:
+        self._outgoing.append(Parcel(to, client, number, self.tick * TICK_NS, data))
         self._outgoing_bytes += len(data)
         # more than a few pictures are sent as soon as an answer would be
-        is_answer = not writer.is_stream or self._outgoing_bytes > MOST_OUTGOING
-        self.answered = self.answered or is_answer
+        self.answered = self.answered or is_answer or self._outgoing_bytes > MOST_OUTGOING
 
     def pop_outgoing(self) -> Parcels:
         """Return what was sent to the student's side since the last call."""
@@ -201,7 +176,7 @@ class SimulatorEndpoints(EndpointRegistry):
         """Put what the student's side has sent into the readers."""
         self._may_have_unread = True
         for endpoint, client, number, time_ns, data in parcels:
-            reader = self._by_number.get(endpoint)
+            reader = self.own.get(endpoint)
             if not isinstance(reader, Reader):
                 continue  # gone meanwhile
             if not self._has_room(len(data)):

@@ -56,7 +56,7 @@ class Foresight:
         read = [
             (index, writer.number, writer.sent)
             for index, writer in enumerate(writers)
-            if self._registry.is_read(writer)
+            if writer.remote
         ]
         self._forecast, self._writers = forecast, writers
         self.end = tick + len(forecast.ticks)
@@ -68,7 +68,7 @@ class Foresight:
 
     def _worth_while(self, tick: int, request: Advance) -> int:
         """Return how many ticks the student's side will probably use before it sends something."""
-        if request.most == 0:
+        if request.target_ns == 0:
             return 0
         if request.has_mailed:
             self._vain = 0 if self._made else self._vain + 1
@@ -79,7 +79,7 @@ class Foresight:
             self._vain = 0
             self._length = 2 * self._length + 1
         self._length = min(MOST_TICKS, self._length)
-        return min(self._length, request.target - tick)
+        return min(self._length, request.target_ns // TICK_NS - tick)
 
     def make_tick(self, now_ns: int) -> Reason:
         """Make the next of these ticks, at this time on the scene's clock [ns].

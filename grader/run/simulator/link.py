@@ -6,7 +6,7 @@ import os
 import select
 import socket
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from typing import Literal
 
@@ -18,7 +18,6 @@ from grader.run.lockstep.protocol import (
     MOST_SENT_BYTES,
     PROGRESS,
     Advance,
-    Interests,
     Kind,
     Mail,
     Note,
@@ -75,8 +74,19 @@ class StudentLink:
         excused_cpu_s: processor time of the simulator's that is not the submission's doing [s].
     """
 
-    def __init__(self, link: socket.socket, page: int, pid: int, patience: Patience) -> None:
-        """Watch process `pid` at the other end, which writes its tick into the page."""
+    def __init__(
+        self,
+        link: socket.socket,
+        page: int,
+        pid: int,
+        patience: Patience,
+        others: Iterable[int] = (),
+    ) -> None:
+        """Watch process `pid` at the other end, which writes its tick into the page.
+
+        Args:
+            others: the other programs' processes, with which it shares its processor time.
+        """
         self.silence = ""
         self.waits: Literal["", "for ever", "stuck"] = ""
         self.flags: list[Message] = []
@@ -85,6 +95,7 @@ class StudentLink:
         self._link = link
         self._packets = PacketReader(link, LIMIT_BYTES)
         self._pid = pid
+        self._used_s = dict.fromkeys((pid, *others), 0.0)
         self._may_read, self._may_send = select.poll(), select.poll()
         self._may_read.register(link, select.POLLIN)
         self._may_send.register(link, select.POLLOUT)
@@ -148,7 +159,7 @@ class StudentLink:
         except Refused:
             self.break_off(msg("its process does not read what it has asked for"))
 
-    def receive(self) -> Interests | Advance | None:
+    def receive(self) -> Table | Advance | None:
         """Return the next request; None when there will be no other: see `silence`.
 
         Raises:
@@ -174,7 +185,7 @@ class StudentLink:
                     self.silence = "gone"
                 case Note():
                     self._handle(packet)
-                case Interests() | Advance():
+                case Table() | Advance():
                     return packet
                 case _:
                     self.break_off(msg("its process sent what only a simulator says"))
@@ -249,13 +260,19 @@ class StudentLink:
         now = time.monotonic()
         if now > self._next_check_s:
             self._next_check_s = now + CPU_CHECK_S
-            if linux.process_stat(self._pid).cpu_s > self._patience.run_cpu_s:
+            if self._used_cpu_s() > self._patience.run_cpu_s:
                 self.silence = "slow"
             elif self._asleep_s > self._patience.all_asleep_s:
                 raise Refused(ELSEWHERE)
             elif self._spent_cpu_s() > self._patience.simulator_cpu_s:
                 self.silence = "flooding"
         return bool(self.silence)
+
+    def _used_cpu_s(self) -> float:
+        """Return the processor time of all programs, those that have ended included [s]."""
+        for pid, before_s in self._used_s.items():
+            self._used_s[pid] = max(before_s, linux.process_stat(pid).cpu_s)
+        return sum(self._used_s.values())
 
     def _spent_cpu_s(self) -> float:
         return time.process_time() - self._cpu_before_s - self.excused_cpu_s

@@ -3,7 +3,7 @@
     python -m grader.run.simulator.virtual_main ...
     python -m grader.run.simulator.virtual_main --fork-server SOCKET NEEDED
 
-The arguments are those of `grader.run.simulator.virtual_time`. Whatever fails in this process
+The arguments are those of `grader.run.simulator.hub`. Whatever fails in this process
 fails here: the grader then runs the submission in real time, and the result says why. Should that
 fail as well, it is the grader's failure.
 
@@ -37,9 +37,9 @@ def main(argv: list[str]) -> int:
 
         if broken := contract.broken():
             return _refuse(argv, broken)
-        from grader.run.simulator import virtual_time
+        from grader.run.simulator import hub
 
-        return virtual_time.main(argv)
+        return hub.main(argv)
     except Exception as error:
         traceback.print_exc()
         return _refuse(argv, msg("virtual time itself failed ({where})", where=_where(error)))
@@ -57,7 +57,7 @@ def serve_runs(words: Sequence[str]) -> list[str]:
         sys.exit(1)  # the run reports it, after a cold start
     from grader.run.lockstep import endpoints
     from grader.run.processes import fork_server_main
-    from grader.run.simulator import virtual_time  # noqa: F401
+    from grader.run.simulator import hub  # noqa: F401
     from grader.scenes import load_scene
 
     number, needed = words

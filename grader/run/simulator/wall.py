@@ -15,7 +15,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
-from grader.run.lockstep.protocol import StudentEndpoint
+from grader.run.lockstep.protocol import EndpointInfo
 from grader.scenes.scene import STEP_NS
 
 #: CastKeeper the cast's own nodes.
@@ -86,7 +86,7 @@ class WallWire:
         is_new, self._is_new_tick = self._is_new_tick, False
         return is_new
 
-    def endpoints(self, ours: set[str]) -> tuple[StudentEndpoint, ...] | None:
+    def endpoints(self, ours: set[str]) -> tuple[EndpointInfo, ...] | None:
         """Return what the program has; None in ticks in which nobody looks.
 
         Args:
@@ -99,7 +99,7 @@ class WallWire:
         known = {*ours, *map(_called, (self.node, *self._others))}
         return tuple(sorted({each for each in self._graph() if each.node not in known}))
 
-    def _graph(self) -> Iterator[StudentEndpoint]:
+    def _graph(self) -> Iterator[EndpointInfo]:
         node = self.node
         for topic, _ in node.get_topic_names_and_types()[:MOST_TOPICS]:
             writers = node.get_publishers_info_by_topic(topic)
@@ -108,7 +108,7 @@ class WallWire:
                 policies = (int(qos.reliability), int(qos.durability), max(0, qos.depth))
                 writes = any(each is writer for writer in writers)
                 kind = each.topic_type
-                yield StudentEndpoint(name, f"topic {topic}", kind, writes, *policies)
+                yield EndpointInfo(name, f"topic {topic}", kind, writes, *policies)
         for own, namespace in node.get_node_names_and_namespaces()[:MOST_TOPICS]:
             name = _joined(namespace, own)
             try:
@@ -118,7 +118,7 @@ class WallWire:
                 continue
             for writes, listed in ((False, served), (True, asked)):
                 for service, kinds in listed:
-                    yield StudentEndpoint(name, f"request {service}", kinds[0], writes)
+                    yield EndpointInfo(name, f"request {service}", kinds[0], writes)
 
 
 def _node(name: str, context: Context | None) -> Node:

@@ -136,20 +136,17 @@ def install(
     from grader.run.clock.link import SimulatorLink
     from grader.run.lockstep import endpoints
 
-    link = SimulatorLink(scheduler, connection, page, refuse)
+    compares_stamps, texts, unlike, is_recorded, number, _ = json.loads(introduction)
+    link = SimulatorLink(scheduler, connection, page, refuse, number)
     main = scheduler.main.ident
 
     def on_deadlock() -> None:
         is_stuck = witness.ending.deadlocked([each.ident for each in scheduler.runners], main)
         link.note(Kind.STUCK if is_stuck else Kind.WAITING)
 
-    nodes, compares_stamps, texts, unlike, is_recorded, _ = json.loads(introduction)
     if texts:
         endpoints.make_importable(texts, unlike)
-    known = [(name, namespace) for name, namespace in nodes]
-    rclpy_time.install(
-        scheduler, link, known, compares_stamps=compares_stamps, on_deadlock=on_deadlock
-    )
+    rclpy_time.install(scheduler, link, compares_stamps=compares_stamps, on_deadlock=on_deadlock)
     if is_recorded:
         link.is_recorded = True
         rosout.install(link)
@@ -159,6 +156,10 @@ def install(
     hooks.install_in_threads(witness)
     hooks.install(witness)
     hooks.install_actions(witness)
+    if number > 1:
+        time_and_chance.vary_chance(number)
+    if number:
+        link.connect()  # waits for the turn of this program
     return link
 
 

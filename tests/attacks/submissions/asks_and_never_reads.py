@@ -4,7 +4,7 @@ import struct
 
 from tools import libc, rest
 
-ask = struct.pack("<cQIQ?", b"A", 1 << 40, 0, 1 << 40, True)
+ask = struct.pack("<cQIQQ?", b"A", 1 << 40, 0, 1 << 40, 1 << 40, True)
 for _ in range(200):
     for fd in range(3, 64):
         libc.send(fd, ask, len(ask), 0x4040)

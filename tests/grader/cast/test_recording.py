@@ -21,10 +21,10 @@ from grader.recording import bag
 from grader.recording.channel import Channel
 from grader.recording.subject import load_subject
 from grader.rosidl.cdr import serialise, string
-from grader.run.lockstep.protocol import StudentEndpoint
+from grader.run.lockstep.protocol import EndpointInfo
 
 STRING = "std_msgs/msg/String"
-TALKS = StudentEndpoint("/node", "topic /chatter", STRING, True)
+TALKS = EndpointInfo("/node", "topic /chatter", STRING, True)
 
 
 class Heard:

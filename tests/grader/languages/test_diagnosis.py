@@ -18,7 +18,7 @@ from grader.run.clock.unsupported_calls import _OTHER_PROCESS
 from grader.run.lockstep.faults import failed
 from grader.run.opening import open_submission
 from grader.run.simulator import link, real_time
-from grader.run.simulator.virtual_time import VAIN
+from grader.run.simulator.hub import VAIN
 from grader.scenes.turtlesim import allowance
 from grader.translations import translate
 from tests.grader.diagnosis.cases import run_of

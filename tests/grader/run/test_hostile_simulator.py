@@ -17,8 +17,7 @@ from grader.recording.recording import Recording, Recordings
 from grader.run import handover, real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.limits import Patience
-from grader.run.simulator import link
-from grader.run.simulator import virtual_time as simulator
+from grader.run.simulator import hub, link
 from grader.scenes.scene import Limits
 from grader.scenes.turtlesim.allowance import LONGEST_NAME, MOST_TURTLES
 from tests import runs
@@ -102,7 +101,7 @@ def test_who_never_reads_does_not_block_the_simulator() -> None:
 def test_who_lets_no_time_pass_is_not_waited_for() -> None:
     recording = run("lets_no_time_pass")
     assert recording.run.outcome == "killed"
-    assert simulator.VAIN in recording.run.flags
+    assert hub.VAIN in recording.run.flags
 
 
 def test_who_keeps_the_simulator_busy_is_told_so() -> None:

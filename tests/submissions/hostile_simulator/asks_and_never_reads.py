@@ -29,6 +29,6 @@ def is_link(fd):
 
 fd = next(filter(is_link, range(3, 100)))
 link = socket.socket(fileno=os.dup(fd))
-head = struct.Struct("<cQIQ?")
+head = struct.Struct("<cQIQQ?")
 while True:
-    link.send(head.pack(b"A", 0, 0, 0, True))
+    link.send(head.pack(b"A", 0, 0, 0, 0, True))

@@ -31,10 +31,10 @@ def sockets():
 
 ends = dict(sockets())
 link, mailbox = ends[True], ends[False]
-head, parcel = struct.Struct("<cQIQ?"), struct.Struct("<IIQQI")
+head, parcel = struct.Struct("<cQIQQ?"), struct.Struct("<IIQQI")
 chance = random.Random(2)
 twist_bytes = b"\0\1\0\0" + struct.pack("<6d", *[float("nan")] * 6)
-mail = head.pack(b"M", 0, 0, 0, False)
+mail = head.pack(b"M", 0, 0, 0, 0, False)
 
 
 def lies():
@@ -53,16 +53,16 @@ for turn in range(60):
         mailbox.sendmsg(
             [mail], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, struct.pack("3i", 0, 1, 2))]
         )
-    kind = ("std_msgs/msg/String", True, 1, 2, 10)
-    topics = [["/a", f"topic /t{turn}_{number}", *kind] for number in range(200)]
-    link.send(b"I" + json.dumps(topics).encode())
-    link.send(head.pack(b"N", 0, 2, 0, False) + b"\xff" * 100)
-    link.send(head.pack(b"A", 2**64 - 1, 1, 2**64 - 1, True))
+    kind, first = ("std_msgs/msg/String", True, 1, 2, 10), (1 << 20) + 1000 + 200 * turn
+    topics = [["/a", f"topic /t{turn}_{n}", *kind, first + n] for n in range(200)]
+    link.send(b"T" + json.dumps([topics, []]).encode())
+    link.send(head.pack(b"N", 0, 2, 0, 0, False) + b"\xff" * 100)
+    link.send(head.pack(b"A", 2**64 - 1, 1, 2**64 - 1, 0, True))
     link.recv(200_000)
 # in pieces, of which there is no end
 mailbox.setblocking(True)
 piece = b"+" + bytes(150_000)
 for _ in range(2_000):
     mailbox.send(piece)
-    link.send(head.pack(b"A", 0, 0, 0, True))
+    link.send(head.pack(b"A", 0, 0, 0, 0, True))
     link.recv(200_000)

@@ -28,7 +28,7 @@ def is_link(fd):
 
 
 link = socket.socket(fileno=os.dup(next(filter(is_link, range(3, 100)))))
-head = struct.Struct("<cQIQ?")
+head = struct.Struct("<cQIQQ?")
 while True:
-    link.send(head.pack(b"A", 0, 0, 0, False))
+    link.send(head.pack(b"A", 0, 0, 0, 0, False))
     link.recv(200_000)

@@ -31,12 +31,13 @@ for fd in sorted(filter(is_socket, range(3, 100)), key=os.get_blocking, reverse=
         link = socket.socket(fileno=os.dup(fd))
         if link.getsockopt(socket.SOL_SOCKET, socket.SO_TYPE) != socket.SOCK_SEQPACKET:
             continue
-        head, parcel = struct.Struct("<cQIQ?"), struct.Struct("<IIQQI")
+        head, parcel = struct.Struct("<cQIQQ?"), struct.Struct("<IIQQI")
         lies = [parcel.pack(number, 0, 10**15, 10**15, 3) + b"lie" for number in range(200)]
-        link.send(head.pack(b"A", 2**63, 0, 2**63, True))
-        link.send(b'I[["/a", "topic /turtle1/pose", "turtlesim/msg/Pose", false, 1, 2, 10]]')
-        link.send(head.pack(b"M", 0, 0, 0, False) + b"".join(lies))
-        link.send(head.pack(b"N", 0, 2, 0, False) + b"\x00\x1b[31mred" * 50)
+        link.send(head.pack(b"A", 0, 0, 2**63, 2**63, True))
+        hears = '["/a", "topic /turtle1/pose", "turtlesim/msg/Pose", false, 1, 2, 10, 1048999]'
+        link.send(f"T[[{hears}], []]".encode())
+        link.send(head.pack(b"M", 0, 0, 0, 0, False) + b"".join(lies))
+        link.send(head.pack(b"N", 0, 2, 0, 0, False) + b"\x00\x1b[31mred" * 50)
         time.sleep(0.5)
         link.send(b"T{}")
         link.send(os.urandom(5000))

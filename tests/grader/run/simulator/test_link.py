@@ -14,7 +14,18 @@ import pytest
 
 from grader.message import plain_text
 from grader.run.limits import Patience
-from grader.run.lockstep.protocol import PROGRESS, Advance, Kind, Mail, Note, Parcel, Table, encode
+from grader.run.lockstep.protocol import (
+    PROGRESS,
+    Advance,
+    Kind,
+    Mail,
+    Note,
+    Parcel,
+    Reply,
+    State,
+    Table,
+    encode,
+)
 from grader.run.observe import account
 from grader.run.simulator import link
 from grader.run.simulator.link import Refused, StudentLink
@@ -30,7 +41,9 @@ def ends() -> Iterator[tuple[socket.socket, socket.socket]]:
         yield ours, theirs
 
 
-@pytest.mark.parametrize("data", [b"?", b"A", b"T{}", encode(Table(())), b"\xff" * 1000])
+@pytest.mark.parametrize(
+    "data", [b"?", b"A", b"T{}", encode(Reply(0, State.OVER, 0)), b"\xff" * 1000]
+)
 def test_nonsense_ends_the_conversation(
     ends: tuple[socket.socket, socket.socket], data: bytes
 ) -> None:
@@ -45,9 +58,9 @@ def test_requests_come_through_and_notes_are_kept(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
     heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience())
-    for packet in (Note(Kind.STUCK), Advance(5, 1, 0)):
+    for packet in (Note(Kind.STUCK), Advance(5, True, 0, 0)):
         ends[1].send(encode(packet))
-    assert heard.receive() == Advance(5, 1, 0)
+    assert heard.receive() == Advance(5, True, 0, 0)
     assert heard.waits == "stuck"
 
 
@@ -85,7 +98,7 @@ def test_nonsense_in_the_mail_ends_the_conversation(
     _, (mailbox,), _, _ = socket.recv_fds(ends[1], 1000, 1)
     with socket.socket(fileno=mailbox) as mail:
         mail.send(b"?")
-        mail.send(encode(Advance(5, 1, 0)))
+        mail.send(encode(Advance(5, True, 0, 0)))
         assert list(heard.mail()) == []
     assert heard.silence == "broken"
     heard.mailbox.close()
@@ -96,7 +109,7 @@ def test_a_run_that_uses_up_its_processor_time_is_slow(
 ) -> None:
     monkeypatch.setattr(link, "CPU_CHECK_S", 0.0)
     heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience(run_cpu_s=0.0))
-    ends[1].send(encode(Advance(5, 1, 0)))
+    ends[1].send(encode(Advance(5, True, 0, 0)))
     assert heard.receive() is None
     assert heard.silence == "slow"
 
@@ -116,7 +129,7 @@ def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing
     heard.excused_cpu_s = excused_cpu_s
     before_s = time.process_time()
     monkeypatch.setattr(time, "process_time", lambda: before_s + 50.0)
-    ends[1].send(encode(Advance(5, 1, 0)))
+    ends[1].send(encode(Advance(5, True, 0, 0)))
     heard.receive()
     assert heard.silence == silence
 

@@ -1,0 +1,438 @@
+"""The simulator's process in a run in virtual time: the hub of the submission's programs.
+
+    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PAGE ... PIDS CORE PATIENCE SHOWN
+
+The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to a program's
+process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
+each program; PIDS a JSON list of their processes, CORE the processor core that all are to share
+(-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
+
+One program runs at a time, in the order in which they were started, until it asks for time
+(`grader.run.lockstep.protocol`). What it has sent goes on its way then, and who gets something, or
+is told that something has appeared or gone, runs again at that moment. Where nobody can run, time
+moves to what comes next: a program's deadline, or the scene's next tick. A program that knows that
+nobody else can run before some time passes it alone. What happens in a tick is up to the scene, as
+in real time.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import socket
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.signals import SignalHandlerOptions
+
+from grader.errors import SceneFailure
+from grader.message import msg
+from grader.run import handover
+from grader.run.handover import Plan
+from grader.run.limits import Patience
+from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
+from grader.run.lockstep.protocol import (
+    EPOCH_NS,
+    NEVER,
+    SHIFT,
+    TICK_NS,
+    Advance,
+    Parcels,
+    Reply,
+    State,
+    Table,
+)
+from grader.run.lockstep.registry import Writer
+from grader.run.processes import cores
+from grader.run.simulator.endpoints import SimulatorEndpoints
+from grader.run.simulator.foresight import MOST_TICKS, Foresight
+from grader.run.simulator.link import NONSENSE, Refused, StudentLink
+from grader.run.simulator.process import (
+    FeedWriter,
+    make_cast,
+    protect_process,
+    scene_in_time,
+    send_message,
+)
+from grader.scenes import load_scene
+from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
+
+#: So many new objects are searched for garbage: what a run records stays to its end.
+GARBAGE = 100_000
+#: The most requests of a program that let no tick pass; most have none of these.
+MOST_VAIN = 100_000
+VAIN = msg("its process made more than {number} requests that let no time pass", number=MOST_VAIN)
+#: So much may wait for a program [bytes]: what comes then is lost, as from a full queue.
+MOST_WAITING = 64_000_000
+FULL = msg("a program that did not read lost messages: more than {n} MB waited for it", n=64)
+
+
+@dataclass(eq=False)
+class Member:
+    """One of the programs.
+
+    Attributes:
+        number: from 1, in the order in which they were started.
+        request: its last one.
+        until_ns: before this it could pass time alone.
+        inbox, news: what it gets at its next turn.
+        waiting_bytes: of the former.
+        is_awake: whether something has come for which it waits.
+        is_gone: whether it says nothing more.
+        vain: how many of its requests let no tick pass.
+    """
+
+    number: int
+    link: StudentLink
+    request: Advance = field(default_factory=lambda: Advance(0, False, 0, 0))
+    until_ns: int = 0
+    inbox: Parcels = field(default_factory=list)
+    news: list[Table] = field(default_factory=list)
+    waiting_bytes: int = 0
+    is_awake: bool = False
+    is_gone: bool = False
+    vain: int = 0
+
+    def has(self, number: int) -> bool:
+        """Whether it has the endpoint of a number."""
+        return number >> SHIFT == self.number
+
+
+class Hub:
+    """Ticks a scene and gives its programs their turns, to the end of the run."""
+
+    def __init__(
+        self,
+        links: Sequence[StudentLink],
+        plan: Plan,
+        share_core: Callable[[], None],
+        on_met: Callable[[], None],
+        shown: str = "",
+    ) -> None:
+        """Set up the scene.
+
+        Args:
+            share_core: called once, when a program first asks for time.
+            on_met: called once, at the first packet of a program.
+        """
+        self._members = [Member(number, link) for number, link in enumerate(links, 1)]
+        self._on_met = on_met
+        self._share_core = share_core
+        #: the time that all programs have reached, and that of the scene, whole ticks
+        self._time_ns = self.now_ns = 0
+        self._clocks = rclpy_clocks.install(lambda: self.now_ns, lambda: None)
+        waitsets.install(waitsets.Waiter(self._clocks.attach))
+        self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, links[0].flag)
+        endpoints.install(self._registry)
+        actions.install()
+        if plan.definitions or plan.own_definitions:
+            endpoints.make_importable(plan.definitions)
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        self._scene = load_scene(plan.scene)
+        assert STEP_NS == TICK_NS
+        self._feed = FeedWriter.of(shown, TICK_NS)
+        send = None if self._feed is None else self._feed.write
+        self._cast = make_cast(plan, self)
+        hooks = Hooks(self._registry.has_unread, send, self._cast)
+        with scene_in_time(plan.scene):
+            self._simulation = self._scene.simulate(
+                plan.limits, plan.start, hooks, plan.interfaces, plan.setting
+            )
+        self._simulation.record()
+        self._foresight = Foresight(self._simulation, self._registry)
+        self._tick = 0
+        self._reason: Reason = ""
+        #: when the run was connected, over, ..., on the machine's monotonic clock [s]
+        self._marks: dict[str, float] = {}
+        self._was_at_rest: bool | None = None  # when the last program stopped responding
+
+    # The run ----------------------------------------------------------------------------------
+
+    def run(self) -> dict[str, Any]:
+        """Give turns to the end of the run; return how it ended."""
+        self._registry.pop_table()
+        for member in self._members:
+            member.link.introduce(self._introduction())
+            self._hear(member)
+        self._mark("connected")
+        self._share_core()
+        while not self._reason and (alive := self._alive()):
+            due = [m for m in alive if m.is_awake or m.request.target_ns <= self._time_ns]
+            if due:
+                for member in due:
+                    if not self._reason:
+                        self._give_turn(member, is_alone=len(due) == 1)
+                continue
+            next_ns = min(member.request.target_ns for member in alive)
+            if next_ns < self.now_ns + TICK_NS:
+                self._time_ns = next_ns
+            else:
+                self._make_tick()
+                self._distribute()
+        for member in self._alive():
+            member.link.send(Reply(self._time_ns, State.OVER, self._tick))
+        self._finish_alone()
+        self._mark("over")
+        if self._feed is not None:
+            self._feed.close()
+        flags = dict.fromkeys(flag for member in self._members for flag in member.link.flags)
+        more = () if self._cast is None else self._cast.flags
+        return {
+            "reason": self._reason,
+            "programs": [
+                {
+                    "silence": member.link.silence,
+                    "waits": member.link.waits,
+                    "reached_s": min(member.link.reached(), self._tick) * TICK_NS / 1e9,
+                }
+                for member in self._members
+            ],
+            "was_at_rest": self._was_at_rest,
+            "flags": [f.serialise() for f in (*flags, *self._simulation.flags, *more)],
+            "marks": self._marks,
+        }
+
+    def _alive(self) -> list[Member]:
+        return [member for member in self._members if not member.is_gone]
+
+    def _mark(self, name: str) -> None:
+        self._marks.setdefault(name, time.monotonic())
+
+    def _finish_alone(self) -> None:
+        """Tick to the end without the submission, which sends nothing more."""
+        if self._reason:
+            return
+        if all(member.link.silence == "gone" for member in self._members):
+            self._simulation.submission_gone()
+        while not self._reason:
+            self._make_tick()
+
+    def save(self, file: Path) -> None:
+        """Write the recording where the grader finds it."""
+        with scene_in_time(self._scene.name):
+            trace = self._simulation.trace()
+            handover.leave(file, self._scene, trace, self._registry.published, self._cast)
+
+    # For a cast, see `grader.cast.playing.Wire`
+
+    def tap(self, topic: str, kind: str, message: Any) -> None:
+        """Record what the program publishes on a topic with a type."""
+        self._registry.tap(topic, kind, message)
+
+    def heard(self) -> list[tuple[str, str, int, bytes]]:
+        """Return what was recorded since."""
+        heard = self._registry.pop_heard()
+        return [(topic, kind, time_ns - EPOCH_NS, data) for topic, kind, time_ns, data in heard]
+
+    def has_unread(self) -> bool:
+        """Whether something waits for the peers."""
+        return self._registry.has_unread()
+
+    # A program's turn -------------------------------------------------------------------------
+
+    def _give_turn(self, member: Member, *, is_alone: bool) -> None:
+        """Let a program run until it asks for time.
+
+        Args:
+            is_alone: nobody else can run at this moment.
+        """
+        tick = self._tick
+        self._distribute()
+        others = [each for each in self._alive() if each is not member]
+        is_alone = is_alone and not any(each.is_awake for each in others)
+        until_ns = min((each.request.target_ns for each in others), default=NEVER)
+        member.until_ns = until_ns if is_alone else self._time_ns
+        news, member.news = member.news, []
+        for table in news:
+            member.link.send(table)
+        parcels, member.inbox = member.inbox, []
+        member.waiting_bytes, member.is_awake = 0, False
+        if not news and not any(each.request.listens for each in others):
+            quiet = MOST_TICKS if self._cast is None else self._cast.quiet_ticks()
+            before = min(quiet, (member.until_ns - 1) // TICK_NS - tick)
+            with scene_in_time(self._scene.name):
+                self._foresight.foresee(tick, member.request, before)
+            parcels += (p for p in self._foresight.parcels if self._gets(member, p.endpoint))
+        foreseen = max(tick, self._foresight.end)
+        member.link.note_start()
+        reply = Reply(self._time_ns, State.RUNNING, foreseen, member.until_ns, parcels)
+        member.link.send(reply)
+        self._hear(member)
+        member.vain += tick == self._tick
+        if member.vain > MOST_VAIN and not member.is_gone:
+            member.link.break_off(VAIN)
+            self._lose(member)
+
+    def _hear(self, member: Member) -> None:
+        """Handle what a program says, until it asks for time or says nothing more."""
+        while (packet := member.link.receive()) is not None:
+            if "met" not in self._marks:
+                self._mark("met")
+                self._on_met()
+            if isinstance(packet, Advance):
+                member.request = packet
+                self._catch_up(packet.reached, member)
+                own_ns = min(packet.now_ns, member.until_ns - 1, self.now_ns + TICK_NS - 1)
+                self._time_ns = max(self._time_ns, own_ns)
+                if packet.has_mailed:
+                    self._receive_mail(member)
+                if all(each.is_gone or each.link.waits for each in self._members):
+                    self._note_rest()
+                return
+            try:
+                self._note(member, packet)
+            except ValueError:
+                member.link.break_off(NONSENSE)
+        self._lose(member)
+
+    def _lose(self, member: Member) -> None:
+        """Note that a program says nothing more; what it has sent before counts."""
+        member.is_gone = True
+        self._catch_up(member.link.reached(), member)
+        if not self._alive():
+            self._note_rest()
+        self._receive_mail(member)
+        if self._alive() and member.link.silence == "gone":
+            gone = [number for number in self._registry.others if member.has(number)]
+            self._note(member, Table((), tuple(gone)))
+
+    def _note_rest(self) -> None:
+        """Note, once, whether the work was done when the submission stopped responding."""
+        if self._was_at_rest is None:
+            self._was_at_rest = self._simulation.is_at_rest
+
+    # Who is there -----------------------------------------------------------------------------
+
+    def _introduction(self) -> Table:
+        known = (*self._registry.own.values(), *self._registry.others.values())
+        return Table(tuple(each.info() for each in known))
+
+    def _note(self, member: Member, table: Table) -> None:
+        """Note what a program has, and has no more.
+
+        Raises:
+            ValueError: it is none of ours that says so.
+        """
+        self._registry.note(table, member.number)
+        if self._cast is not None:
+            self._cast.meet(self._registry.theirs)
+        self._foresight.forget()
+        for each in self._alive():
+            if each is not member:
+                each.news.append(table)
+                each.is_awake = True
+
+    # Messages ---------------------------------------------------------------------------------
+
+    def _receive_mail(self, member: Member) -> None:
+        """Pass on what a program has sent."""
+        for parcels in member.link.mail():
+            self._registry.receive([p for p in parcels if p.endpoint >> SHIFT == 0])
+            others = [p for p in parcels if p.endpoint >> SHIFT]
+            for each in self._alive():
+                self._put(each, others)
+        if self._cast is not None:
+            self._cast.record()
+
+    def _distribute(self) -> None:
+        """Pass on what the scene and the cast have sent since, and what they have now."""
+        is_answered = self._registry.answered
+        parcels = self._registry.pop_outgoing()
+        table = self._registry.pop_table() if self._registry.changed else None
+        for each in self._alive():
+            if table is not None:
+                each.news.append(table)
+                each.is_awake = True
+            self._put(each, parcels, wakes=is_answered or each.request.listens)
+
+    def _put(self, member: Member, parcels: Parcels, *, wakes: bool = True) -> None:
+        """Add what a program gets of these messages to its inbox, as far as there is room."""
+        for parcel in parcels:
+            if not self._gets(member, parcel.endpoint):
+                continue
+            member.waiting_bytes += len(parcel.data)
+            if member.waiting_bytes > MOST_WAITING:
+                self._members[0].link.flag(FULL)
+                return
+            member.is_awake |= wakes
+            member.inbox.append(parcel._replace(time_ns=min(parcel.time_ns, self._time_ns)))
+
+    def _gets(self, member: Member, number: int) -> bool:
+        """Whether a reader is a program's, or it hears a writer of the simulator's."""
+        if number >> SHIFT:
+            return member.has(number)
+        writer = self._registry.own.get(number)
+        if not isinstance(writer, Writer):  # it has just gone
+            return True
+        return writer.is_lasting or any(member.has(each.number) for each in writer.remote)
+
+    # Time -------------------------------------------------------------------------------------
+
+    def _catch_up(self, reached: int, member: Member) -> None:
+        """Make the forecast ticks that a program has used."""
+        parcels = self._foresight.parcels
+        while self._tick < min(reached, self._foresight.end) and not self._reason:
+            self._count_tick()
+            with scene_in_time(self._scene.name):
+                reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
+            self._reason = expect_reason(self._scene.name, reason)
+        self._clocks.set_now(self.now_ns)
+        for each in self._alive():
+            if each is not member:
+                used = [p for p in parcels if p.time_ns <= self.now_ns]
+                self._put(each, used, wakes=False)
+        self._foresight.forget()
+
+    def _make_tick(self) -> None:
+        self._count_tick()
+        self._clocks.set_now(self.now_ns)
+        if self._cast is not None:
+            self._cast.act()
+        with scene_in_time(self._scene.name):
+            reason = self._simulation.tick(EPOCH_NS + self.now_ns)
+        self._reason = expect_reason(self._scene.name, reason)
+
+    def _count_tick(self) -> None:
+        if self._feed is not None:
+            self._feed.pace()
+            for member in self._members:
+                member.link.excused_cpu_s = self._feed.cpu_s
+        self._tick += 1
+        self._registry.tick = self._tick
+        self.now_ns = self._time_ns = self._tick * TICK_NS
+
+
+def main(argv: list[str]) -> int:
+    """Run one simulation in lockstep; the grader reads the exit code."""
+    protect_process()
+    control = socket.socket(fileno=int(argv[0]))
+    *ends, pids, core, patience, shown = argv[3:]
+    students = json.loads(pids)
+    limits = Patience(**json.loads(patience))
+    links = [
+        StudentLink(socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
+        for link, page, pid in zip(ends[::2], ends[1::2], students, strict=True)
+    ]
+
+    def share_core() -> None:
+        # for all, from here: a submission's process may not choose its cores
+        cores.pin(int(core), os.getpid(), *students)
+
+    plan = Plan.from_json(argv[2])
+    try:
+        hub = Hub(links, plan, share_core, lambda: send_message(control, "met"), shown)
+        gc.freeze()
+        gc.set_threshold(GARBAGE)
+        ending = hub.run()
+        hub.save(Path(argv[1]))
+        send_message(control, "done", **ending)
+    except Refused as refusal:
+        send_message(control, "refused", reason=refusal.why.serialise())
+    except SceneFailure as failure:
+        send_message(control, "failed", reason=failure.message.serialise())
+    return 0
