@@ -1,0 +1,151 @@
+"""Several programs of a launch file in virtual time, each in a process of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.recording.recording import Recording
+from grader.run import virtual_time
+from grader.run.handover import Plan
+from grader.run.opening import open_submission
+from grader.scenes.scene import Limits
+from tests.runs import SUBMISSIONS
+from turtlesim_py.world.events import CmdVel, SetPen
+
+LAUNCHED = SUBMISSIONS / "launched"
+PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=6))
+
+
+def recorded(folder: Path, plan: Plan = PLAN, executable: str | None = None) -> Recording:
+    with open_submission(folder, executable) as submission:
+        recording = virtual_time.run(submission, plan)
+    assert recording.run.time == "virtual", recording.run.flags
+    return recording
+
+
+def said(recording: Recording, name: str) -> list[str]:
+    """What a program has printed."""
+    mark = f"[{name}] "
+    lines = recording.output.splitlines()
+    return [line.removeprefix(mark) for line in lines if line.startswith(mark)]
+
+
+@pytest.fixture(scope="module")
+def conversation() -> Recording:
+    """The programs that talk with each other; they do not drive."""
+    still = Plan(Limits(first_motion_s=4, rest_s=4, total_s=4))
+    return recorded(LAUNCHED / "conversation", still)
+
+
+def test_both_nodes_run_with_what_the_launch_file_gives_them() -> None:
+    recording = recorded(LAUNCHED / "spiral")
+    assert recording.run.flags == ()
+    events = recording.trace.events
+    assert any(isinstance(event, CmdVel) for event in events), recording.output
+    assert {event.width for event in events if isinstance(event, SetPen)} == {5}
+
+
+def test_what_one_sends_the_other_hears_at_that_moment(conversation: Recording) -> None:
+    times = [10_000_000 + second * 10**9 for second in range(4)]
+    assert said(conversation, "listener-2")[1:] == [
+        f"hello {100 * second} {time_ns}" for second, time_ns in enumerate(times)
+    ]
+
+
+def test_one_waits_for_the_service_of_another(conversation: Recording) -> None:
+    assert said(conversation, "asker-3") == ["not yet", "0", "2", "4"]
+
+
+def test_who_comes_late_is_told_what_is_kept(conversation: Recording) -> None:
+    assert said(conversation, "late-5")[1] == "first weather"
+
+
+def test_each_sees_those_that_are_there_and_no_more(conversation: Recording) -> None:
+    first, *_ = said(conversation, "listener-2")
+    assert first == "['listener', 'talker', 'turtlesim'] 1"
+    assert said(conversation, "late-5")[0].startswith("False ")  # the asker has ended
+    there = ["adder", "dies", "late", "listener", "talker", "turtlesim"]
+    assert said(conversation, "dies-6")[1] == str(there)
+
+
+def test_each_draws_its_own_random_numbers(conversation: Recording) -> None:
+    late, dies = said(conversation, "late-5")[0].split()[1], said(conversation, "dies-6")[0]
+    assert late != dies
+
+
+def test_who_dies_ends_nobody_else_and_is_the_one_to_blame(conversation: Recording) -> None:
+    assert (conversation.run.outcome, conversation.run.exit_code) == ("crashed", 3)
+    assert len(said(conversation, "listener-2")) == 5
+
+
+CONTROLLER = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from turtlesim.msg import Pose
+
+class Controller(Node):
+    def __init__(self):
+        super().__init__("controller")
+        self.velocity = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(1.0, self.look)
+        self.timer_of_speed = self.create_timer(0.25, self.drive)
+
+    def look(self):  # after ticks that were foreseen
+        self.timer.cancel()
+        self.create_subscription(Pose, "/turtle1/pose", self.seen, 10)
+
+    def drive(self):
+        twist = Twist()
+        twist.linear.x = 1.0
+        self.velocity.publish(twist)
+
+    def seen(self, pose):
+        twist = Twist()
+        twist.linear.x, twist.angular.z = 1.0, pose.x - 5.0
+        self.velocity.publish(twist)
+
+def main():
+    rclpy.init()
+    rclpy.spin(Controller())
+"""
+IDLE = """
+import time
+
+def main():
+    time.sleep(60.0)
+"""
+SETUP = """
+from setuptools import setup
+setup(name="company", packages=["company"],
+      data_files=[("share/company/launch", ["launch/both.launch.py"])],
+      entry_points={"console_scripts": ["controller = company.controller:main",
+                                        "idle = company.idle:main"]})
+"""
+BOTH = """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="company", executable=name) for name in NAMES])
+"""
+
+
+@pytest.mark.parametrize("names", [("controller", "idle"), ("idle", "controller")])
+def test_beside_an_idle_one_a_program_does_what_it_does_alone(
+    tmp_path: Path, names: tuple[str, str]
+) -> None:
+    package = "<package><name>company</name></package>"
+    for name, text in {
+        "package.xml": package, "setup.py": SETUP, "company/__init__.py": "",
+        "company/controller.py": CONTROLLER, "company/idle.py": IDLE,
+        "launch/both.launch.py": BOTH.replace("NAMES", repr(names)),
+    }.items():  # fmt: skip
+        file = tmp_path / "company" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    both = recorded(tmp_path / "company")
+    alone = recorded(tmp_path / "company", executable="controller")
+    assert both.run.trace_sha256 == alone.run.trace_sha256
