@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import itertools
 import json
 import os
 import random
@@ -320,7 +321,7 @@ def _run_on_link(
     words = [
         *(str(controlled.fileno()), f"/proc/self/fd/{recording}"),
         *(plan.to_json(), str(theirs.fileno()), str(page)),
-        *(str(os.getpid()), "-1"),
+        *(json.dumps([os.getpid()]), "-1"),
         json.dumps(asdict(Patience(simulator_cpu_s=20.0, all_asleep_s=2.0, asleep_s=1.0))),
         "",  # no live feed
     ]
@@ -355,7 +356,8 @@ def _run_on_link(
         return f"it ended with {code}, sent {output!r}; {complaint.decode(errors='replace')}"
     message = json.loads(output.splitlines()[-1])
     reason = str(Message.parse(message.get("reason", "")))
-    counts[f"{message['say']}, {message.get('silence', reason)}"] += 1
+    silences = [each["silence"] for each in message.get("programs", ())]
+    counts[f"{message['say']}, {', '.join(silences) or reason}"] += 1
     flags = [str(Message.parse(flag)) for flag in message.get("flags", ())]
     counts.update(flag for flag in flags if "on request" not in flag)
     if "virtual time itself" in reason:
@@ -373,11 +375,10 @@ def _converse(
     has_cast: bool,
 ) -> None:
     from grader.run.lockstep.protocol import (
+        SHIFT,
         Advance,
-        Interests,
         Mail,
         Parcel,
-        StudentEndpoint,
         Table,
         decode,
         encode,
@@ -387,12 +388,9 @@ def _converse(
     data, fds, _, _ = socket.recv_fds(link, 200_000, 1)
     table = decode(data)
     assert isinstance(table, Table)
-    requests = [(entry.id, *_samples(entry)) for entry in table.added if not entry.writes]
-    reading = tuple(
-        StudentEndpoint("/fuzz", entry.channel, entry.type, writes=False)
-        for entry in table.added
-        if entry.writes
-    )
+    requests = _readers(table)
+    reading = [e._replace(node="/fuzz", writes=False) for e in table.added if e.type and e.writes]
+    numbers, ours = itertools.count(1 << SHIFT), list[int]()
     is_rude = chance.random() < 0.5  # also invalid packets, which end the run
     with socket.socket(fileno=fds[0]) as mail:
         mail.setblocking(False)
@@ -413,23 +411,28 @@ def _converse(
                 packet = mutated(packet, chance)
             for piece in pieces(packet):
                 while not _is_sent(mail, piece):
-                    link.send(encode(Advance(0, 0, 0, True)))
+                    link.send(encode(Advance(0, False, 0, 0, True)))
                     _drain(link)
             os.pwrite(page, chance.randbytes(8), 0)
             if chance.random() < 0.1:
-                made = _made_up(chance) if has_cast else ()
-                interests = encode(Interests(reading[: chance.randrange(len(reading))] + made))
+                made = reading[: chance.randrange(len(reading))]
+                made += _made_up(chance) if has_cast else []
+                gone = chance.sample(ours, chance.randrange(len(ours) + 1))
+                made = [each._replace(id=next(numbers)) for each in made]
+                ours += [each.id for each in made]
+                told = encode(Table(tuple(made), tuple(gone)))
                 is_wrong = is_rude and chance.random() < 0.1
-                link.send(mutated(interests, chance) if is_wrong else interests)
-            ask = encode(Advance(2**40, 1, chance.choice((0, turn, 2**64 - 1)), True))
+                link.send(mutated(told, chance) if is_wrong else told)
+            reached = chance.choice((0, turn, 2**64 - 1))
+            ask = encode(Advance(2**40, True, reached, chance.choice((0, 2**64 - 1)), True))
             is_wrong = is_rude and chance.random() < 0.01
             link.send(mutated(ask, chance) if is_wrong else ask)
             counts["packets"] += 2
             for reply in map(decode, _drain(link)):
                 if isinstance(reply, Table):
                     counts["tables"] += 1
-                    new = [(e.id, *_samples(e)) for e in reply.added if not e.writes]
-                    requests = [each for each in requests if each[0] not in reply.removed] + new
+                    requests = [each for each in requests if each[0] not in reply.removed]
+                    requests += _readers(reply)
 
 
 def _is_sent(mail: socket.socket, piece: bytes) -> bool:
@@ -440,23 +443,29 @@ def _is_sent(mail: socket.socket, piece: bytes) -> bool:
     return True
 
 
-def _samples(entry: Any) -> tuple[Any]:
-    kind = _class(entry.type)
-    part = "Response" if entry.channel.startswith("response") else "Request"
-    return (getattr(kind, part, kind),)
+def _readers(table: Any) -> list[tuple[int, Any]]:
+    """Return the numbers of the readers in a table, and the classes of what they read."""
+    found = []
+    for entry in table.added:
+        if entry.type and not entry.writes:
+            kind = _class(entry.type)
+            part = "Response" if entry.channel.startswith("response") else "Request"
+            found.append((entry.id, getattr(kind, part, kind)))
+    return found
 
 
-def _made_up(chance: random.Random) -> tuple[Any, ...]:
+def _made_up(chance: random.Random) -> list[Any]:
     """Return endpoints of a program that is not there."""
-    from grader.run.lockstep.protocol import StudentEndpoint
+    from grader.run.lockstep.protocol import EndpointInfo
 
     made = []
     for channel in chance.sample(CHANNELS, chance.randrange(len(CHANNELS))):
         kind = chance.choice((_RIGHT.get(channel, TYPES[0]), chance.choice(TYPES)))
         node = chance.choice(("/fuzz", "/peer", "/", f"/n{chance.randrange(10**6)}"))
-        numbers = (chance.choice((0, 1, 2, 3, 2**32 - 1)) for _ in range(3))
-        made.append(StudentEndpoint(node, channel, kind, chance.random() < 0.7, *numbers))
-    return tuple(made)
+        policies = (chance.randrange(5) for _ in range(2))
+        depth = chance.choice((0, 1, 2, 3, 2**32 - 1))
+        made.append(EndpointInfo(node, channel, kind, chance.random() < 0.7, *policies, depth))
+    return made
 
 
 def _cdr(kind: Any, chance: random.Random) -> bytes:

@@ -28,6 +28,9 @@ from rclpy.qos import (
 from grader.message import Message
 from grader.run.lockstep.protocol import SHIFT, EndpointInfo, Table
 
+#: The depth of another process's queue, at most: rclpy's C++ takes no more than an int.
+MOST_DEPTH = 1 << 20
+
 Kind = TypeVar("Kind", bound="Endpoint")
 
 
@@ -363,7 +366,7 @@ def other_endpoint(entry: EndpointInfo) -> Endpoint:
         ValueError: it has no quality of service.
     """
     qos = QoSProfile(
-        depth=max(1, entry.depth),
+        depth=min(max(1, entry.depth), MOST_DEPTH),
         reliability=QoSReliabilityPolicy(entry.reliability),
         durability=QoSDurabilityPolicy(entry.durability),
     )

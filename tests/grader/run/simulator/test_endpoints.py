@@ -34,7 +34,7 @@ def test_a_writer_is_heard_by_readers_of_its_type_whose_quality_of_service_fits(
     assert endpoints.count_readers(writer) == 0
     endpoints.note(Table((hears._replace(durability=1),)))  # it wants what nobody keeps
     assert endpoints.count_readers(writer) == 0
-    endpoints.note(Table((hears,)))
+    endpoints.note(Table((hears._replace(depth=2**32 - 1),)))
     assert endpoints.count_readers(writer) == 1
 
 
