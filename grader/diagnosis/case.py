@@ -223,6 +223,7 @@ def diagnosed(
     help_: Message,
     place: SourceLine | None = None,
     time_s: float | None = None,
+    /,
     **words: Any,
 ) -> Diagnosis:
     """Make a diagnosis; its sentences may name its place `{where}`, its time `{at}`, and words."""
