@@ -38,6 +38,24 @@ _TOO_LITTLE = {
     "RELIABILITY": ("BEST_EFFORT", "RELIABLE"),
     "DURABILITY": ("VOLATILE", "TRANSIENT_LOCAL"),
 }
+#: Whether it is a publisher, and whether it is known what is too little -> the cause.
+_UNFIT_BY = {
+    (True, True): msg(
+        "Your publisher on {topic}{where} is {sends}, {the_thing} listens {wants}: nothing arrives."
+    ),
+    (False, True): msg(
+        "Your subscription on {topic}{where} asks for {wants}, but it is published {sends}: "
+        "nothing reaches you."
+    ),
+    (True, False): msg(
+        "Your publisher on {topic}{where} does not fit the other end's, by its {policy}: "
+        "nothing arrives."
+    ),
+    (False, False): msg(
+        "Your subscription on {topic}{where} does not fit the other end's, by its {policy}: "
+        "nothing arrives."
+    ),
+}
 
 
 def waits_in_vain(case: Case) -> Diagnosis | None:
@@ -254,7 +272,7 @@ def has_unfit_qos(case: Case) -> Diagnosis | None:
         sends, wants = _TOO_LITTLE.get(found["policy"], ("", ""))
         return diagnosed(
             "has_unfit_qos",
-            _unfit(kind, bool(sends)),
+            _UNFIT_BY[kind == "publisher", bool(sends)],
             _fitting(found["policy"], wants if kind == "publisher" else sends),
             place,
             topic=topic,
@@ -274,29 +292,6 @@ def _fitting(policy: str, right: str) -> Message:
     if right in ("RELIABLE", "VOLATILE"):
         return msg("Write 10 instead of the QoS profile, or {setting} in it.", setting=setting)
     return msg("Give it a QoSProfile with {setting}.", setting=setting)
-
-
-def _unfit(kind: EndKind, is_known: bool) -> Message:
-    """Say in which QoS policy a publisher or subscription differs from the other end."""
-    if kind == "publisher" and is_known:
-        return msg(
-            "Your publisher on {topic}{where} is {sends}, {the_thing} listens {wants}: nothing "
-            "arrives."
-        )
-    if is_known:
-        return msg(
-            "Your subscription on {topic}{where} asks for {wants}, but it is published {sends}: "
-            "nothing reaches you."
-        )
-    if kind == "publisher":
-        return msg(
-            "Your publisher on {topic}{where} does not fit the other end's, by its {policy}: "
-            "nothing arrives."
-        )
-    return msg(
-        "Your subscription on {topic}{where} does not fit the other end's, by its {policy}: "
-        "nothing arrives."
-    )
 
 
 def nearest(end: End, case: Case) -> Endpoint | None:
