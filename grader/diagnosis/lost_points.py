@@ -213,7 +213,7 @@ def unused(found: Diagnosis, case: Case) -> End | None:
     """Return the publisher or client that a finding is about, where it was never used."""
     there = {(each.name, each.type) for each in case.scene_has}
     for end in case.observed.ends if case.observed.spun_s is not None else ():
-        is_meant = (end.name, end.type) in there and end.name in f"{found.cause!s} {found.help!s}"
+        is_meant = (end.name, end.type) in there and end.name in found.spoken
         if is_meant and not end.used and end.kind in ("publisher", "client"):
             return end
     return None
@@ -221,12 +221,12 @@ def unused(found: Diagnosis, case: Case) -> End | None:
 
 def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add why a run has not reached what would have earned the points."""
-    end, spoken = unused(found, case), f"{found.cause!s} {found.help!s}"
+    end = unused(found, case)
     if end is not None:
         goals = ["publish"] if end.kind == "publisher" else ["call", "call_async"]
-    elif _COLOURS in spoken:
+    elif _COLOURS in found.spoken:
         goals = ["branch"]
-    elif "ran into" in spoken:  # it has come to a wall, and should have stopped there
+    elif "ran into" in found.spoken:  # it has come to a wall, and should have stopped there
         goals = ["publish", "branch"]
     else:
         return None
@@ -255,9 +255,8 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
 
 def _misunderstood(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add what the source says otherwise than it was meant, where that may cost the points."""
-    spoken = f"{found.cause!s} {found.help!s}"
     for kind, (about, cause, help_) in _MEANT.items():
-        for finding in of_kind(case, kind) if about in spoken else ():
+        for finding in of_kind(case, kind) if about in found.spoken else ():
             return _explained(found, finding, cause, help_)
     return None
 
@@ -283,7 +282,7 @@ def _unspun(case: Case) -> Diagnosis | None:
 
 def _beside_condition(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the condition that may be its cause."""
-    spoken = f"{found.cause!s} {found.help!s}"
+    spoken = found.spoken
     walls = [*of_kind(case, "at_wall")] if is_about_stopping(spoken) else []
     for finding in walls:
         if (wrong := _wrong_condition(finding, spoken)) is not None:
