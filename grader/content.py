@@ -27,7 +27,9 @@ def of_folder(folder: Path) -> str:
     for at, folders, files in os.walk(folder):
         links = (name for name in folders if Path(at, name).is_symlink())
         for path in (Path(at, name) for name in (*files, *links)):
-            found[path.relative_to(folder).as_posix()] = _of_link_or_file(path)
+            is_link = path.is_symlink()
+            digest = of_bytes(os.fsencode(path.readlink())) if is_link else of_file(path)
+            found[path.relative_to(folder).as_posix()] = digest
     return of_files(found)
 
 
@@ -51,10 +53,6 @@ def of_file(path: Path) -> str:
 def of_bytes(data: bytes) -> str:
     """Return the hash of a file's contents, hexadecimal."""
     return hashlib.sha256(data).hexdigest()
-
-
-def _of_link_or_file(path: Path) -> str:
-    return of_bytes(os.fsencode(path.readlink())) if path.is_symlink() else of_file(path)
 
 
 def _line(name: bytes, digest: bytes) -> bytes:

@@ -302,18 +302,12 @@ def _mode(path: Path) -> int | None:
 
 
 def _write_beside(path: Path, data: bytes) -> None:
-    with _beside(path) as unfinished:
-        unfinished.write_bytes(data)
-
-
-@contextlib.contextmanager
-def _beside(path: Path) -> Iterator[Path]:
-    """Make an empty file beside a path, which replaces it if nothing goes wrong."""
+    """Write a file beside a path, which it replaces if nothing goes wrong."""
     unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         unfinished.touch(exist_ok=False)  # not through a link that somebody has put there
-        yield unfinished
+        unfinished.write_bytes(data)
         unfinished.replace(path)
     except BaseException:
         with contextlib.suppress(OSError):

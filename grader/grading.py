@@ -49,13 +49,8 @@ LEAST_AT_ONCE = 2
 Finished = tuple[int, Recording]
 
 
-class Runner(Protocol):
-    """Runs a submission once; see `grader.run.virtual_time` and `grader.run.real_time`."""
-
-    def __call__(
-        self, submission: Submission, plan: Plan, progress: Progress | None = None
-    ) -> Recording:
-        """Return the recording of the run."""
+#: Runs a submission once; see `grader.run.virtual_time` and `grader.run.real_time`.
+Runner = Callable[[Submission, Plan, Progress | None], Recording]
 
 
 class ClockedRunner(Protocol):

@@ -109,7 +109,10 @@ class Message:
         """Return the message as JSON: a text as such, else its key, and all that is not empty."""
         if not self or self.text is not None:
             return self.text or ""
-        values = {name: _serialised(value) for name, value in self.values.items()}
+        values = {
+            name: value.serialise() if isinstance(value, Message) else value
+            for name, value in self.values.items()
+        }
         rest = {"values": values, "many": self.many, "words": dict(self.words)}
         return {"key": self.key, **{name: part for name, part in rest.items() if part}}
 
@@ -287,10 +290,6 @@ def _changed(value: Value, change: Callable[[str], str]) -> Value:
     if isinstance(value, Message):
         return value.map_texts(change)
     return change(value) if isinstance(value, str) else value
-
-
-def _serialised(value: Value) -> Any:
-    return value.serialise() if isinstance(value, Message) else value
 
 
 def _a_text(found: object) -> str:

@@ -16,8 +16,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from datetime import datetime
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import (
+    TYPE_CHECKING,
     Annotated,
     Any,
     Literal,
@@ -29,6 +31,9 @@ from typing import (
     get_origin,
     get_type_hints,
 )
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator, ValidationError
 
 _Number = TypeVar("_Number", int, float)
 Made = TypeVar("Made")
@@ -76,6 +81,22 @@ def loads(text: str) -> Any:
     return json.loads(
         text, parse_constant=_refuse, parse_float=_finite(float), parse_int=_finite(int)
     )
+
+
+def first_error(package: str, name: str, data: object) -> ValidationError | None:
+    """Return what does not follow NAME.schema.json of a package, beside its modules."""
+    from jsonschema.exceptions import best_match  # here: what is only written is not validated
+
+    found: ValidationError | None = best_match(_validator(package, name).iter_errors(data))
+    return found
+
+
+@cache
+def _validator(package: str, name: str) -> Draft202012Validator:
+    import jsonschema
+
+    text = (files(package) / f"{name}.schema.json").read_text(encoding="utf-8")
+    return jsonschema.Draft202012Validator(json.loads(text))
 
 
 def to_json(value: Any, bounds: Bounds = STRANGERS) -> Any:

@@ -26,7 +26,6 @@ try:  # Ctrl-C may come as early as this
     from grader import system
     from grader.cli import options
     from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
-    from grader.message import msg
     from grader.text import for_terminal
     from grader.translations import tr, translate
 except KeyboardInterrupt:
@@ -165,8 +164,6 @@ def _parser(words: Sequence[str]) -> options.Parser:
 
 def _versions() -> str:
     """Return the version of the grader, and those that belong into the report of a fault."""
-    from grader import system
-
     ros = f", ROS 2 {distro}" if (distro := system.ros_distro()) else ""
     on = f"Python {system.python_version()}, rclpy {system.rclpy_version()}{ros}"
     return f"grader {system.grader_version()} ({on})"

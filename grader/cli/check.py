@@ -19,7 +19,7 @@ from grader.exercise.places import names
 from grader.message import Message, msg
 from grader.recording.folder import WINDOW_PICTURE
 from grader.recording.reading import load_all
-from grader.recording.recording import Provenance, Recordings
+from grader.recording.recording import Recordings
 from grader.reports import Report
 from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
 from grader.text import for_terminal
@@ -65,19 +65,10 @@ def main(args: argparse.Namespace) -> int:
     result = judging.judge(recordings, exercise, submission=name)
     if place.older is not None and place.older.handed_in is not None:
         result = replace(result, handed_in=place.older.handed_in.by(exercise.late))
-    _show(
-        args,
-        place,
-        result,
-        recordings,
-        is_meant=asked is not None or _is_made_for(origin, exercise),
-    )
+    # recordings that were made for exactly this exercise, as far as that is recorded
+    is_its = origin is None or origin.exercise_sha256 in ("", exercise.sha256)
+    _show(args, place, result, recordings, is_meant=asked is not None or is_its)
     return int(args.fail_under is not None and result.final < args.fail_under)
-
-
-def _is_made_for(origin: Provenance | None, exercise: Exercise) -> bool:
-    """Whether recordings were made for exactly this exercise, as far as that is recorded."""
-    return origin is None or origin.exercise_sha256 in ("", exercise.sha256)
 
 
 def _show(

@@ -7,11 +7,14 @@ program prints is as untrusted as what it reports.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
+from string import Formatter
+from typing import Any
 
+from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.observations import (
     End,
@@ -195,6 +198,42 @@ def since(time_s: float) -> Message:
     if time_s < _AT_ONCE_S:
         return msg(" from the start")
     return msg(" from {time_s:.1f} s on", time_s=time_s)
+
+
+def filled(sentence: Message, words: Mapping[str, Any]) -> Message:
+    """Return a sentence with those of the words that it has names for, and no values yet."""
+    names = {name for _, name, _, _ in Formatter().parse(sentence.key)} - sentence.values.keys()
+    return sentence.given(**{name: word for name, word in words.items() if name in names})
+
+
+def words_of(finding: LintFinding) -> dict[str, Any]:
+    """Return the words of sentences about a lint finding."""
+    code, where = excerpt(finding.place.text), line(finding.place)
+    return {
+        "name": excerpt(finding.name),
+        "near": excerpt(finding.near),
+        "code": code,
+        "where": where,
+    }
+
+
+def diagnosed(
+    key: str,
+    cause: Message,
+    help_: Message,
+    place: SourceLine | None = None,
+    time_s: float | None = None,
+    /,
+    **words: Any,
+) -> Diagnosis:
+    """Make a diagnosis; its sentences may name its place `{where}`, its time `{at}`, and words."""
+    words = {"where": line(place), "at": at(time_s), **words}
+    return Diagnosis(key, filled(cause, words), filled(help_, words), time_s=time_s, place=place)
+
+
+def diagnosed_by(finding: LintFinding, key: str, cause: Message, help_: Message) -> Diagnosis:
+    """Make a diagnosis of a lint finding, at its place."""
+    return diagnosed(key, cause, help_, finding.place, **words_of(finding))
 
 
 # Output -------------------------------------------------------------------------------------

@@ -7,15 +7,14 @@ name, or this type. A program that has the right end as well tries several, and 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from difflib import SequenceMatcher
 
 from grader.diagnosis import lint_findings, standstill
-from grader.diagnosis.case import OPPOSITE, Case, at, excerpt, line, of_kind, since
+from grader.diagnosis.case import OPPOSITE, Case, at, diagnosed, excerpt, of_kind, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.message import Message, msg
+from grader.message import NOTHING, Message, msg
 from grader.recording.observations import End, EndKind
 from grader.recording.subject import Endpoint
 
@@ -38,6 +37,24 @@ _UNFIT = re.compile(
 _TOO_LITTLE = {
     "RELIABILITY": ("BEST_EFFORT", "RELIABLE"),
     "DURABILITY": ("VOLATILE", "TRANSIENT_LOCAL"),
+}
+#: Whether it is a publisher, and whether it is known what is too little -> the cause.
+_UNFIT_BY = {
+    (True, True): msg(
+        "Your publisher on {topic}{where} is {sends}, {the_thing} listens {wants}: nothing arrives."
+    ),
+    (False, True): msg(
+        "Your subscription on {topic}{where} asks for {wants}, but it is published {sends}: "
+        "nothing reaches you."
+    ),
+    (True, False): msg(
+        "Your publisher on {topic}{where} does not fit the other end's, by its {policy}: "
+        "nothing arrives."
+    ),
+    (False, False): msg(
+        "Your subscription on {topic}{where} does not fit the other end's, by its {policy}: "
+        "nothing arrives."
+    ),
 }
 
 
@@ -64,18 +81,15 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
             rest = msg(", which nobody offers")
         named = (each.place for each in case.ends if (each.kind, each.name) == (kind, wait.name))
         place = next(named, None) or wait.place  # the line to be fixed is the one with the name
-        return Diagnosis(
+        return diagnosed(
             "waits_in_vain",
-            msg(
-                "You wait for {what}{since}{rest}{where}.",
-                what=_served(kind, wait.name),
-                since=since(wait.since_s),
-                rest=rest,
-                where=line(place),
-            ),
+            msg("You wait for {what}{since}{rest}{where}."),
             _fix(end, near) if near else msg("Compare the name with `ros2 service list`."),
-            time_s=wait.since_s,
-            place=place,
+            place,
+            wait.since_s,
+            what=_served(kind, wait.name),
+            since=since(wait.since_s),
+            rest=rest,
         )
     return None
 
@@ -94,72 +108,54 @@ def is_too_early(case: Case) -> Diagnosis | None:
             continue
         place = next((end.used_at for end in mine if end.used), None) or wait.place
         kind: EndKind = "action_client" if "/action/" in wait.type else "client"
-        words = {"what": _served(kind, wait.name), "begin_s": begin_s, "where": line(place)}
         cause = msg(
             "Your program ended{at}{where}, and {what} came at {begin_s:.1f} s only.",
             at=at(ended_s),
-            **words,
         )
         if is_lost:
             cause = msg(
                 "You call {what}{where} before it is there, which is at {begin_s:.1f} s: what you "
-                "ask is lost.",
-                **words,
+                "ask is lost."
             )
-        help_ = msg(
-            "Wait for it first, as long as it takes: {loop}.", loop=_UNTIL_IT_IS_THERE[kind]
+        return diagnosed(
+            "is_too_early",
+            cause,
+            msg("Wait for it first, as long as it takes: {loop}."),
+            place,
+            wait.since_s,
+            what=_served(kind, wait.name),
+            begin_s=begin_s,
+            loop=_UNTIL_IT_IS_THERE[kind],
         )
-        return Diagnosis("is_too_early", cause, help_, time_s=wait.since_s, place=place)
     return None
 
 
 def publishes_to_nobody(case: Case) -> Diagnosis | None:
     """The program publishes under a name or with a type that the scene does not subscribe to."""
-
-    def describe(end: End, near: Endpoint) -> Message:
-        if end.name == near.name:
-            return msg(
-                "You publish {type} on {name}, but {the_thing} listens to {wanted} there{where}.",
-                type=excerpt(end.type),
-                name=near.name,
-                the_thing=near.node or case.the_thing,
-                wanted=near.type,
-                where=line(end.place),
-            )
-        return msg(
+    return _first(
+        case,
+        "publisher",
+        "publishes_to_nobody",
+        msg("You publish {type} on {name}, but {the_thing} listens to {wanted} there{where}."),
+        msg(
             "You publish {type} on {name}, where nobody listens; {the_thing} listens to "
-            "{wanted}{where}.",
-            type=excerpt(end.type),
-            name=excerpt(end.name),
-            the_thing=near.node or case.the_thing,
-            wanted=_near(end, near),
-            where=line(end.place),
-        )
-
-    return _first(case, "publisher", "publishes_to_nobody", describe)
+            "{wanted}{where}."
+        ),
+    )
 
 
 def hears_nobody(case: Case) -> Diagnosis | None:
     """The program subscribes under a name or with a type that nobody publishes."""
-
-    def describe(end: End, near: Endpoint) -> Message:
-        if end.name == near.name:
-            return msg(
-                "You subscribe to {name} as {type}, but {wanted} is published there, so no "
-                "message reaches you{where}.",
-                name=near.name,
-                type=excerpt(end.type),
-                wanted=near.type,
-                where=line(end.place),
-            )
-        return msg(
-            "You subscribe to {name}, which nobody publishes; there is {wanted}{where}.",
-            name=excerpt(end.name),
-            wanted=_near(end, near),
-            where=line(end.place),
-        )
-
-    return _first(case, "subscription", "hears_nobody", describe)
+    return _first(
+        case,
+        "subscription",
+        "hears_nobody",
+        msg(
+            "You subscribe to {name} as {type}, but {wanted} is published there, so no "
+            "message reaches you{where}."
+        ),
+        msg("You subscribe to {name}, which nobody publishes; there is {wanted}{where}."),
+    )
 
 
 def misses_what_it_hears(case: Case) -> Diagnosis | None:
@@ -176,13 +172,16 @@ def is_defined_otherwise(case: Case) -> Diagnosis | None:
     keys: dict[EndKind, str] = {"publisher": "publishes_to_nobody", "subscription": "hears_nobody"}
     for end in case.ends:
         if not end.is_met and (how := case.recording.interfaces.unlike.get(end.type)):
-            cause = msg(
-                "Your {type} is not the exercise's, and the two exchange nothing: {how}{where}.",
-                **{"type": excerpt(end.type), "how": how, "where": line(end.place)},
+            return diagnosed(
+                keys.get(end.kind, "calls_nobody"),
+                msg(
+                    "Your {type} is not the exercise's, and the two exchange nothing: {how}{where}."
+                ),
+                msg("Define it as the exercise does, or leave the package out."),
+                end.place,
+                type=excerpt(end.type),
+                how=how,
             )
-            help_ = msg("Define it as the exercise does, or leave the package out.")
-            key = keys.get(end.kind, "calls_nobody")
-            return Diagnosis(key, cause, help_, place=end.place)
     return None
 
 
@@ -202,35 +201,32 @@ def is_of_another_type(case: Case) -> Diagnosis | None:
 
 def calls_nobody(case: Case) -> Diagnosis | None:
     """The program calls a service or an action under a name or with a type that nobody offers."""
-
-    def describe(end: End, near: Endpoint) -> Message:
-        words: dict[str, str | Message] = {
-            "what": _served(end.kind, end.name),
-            "where": line(end.place),
-        }
-        if end.name == near.name:
-            words |= {"type": excerpt(end.type), "wanted": near.type}
-            if end.used:
-                return msg("You call {what} as {type}, but it is {wanted}{where}.", **words)
-            return msg(
-                "You have a client for {what} as {type}, but it is {wanted}{where}.", **words
-            )
-        words |= {"wanted": _near(end, near)}
-        if end.used:
-            return msg("You call {what}, which nobody offers; there is {wanted}{where}.", **words)
-        return msg(
-            "You have a client for {what}, which nobody offers; there is {wanted}{where}.", **words
-        )
-
-    return _first(case, "client", "calls_nobody", describe) or _first(
-        case, "action_client", "calls_nobody", describe
+    sentences = (
+        msg("You call {what} as {type}, but it is {wanted}{where}."),
+        msg("You call {what}, which nobody offers; there is {wanted}{where}."),
+        msg("You have a client for {what} as {type}, but it is {wanted}{where}."),
+        msg("You have a client for {what}, which nobody offers; there is {wanted}{where}."),
+    )
+    return _first(case, "client", "calls_nobody", *sentences) or _first(
+        case, "action_client", "calls_nobody", *sentences
     )
 
 
 def _first(
-    case: Case, kind: EndKind, key: str, describe: Callable[[End, Endpoint], Message]
+    case: Case,
+    kind: EndKind,
+    key: str,
+    other_type: Message,
+    other_name: Message,
+    unused_of_type: Message = NOTHING,
+    unused_of_name: Message = NOTHING,
 ) -> Diagnosis | None:
-    """Diagnose the first end of a kind that meets nobody and is near an endpoint of the scene."""
+    """Diagnose the first end of a kind that meets nobody and is near an endpoint of the scene.
+
+    Args:
+        other_type, other_name: the cause where that is the difference.
+        unused_of_type, unused_of_name: the same where the end was never used, if that is another.
+    """
     for end in case.ends:
         if end.kind != kind:
             continue
@@ -242,11 +238,22 @@ def _first(
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
         if end.name == near.name:
-            found = lint_findings.imported_at(case, end.type, near.type)
-            end = replace(end, place=found or end.place)
+            place = lint_findings.imported_at(case, end.type, near.type) or end.place
+            cause, of_unused = other_type, unused_of_type
         else:
-            end = replace(end, place=lint_findings.named_at(case, end.name, end.place))
-        return Diagnosis(key, describe(end, near), _fix(end, near), place=end.place)
+            place = lint_findings.named_at(case, end.name, end.place)
+            cause, of_unused = other_name, unused_of_name
+        return diagnosed(
+            key,
+            cause if end.used else of_unused or cause,
+            _fix(end, near),
+            place,
+            name=excerpt(end.name),
+            type=excerpt(end.type),
+            what=_served(kind, end.name),
+            the_thing=near.node or case.the_thing,
+            wanted=near.type if end.name == near.name else _near(end, near),
+        )
     return None
 
 
@@ -262,55 +269,29 @@ def has_unfit_qos(case: Case) -> Diagnosis | None:
             continue
         mine = [end for end in case.observed.ends if (end.kind, end.name) == (kind, topic)]
         place = mine[0].place if mine else None
-        return Diagnosis(
+        sends, wants = _TOO_LITTLE.get(found["policy"], ("", ""))
+        return diagnosed(
             "has_unfit_qos",
-            _unfit(others[0].node or case.the_thing, kind, topic, found["policy"], line(place)),
-            _fitting(kind, found["policy"]),
-            place=place,
+            _UNFIT_BY[kind == "publisher", bool(sends)],
+            _fitting(found["policy"], wants if kind == "publisher" else sends),
+            place,
+            topic=topic,
+            policy=found["policy"],
+            sends=sends,
+            wants=wants,
+            the_thing=others[0].node or case.the_thing,
         )
     return None
 
 
-def _fitting(kind: EndKind, policy: str) -> Message:
+def _fitting(policy: str, right: str) -> Message:
     """Say what to write for a QoS policy that differs from the other end's."""
-    sends, wants = _TOO_LITTLE.get(policy, ("", ""))
-    right = wants if kind == "publisher" else sends
     if not right:
         return msg("Write 10 instead of the QoS profile.")
     setting = f"{policy.lower()}={policy.capitalize()}Policy.{right}"
     if right in ("RELIABLE", "VOLATILE"):
         return msg("Write 10 instead of the QoS profile, or {setting} in it.", setting=setting)
     return msg("Give it a QoSProfile with {setting}.", setting=setting)
-
-
-def _unfit(other: str | Message, kind: EndKind, topic: str, policy: str, where: Message) -> Message:
-    """Say in which QoS policy a publisher or subscription differs from the other end."""
-    sends, wants = _TOO_LITTLE.get(policy, ("", ""))
-    words = {"topic": topic, "where": where, "sends": sends, "wants": wants, "policy": policy}
-    if kind == "publisher" and sends:
-        return msg(
-            "Your publisher on {topic}{where} is {sends}, {the_thing} listens {wants}: nothing "
-            "arrives.",
-            the_thing=other,
-            **words,
-        )
-    if sends:
-        return msg(
-            "Your subscription on {topic}{where} asks for {wants}, but it is published {sends}: "
-            "nothing reaches you.",
-            **words,
-        )
-    if kind == "publisher":
-        return msg(
-            "Your publisher on {topic}{where} does not fit the other end's, by its {policy}: "
-            "nothing arrives.",
-            **words,
-        )
-    return msg(
-        "Your subscription on {topic}{where} does not fit the other end's, by its {policy}: "
-        "nothing arrives.",
-        **words,
-    )
 
 
 def nearest(end: End, case: Case) -> Endpoint | None:

@@ -5,10 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from signal import Signals
 
 from grader.diagnosis import known_exceptions, lint_findings, lint_hints
-from grader.diagnosis.case import Case, at, excerpt, line, of_kind, sentences, thread_exception
+from grader.diagnosis.case import (
+    Case,
+    diagnosed,
+    excerpt,
+    line,
+    of_kind,
+    sentences,
+    thread_exception,
+)
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, plain_text
 from grader.recording.observations import Raised, SourceLine
@@ -62,28 +71,20 @@ def unreadable(case: Case) -> Diagnosis | None:
     if raised is None:
         return None
     text = excerpt(raised.text)
+    help_ = msg(
+        "Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."
+    )
     if "null bytes" in text and raised.type in (*_NOT_READ, "ValueError"):
         cause = msg(
-            "Python cannot read your file{where}: it holds NUL bytes, as text in UTF-16 does.",
-            where=line(raised.place),
+            "Python cannot read your file{where}: it holds NUL bytes, as text in UTF-16 does."
         )
-        return _saved_wrongly(cause, raised)
-    if raised.type in (*_NOT_READ, "UnicodeDecodeError") and any(e in text for e in _ENCODING):
+    elif raised.type in (*_NOT_READ, "UnicodeDecodeError") and any(e in text for e in _ENCODING):
         if raised.type == "UnicodeDecodeError" and case.observed.ends:
             return None  # it read something else while it ran
-        cause = msg(
-            "Python cannot read your file{where}: it is not UTF-8 text ({text}).",
-            where=line(raised.place),
-            text=text,
-        )
-        return _saved_wrongly(cause, raised)
-    if raised.type in _NOT_READ:
-        cause = msg(
-            "Python cannot read your file: {type}: {text}{where}.",
-            type=raised.type,
-            text=_PLACE.sub("", text),
-            where=line(raised.place),
-        )
+        cause = msg("Python cannot read your file{where}: it is not UTF-8 text ({text}).")
+    elif raised.type in _NOT_READ:
+        cause = msg("Python cannot read your file: {type}: {text}{where}.")
+        cause = cause.given(text=_PLACE.sub("", text))
         help_ = msg(
             "Look at that line and the one above it: a bracket, quote or colon that"
             " is missing is noticed only where something else begins."
@@ -98,17 +99,9 @@ def unreadable(case: Case) -> Diagnosis | None:
                 "Look at the spaces at the beginning of that line and the one above it: lines "
                 "of one block begin in the same column, with spaces or with tabs, not both."
             )
-        return Diagnosis("unreadable", cause, help_, place=raised.place)
-    return None
-
-
-def _saved_wrongly(cause: Message, raised: Raised) -> Diagnosis:
-    return Diagnosis(
-        "unreadable",
-        cause,
-        msg("Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."),
-        place=raised.place,
-    )
+    else:
+        return None
+    return diagnosed("unreadable", cause, help_, raised.place, type=raised.type, text=text)
 
 
 def wrong_value(case: Case) -> Diagnosis | None:
@@ -131,13 +124,10 @@ def wrong_value(case: Case) -> Diagnosis | None:
     if place is not None and re.search(r"\b(?:np|numpy)\.", place.text):
         help_ = msg("A number of numpy is none of Python: write float(...) or int(...) around it.")
     cause = msg(
-        "The field {field} of a message must be {what}; something else was given{at}{where}.",
-        field=excerpt(found["field"]),
-        what=what,
-        at=at(when),
-        where=line(place),
+        "The field {field} of a message must be {what}; something else was given{at}{where}."
     )
-    return Diagnosis("wrong_value", cause, help_, time_s=when, place=place)
+    field = excerpt(found["field"])
+    return diagnosed("wrong_value", cause, help_, place, when, field=field, what=what)
 
 
 def _fitting(what: str) -> Callable[[str], bool]:
@@ -171,10 +161,8 @@ def _wanted(
                 msg("{number} is not.", number=number) if number else NOTHING,
                 msg(
                     "Give it one from {low} to {high}: min() and max() keep what is calculated "
-                    "within.",
-                    low=low,
-                    high=high,
-                ),
+                    "within."
+                ).given(low=low, high=high),
             ),
         )
     if "sequence" in what and "'float'" in what:
@@ -219,22 +207,20 @@ def _wanted(
 def unanswered(case: Case) -> Diagnosis | None:
     """The callback of a service or an action returns nothing, where its answer is to be."""
     raised = case.raised
-    for finding in of_kind(case, "unanswered") if raised is not None else ():
-        name, answer = excerpt(finding.name), excerpt(finding.near)
-        sign = "'result' field must be" if answer == "result" else ""
-        if raised is None or raised.type not in ("TypeError", "AssertionError"):
-            continue
+    if raised is None or raised.type not in ("TypeError", "AssertionError"):
+        return None
+    for finding in of_kind(case, "unanswered"):
+        sign = "'result' field must be" if finding.near == "result" else ""
         if sign in raised.text and bool(sign) == bool(raised.text):
-            when = _when(case, raised)
-            cause = msg(
-                "{name}(){where} returns no {answer}, and so your node crashed{at}.",
-                name=name,
-                where=line(finding.place),
-                answer=answer,
-                at=at(when),
+            return diagnosed(
+                "unanswered",
+                msg("{name}(){where} returns no {answer}, and so your node crashed{at}."),
+                msg("Write `return {answer}` at the end of {name}()."),
+                finding.place,
+                _when(case, raised),
+                name=excerpt(finding.name),
+                answer=excerpt(finding.near),
             )
-            help_ = msg("Write `return {answer}` at the end of {name}().", answer=answer, name=name)
-            return Diagnosis("unanswered", cause, help_, time_s=when, place=finding.place)
     return None
 
 
@@ -248,7 +234,6 @@ def ended_itself(case: Case) -> Diagnosis | None:
         " to go on stays in rclpy.spin(node)."
     )
     if raised is not None and raised.type == "SystemExit":
-        when = _when(case, raised)
         for finding in of_kind(case, "exits"):
             if finding.place.line == getattr(raised.place, "line", 0):
                 help_ = msg(
@@ -257,27 +242,17 @@ def ended_itself(case: Case) -> Diagnosis | None:
                 )
         text = excerpt(raised.text)
         value = text if text.isdecimal() else repr(text)
-        cause = msg(
-            "Your program ended itself{at} by sys.exit({value}){where}.",
-            at=at(when),
-            value=value,
-            where=line(raised.place),
-        )
-        return Diagnosis("ended_itself", cause, help_, time_s=when, place=raised.place)
+        cause = msg("Your program ended itself{at} by sys.exit({value}){where}.", value=value)
+        return diagnosed("ended_itself", cause, help_, raised.place, _when(case, raised))
     if raised is not None:
         return None
-    exit_code = case.run.exit_code
-    cause = msg(
-        "Your program ended with exit code {exit_code}, by no exception.", exit_code=exit_code
-    )
-    if last := case.last_line:
+    cause = msg("Your program ended with exit code {exit_code}, by no exception.")
+    if last := excerpt(case.last_line):
         cause = msg(
             "Your program ended with exit code {exit_code}, by no exception; the last that it "
-            "printed is: {last!r}.",
-            exit_code=exit_code,
-            last=excerpt(last),
+            "printed is: {last!r}."
         )
-    return Diagnosis("ended_itself", cause, help_)
+    return diagnosed("ended_itself", cause, help_, exit_code=case.run.exit_code, last=last)
 
 
 def crashed(case: Case) -> Diagnosis | None:
@@ -285,18 +260,13 @@ def crashed(case: Case) -> Diagnosis | None:
     raised = case.raised
     if case.run.outcome != "crashed" or raised is None or case.is_shut_down:
         return None
-    when = _when(case, raised)
     hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
     place = hint.place or raised.place
-    at_line = place if hint.text else raised.place
-    cause = msg(
-        "Your node crashed{at}{error}{where}.",
-        at=at(when),
-        error=_error(raised, hint),
-        where=line(at_line),
-    )
-    cause = sentences(cause, _limit(case))
-    return Diagnosis("crashed", cause, _help(raised, hint), time_s=when, place=place)
+    cause = msg("Your node crashed{at}{error}{where}.", error=_error(raised, hint))
+    if not hint.text:
+        cause = cause.given(where=line(raised.place))
+    found = diagnosed("crashed", cause, _help(raised, hint), place, _when(case, raised))
+    return replace(found, cause=sentences(found.cause, _limit(case)))
 
 
 def thread_crashed(case: Case) -> Diagnosis | None:
@@ -308,14 +278,8 @@ def thread_crashed(case: Case) -> Diagnosis | None:
     if "Error raised in" in case.tail:
         of = msg("The callback of your action")
     hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
-    place = hint.place or raised.place
-    cause = msg(
-        "{of} crashed{error}{where}.",
-        of=of,
-        error=_error(raised, hint),
-        where=line(place),
-    )
-    return Diagnosis("crashed", cause, _help(raised, hint), place=place)
+    cause = msg("{of} crashed{error}{where}.", of=of, error=_error(raised, hint))
+    return diagnosed("crashed", cause, _help(raised, hint), hint.place or raised.place)
 
 
 def misses_message(case: Case) -> bool:
@@ -356,14 +320,11 @@ def killed(case: Case) -> Diagnosis | None:
     when = None if raised is None else _when(case, raised)
     place = None if raised is None else raised.place
     signal = msg(" by the signal {name}", name=name) if name else ""
-    words = {"at": at(when), "signal": signal, "where": line(place)}
-    cause = msg("Your program was killed{at}{signal}{where}.", **words)
+    cause = msg("Your program was killed{at}{signal}{where}.", signal=signal)
     if name in _SIGNALS:
-        cause = msg(
-            "Your program was killed{at}{signal}{where}: {why}.", why=_SIGNALS[name], **words
-        )
-    cause = sentences(cause, _limit(case))
-    return Diagnosis("killed", cause, _signal_help(name), time_s=when, place=place)
+        cause = msg("Your program was killed{at}{signal}{where}: {why}.", why=_SIGNALS[name])
+    found = diagnosed("killed", cause, _signal_help(name), place, when, signal=signal)
+    return replace(found, cause=sentences(found.cause, _limit(case)))
 
 
 def _signal(exit_code: int | None) -> str:

@@ -105,7 +105,7 @@ def diagnose(
         for number, case in enumerate(cases):
             if is_right and case.run.outcome != "crashed":
                 continue
-            found = _ask(rules, case)
+            found = next((each for rule in rules if (each := rule(case)) is not None), None)
             if found is not None:
                 return _in_run(_at_its_line(found, case), number)
     found = costliest(verdicts)
@@ -122,10 +122,6 @@ def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
     if found.key not in lines or (found.place is not None and "while" in found.place.text):
         return found
     return replace(found, place=first_of(case, lines[found.key]) or found.place)
-
-
-def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
-    return next((found for rule in rules if (found := rule(case)) is not None), None)
 
 
 def _in_run(found: Diagnosis, number: int) -> Diagnosis:
@@ -158,10 +154,6 @@ def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
     return _shown(with_end or _with_place(found, case))
 
 
-def _text(found: Diagnosis) -> str:
-    return f"{found.cause!s} {found.help!s}"
-
-
 def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add the publisher or client that a finding names, where it was never used."""
     end = lost_points.unused(found, case)
@@ -192,7 +184,7 @@ def _with_timer(found: Diagnosis, case: Case) -> Diagnosis | None:
 
 def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
     """Add the line that sends what a finding's text names first."""
-    text = _text(found)
+    text = found.spoken
     driven_by = {(each.name, each.type) for each in case.scene_has if each.kind == "subscription"}
     first, place = len(text), found.place
     for end in case.observed.ends:

@@ -37,6 +37,11 @@ class Diagnosis:
     place: SourceLine | None = field(default=None, metadata=SPARSE)
     check: str = field(default="", metadata=SPARSE)
 
+    @property
+    def spoken(self) -> str:
+        """Its cause and help in English, to look for words in."""
+        return f"{self.cause!s} {self.help!s}"
+
 
 def costliest(verdicts: Sequence[Verdict]) -> Diagnosis | None:
     """Make a diagnosis of the check that costs most, counting those that depend on it."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 
-from grader.diagnosis.case import Case, excerpt, line, of_kind
+from grader.diagnosis.case import Case, diagnosed, excerpt, filled, of_kind, words_of
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg
 from grader.recording.observations import Raised
@@ -48,12 +48,7 @@ def not_importable(case: Case) -> Diagnosis | None:
     if hidden is not None:
         return hidden
     text = _PATH.sub("", excerpt(raised.text))
-    cause = msg(
-        "Your program cannot import what it needs: {type}: {text}{where}.",
-        type=raised.type,
-        text=text,
-        where=line(raised.place),
-    )
+    cause = msg("Your program cannot import what it needs: {type}: {text}{where}.")
     help_ = msg(
         "Compare the name with the one in the exercise or in ROS's "
         "documentation. A module of your own has to be in what you hand in, "
@@ -67,7 +62,7 @@ def not_importable(case: Case) -> Diagnosis | None:
         )
     elif advice := _of_own_module(case, raised) or _elsewhere(case, raised) or _better(text):
         help_ = advice
-    return Diagnosis("not_importable", cause, help_, place=raised.place)
+    return diagnosed("not_importable", cause, help_, raised.place, type=raised.type, text=text)
 
 
 #: In sentences about what is too large here, and not for colcon.
@@ -102,11 +97,8 @@ def _elsewhere(case: Case, raised: Raised) -> Message | None:
     """Return where the file of a module lies that is imported from somewhere else."""
     for finding in of_kind(case, "elsewhere"):
         if finding.place.line == getattr(raised.place, "line", 0):
-            return msg(
-                "There is no {name}; there is {near}: give it that place and name.",
-                name=excerpt(finding.name),
-                near=excerpt(finding.near),
-            )
+            there = msg("There is no {name}; there is {near}: give it that place and name.")
+            return filled(there, words_of(finding))
     return None
 
 
@@ -128,17 +120,12 @@ def _not_generated(case: Case, raised: Raised) -> Diagnosis | None:
         others = (each for each in types if each.lower() == inner.lower())
         near = next((e for e in others if known.faults.get(types[e], said) != said), near)
     module, _, name = types.get(near, own[0]).replace("/", ".").rpartition(".")
-    values = {
-        "m": module,
-        "n": name,
-        "where": line(raised.place),
-        "package": own[0].partition("/")[0],
-    }
+    values = {"m": module, "n": name, "package": own[0].partition("/")[0]}
     why = known.faults.get(types.get(near, ""), NOTHING)
-    cause = msg("Your program imports what your {package} does not have{where}.", **values)
-    help_ = msg("Write `from {m} import {n}`.", **values)
+    cause = msg("Your program imports what your {package} does not have{where}.")
+    help_ = msg("Write `from {m} import {n}`.")
     if why:
-        cause = msg("Your program cannot import {m}.{n}{where}: {why}", **values, why=why)
+        cause = msg("Your program cannot import {m}.{n}{where}: {why}", why=why)
         is_ours = any(limit in str(why) for limit in _OUR_LIMITS)
         help_ = msg("Make them shorter, or fewer.")
         if not is_ours:
@@ -146,10 +133,10 @@ def _not_generated(case: Case, raised: Raised) -> Diagnosis | None:
                 "`colcon build` refuses it, too: build your packages before you hand them in."
             )
     elif near and word == near:
-        cause = msg("Your program cannot import {m}.{n}{where}.", **values)
+        cause = msg("Your program cannot import {m}.{n}{where}.")
     elif not near:
         help_ = msg("It has: {names}.", names=", ".join(sorted(types))[:200])
-    return Diagnosis("not_importable", cause, help_, place=raised.place)
+    return diagnosed("not_importable", cause, help_, raised.place, **values)
 
 
 def _of_own_module(case: Case, raised: Raised) -> Message | None:
@@ -157,11 +144,10 @@ def _of_own_module(case: Case, raised: Raised) -> Message | None:
     found = _OTHER_MODULE.search(raised.text)
     for finding in of_kind(case, "not_defined") if found is not None else ():
         if found is not None and finding.name == found[1]:
-            words = {"name": excerpt(finding.name), "near": excerpt(finding.near)}
-            words["module"] = excerpt(found[2])
+            has = msg("Your module {module} has {near}, not {name}: write that.")
             if "," in finding.near:
-                return msg("Your module {module} has no {name}; it has: {near}.", **words)
-            return msg("Your module {module} has {near}, not {name}: write that.", **words)
+                has = msg("Your module {module} has no {name}; it has: {near}.")
+            return filled(has, words_of(finding) | {"module": excerpt(found[2])})
     return None
 
 
@@ -175,13 +161,11 @@ def _circular(case: Case, raised: Raised) -> Diagnosis | None:
         help_ = msg("Move what both of them need into a third file, and import that in both.")
         if finding.near:
             help_ = msg("Take that import out: {file} uses nothing of it.", file=here)
-        words = {"here": here, "there": there, "where": line(finding.place)}
         cause = msg(
             "Your program cannot import what it needs: {there} imports {here}, and {here} imports "
-            "{there}{where}.",
-            **words,
+            "{there}{where}."
         )
-        return Diagnosis("not_importable", cause, help_, place=finding.place)
+        return diagnosed("not_importable", cause, help_, finding.place, here=here, there=there)
     return None
 
 
@@ -200,16 +184,13 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
         if is_named_so
         else msg("A file of your own is called {name}.py", name=name)
     )
-    return Diagnosis(
+    return diagnosed(
         "not_importable",
-        msg(
-            "{which}, and so hides the package {name} from which you import{where}.",
-            which=which,
-            name=name,
-            where=line(raised.place),
-        ),
-        msg("Give {name}.py another name.", name=name),
-        place=raised.place,
+        msg("{which}, and so hides the package {name} from which you import{where}."),
+        msg("Give {name}.py another name."),
+        raised.place,
+        which=which,
+        name=name,
     )
 
 
@@ -226,16 +207,15 @@ def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
     instead = f"from {package} import {name}"
     if written.startswith(f"from {name} import "):
         instead = written.replace(f"from {name} ", f"from {near} ", 1)
-    return Diagnosis(
+    return diagnosed(
         "not_importable",
         msg(
             "Your program cannot import {name}: it lies beside, in the package "
-            "{package}, and in a package its name is {near}{where}.",
-            name=name,
-            package=package,
-            near=near,
-            where=line(raised.place),
+            "{package}, and in a package its name is {near}{where}."
         ),
         msg("Write `{instead}` there.", instead=instead),
-        place=raised.place,
+        raised.place,
+        name=name,
+        package=package,
+        near=near,
     )

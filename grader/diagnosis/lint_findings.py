@@ -9,7 +9,15 @@ import math
 import re
 from collections.abc import Callable
 
-from grader.diagnosis.case import Case, excerpt, first_of, line, of_kind
+from grader.diagnosis.case import (
+    Case,
+    diagnosed,
+    diagnosed_by,
+    excerpt,
+    first_of,
+    line,
+    of_kind,
+)
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.standstill import hears_once, never_spins
 from grader.message import Message, msg
@@ -134,16 +142,14 @@ def ends_before_spin(case: Case) -> Diagnosis | None:
     if any(end.used for end in case.observed.ends if end.kind == "publisher"):
         return None
     for finding in of_kind(case, "ends_before_spin"):
-        name = excerpt(finding.name)
-        if name == "destroy_node":
+        what = msg("ROS is shut down before anything spins{where}", where=line(finding.place))
+        if finding.name == "destroy_node":
             what = msg("Your node is destroyed before it spins{where}", where=line(finding.place))
-        else:
-            what = msg("ROS is shut down before anything spins{where}", where=line(finding.place))
-        return Diagnosis(
+        return diagnosed_by(
+            finding,
             "ends_before_spin",
             msg("{what}: no timer and no callback is ever called.", what=what),
-            msg("Move {name}() behind rclpy.spin(node), to the end of main().", name=name),
-            place=finding.place,
+            msg("Move {name}() behind rclpy.spin(node), to the end of main()."),
         )
     return None
 
@@ -153,53 +159,45 @@ def spins_in_init(case: Case) -> Diagnosis | None:
     if any(end.used for end in case.observed.ends if end.kind == "publisher"):
         return None
     for finding in of_kind(case, "spins_in_init"):
-        return Diagnosis(
+        return diagnosed_by(
+            finding,
             "stays_in_init",
             msg(
                 "Your program never leaves __init__(): it stays at `{code}`{where}, and what comes "
-                "after is never reached: spin() returns only when the program ends.",
-                code=excerpt(finding.place.text),
-                where=line(finding.place),
+                "after is never reached: spin() returns only when the program ends."
             ),
             msg("Take it out there; main() makes the node and then calls rclpy.spin(node)."),
-            place=finding.place,
         )
     return None
 
 
 def awaits(case: Case) -> Diagnosis | None:
     """A callback awaits an answer, and no further message is handled."""
-    found = hears_once(case)
-    for finding in of_kind(case, "waits") if found is not None else ():
-        return Diagnosis(
-            "stuck_in_callback",
-            msg(
-                "{name}() waits in {call}(){where} for what only another callback can bring, and "
-                "no callback is called meanwhile.",
-                name=excerpt(finding.name),
-                call=excerpt(finding.near),
-                where=line(finding.place),
-            ),
-            msg(
-                "Send the request by call_async(request) and go on, without "
-                "spin_until_future_complete()."
-            ),
-            place=finding.place,
+    if hears_once(case) is None:
+        return None
+    for finding in of_kind(case, "waits"):
+        cause = msg(
+            "{name}() waits in {call}(){where} for what only another callback can bring, and "
+            "no callback is called meanwhile."
         )
-    for finding in of_kind(case, "awaits") if found is not None else ():
-        return Diagnosis(
+        help_ = msg(
+            "Send the request by call_async(request) and go on, without "
+            "spin_until_future_complete()."
+        )
+        cause = cause.given(call=excerpt(finding.near))
+        return diagnosed_by(finding, "stuck_in_callback", cause, help_)
+    for finding in of_kind(case, "awaits"):
+        return diagnosed_by(
+            finding,
             "awaits",
             msg(
                 "{name}() waits by `await` for an answer{where}, and until then none of the other "
-                "callbacks of its group is called: the answer never comes.",
-                name=excerpt(finding.name),
-                where=line(finding.place),
+                "callbacks of its group is called: the answer never comes."
             ),
             msg(
                 "Leave out await and async: call_async(request) sends the request, and you go on "
                 "without waiting for the answer."
             ),
-            place=finding.place,
         )
     return None
 
@@ -208,25 +206,22 @@ def called_at_once(case: Case) -> Diagnosis | None:
     """A function that was to run in a thread runs in the main program, which gets no further."""
     sends = any(end.used for end in case.observed.ends if end.kind == "publisher")
     for finding in of_kind(case, "called"):
-        name = excerpt(finding.name)
+        name, near = excerpt(finding.name), excerpt(finding.near)
         is_spin = name.rpartition(".")[2] == "spin"
         goes_on = sends if is_spin else never_spins(case) is None
         if goes_on and case.observed.spun_s is not None:
             continue
-        return Diagnosis(
+        return diagnosed(
             "called_at_once",
             msg(
                 "{called}{where} calls {name}() at once, in the main program, and what comes "
-                "after waits until it returns.",
-                called=f"{excerpt(finding.near)}{name}())",
-                where=line(finding.place),
-                name=name,
+                "after waits until it returns."
             ),
-            msg(
-                "Pass it by its name, without parentheses: {handed}.",
-                handed=f"{excerpt(finding.near)}{name}{', args=(node,)' * is_spin})",
-            ),
-            place=finding.place,
+            msg("Pass it by its name, without parentheses: {handed}."),
+            finding.place,
+            called=f"{near}{name}())",
+            name=name,
+            handed=f"{near}{name}{', args=(node,)' * is_spin})",
         )
     return None
 
@@ -234,15 +229,10 @@ def called_at_once(case: Case) -> Diagnosis | None:
 def unstarted(case: Case) -> Diagnosis | None:
     """A thread that is to spin, and is never started."""
     for finding in of_kind(case, "unstarted") if case.observed.spun_s is None else ():
-        name = excerpt(finding.name)
-        return Diagnosis(
+        return diagnosed_by(
+            finding,
             "unstarted",
-            msg(
-                "Nothing starts your thread {name}{where}, so nothing spins the node.",
-                name=name,
-                where=line(finding.place),
-            ),
-            msg("Write {name}.start() behind it.", name=name),
-            place=finding.place,
+            msg("Nothing starts your thread {name}{where}, so nothing spins the node."),
+            msg("Write {name}.start() behind it."),
         )
     return None

@@ -1,20 +1,23 @@
 """Explains exceptions where the source shows more than their text.
 
-A lint finding by itself is not reported: it may be meant. `LintFinding` describes each kind.
+A lint finding by itself is not reported: it may be meant. `LintFinding` describes each kind. Rules
+yield what they find; the first of all counts.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import chain
+from typing import Any
 
 from grader.diagnosis import known_exceptions
-from grader.diagnosis.case import Case, excerpt, function, line, of_kind
+from grader.diagnosis.case import Case, excerpt, filled, function, of_kind, words_of
 from grader.diagnosis.known_exceptions import Hint
 from grader.diagnosis.lint_findings import in_other_order
-from grader.message import Message, as_message, msg
-from grader.recording.observations import LintKind, Raised
+from grader.message import NOTHING, Message, as_message, msg
+from grader.recording.observations import LintFinding, LintKind, Raised
 from grader.text import misspelt
 
 #: So much of an exception's text is searched [characters].
@@ -38,85 +41,77 @@ _NO_INSTANCE = "Service classes can not be instantiated"
 
 def explain(case: Case, raised: Raised) -> Hint | None:
     """Explain an exception where the source or the scene shows more than its text."""
-    return next((hint for rule in _RULES if (hint := rule(case, raised)) is not None), None)
+    return next(chain.from_iterable(rule(case, raised) for rule in _RULES), None)
 
 
-def _not_global(case: Case, raised: Raised) -> Hint | None:
+def _hint(finding: LintFinding, help_: Message, text: Message = NOTHING, **words: Any) -> Hint:
+    """Return a hint to the place of a finding; its sentences may have the words of that."""
+    words = words_of(finding) | words
+    return Hint(filled(help_, words), filled(text, words), finding.place)
+
+
+def _not_global(case: Case, raised: Raised) -> Iterator[Hint]:
     found = _VARIABLE.search(raised.text[:_LONGEST])
     if raised.type != "UnboundLocalError" or found is None:
-        return None
+        return
     for finding in of_kind(case, "global"):
         if finding.name == found[1]:
-            word = excerpt(finding.near)
-            outside = msg("outside")
-            if word.startswith("global"):
-                outside = msg("at the top of the file")
-            here = as_message(function(raised.place)) or msg("this function")
-            return Hint(
+            is_of_module = finding.near.startswith("global")
+            hint = _hint(
+                finding,
                 msg(
                     "Write `{word}` as the first line of {here}: without it that is another"
-                    " variable, which has no value yet.",
-                    word=word,
-                    here=here,
+                    " variable, which has no value yet."
                 ),
-                msg(
-                    "`{name}` is assigned {outside} (line {line}) and in {here}: add `{word}`",
-                    name=excerpt(finding.name),
-                    outside=outside,
-                    line=finding.place.line,
-                    here=here,
-                    word=word,
-                ),
+                msg("`{name}` is assigned {outside} (line {line}) and in {here}: add `{word}`"),
+                outside=msg("at the top of the file") if is_of_module else msg("outside"),
+                line=finding.place.line,
+                here=as_message(function(raised.place)) or msg("this function"),
+                word=excerpt(finding.near),
             )
-    return None
+            yield replace(hint, place=None)
 
 
-def _without_self(case: Case, raised: Raised) -> Hint | None:
+def _without_self(case: Case, raised: Raised) -> Iterator[Hint]:
     found = _GIVEN.search(raised.text[:_LONGEST])
     if raised.type != "TypeError" or found is None or int(found[3]) != int(found[2]) + 1:
-        return None
+        return
     for finding in of_kind(case, "without_self"):
         if finding.name == found[1]:
-            written = excerpt(finding.place.text)
-            rest = written.partition("(")[2].lstrip()
+            before, _, rest = excerpt(finding.place.text).partition("(")
+            rest = rest.lstrip()
             comma = "" if rest.startswith(")") else ", "
-            return Hint(
-                msg(
-                    "A method takes self before all else: write `{written}`.",
-                    written=f"{written.partition('(')[0]}(self{comma}{rest}",
-                ),
-                place=finding.place,
-            )
-    return None
+            help_ = msg("A method takes self before all else: write `{written}`.")
+            yield _hint(finding, help_, written=f"{before}(self{comma}{rest}")
 
 
-def _in_other_order(case: Case, raised: Raised) -> Hint | None:
+def _in_other_order(case: Case, raised: Raised) -> Iterator[Hint]:
     """An exception in a function that is given two arguments each in the other's place."""
     for finding in of_kind(case, "swapped"):
         if function(raised.place) == f"{finding.name}()":
             what, help_ = in_other_order(finding)
-            return Hint(help_, what, finding.place)
-    return None
+            yield Hint(help_, what, finding.place)
 
 
-def _misplaced(case: Case, raised: Raised) -> Hint | None:
+def _misplaced(case: Case, raised: Raised) -> Iterator[Hint]:
     """A method whose def is indented too far, or not far enough."""
     found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
-    for finding in of_kind(case, "misplaced") if found is not None else ():
-        if found is None or finding.name != found[1]:
-            continue
-        how = msg("too little: it is outside of the class")
-        if finding.near:
-            how = msg("too far: it is inside {outer}()", outer=excerpt(finding.near))
-        return Hint(
-            msg("Begin it in the column of the other defs of the class, and move all its lines."),
-            msg("`def {name}` is indented {how}", name=excerpt(finding.name), how=how),
-            finding.place,
-        )
-    return None
+    for finding in of_kind(case, "misplaced"):
+        if found is not None and finding.name == found[1]:
+            how = msg("too little: it is outside of the class")
+            if finding.near:
+                how = msg("too far: it is inside {outer}()", outer=excerpt(finding.near))
+            yield _hint(
+                finding,
+                msg(
+                    "Begin it in the column of the other defs of the class, and move all its lines."
+                ),
+                msg("`def {name}` is indented {how}"),
+                how=how,
+            )
 
 
-def _lacks_entry(case: Case, raised: Raised) -> Hint | None:
+def _lacks_entry(case: Case, raised: Raised) -> Iterator[Hint]:
     """A dict or a list that lacks what it is asked for, where the source shows what it has."""
     found = _ASKED.findall(raised.place.text) if raised.place is not None else []
     asked = {of.rpartition(".")[2]: index for of, index in found}
@@ -124,104 +119,77 @@ def _lacks_entry(case: Case, raised: Raised) -> Hint | None:
     for finding in of_kind(case, "holds") if is_index or raised.type == "KeyError" else ():
         if (index := asked.get(finding.name.rpartition(".")[2])) is None:
             continue
-        words = {"name": excerpt(finding.name), "has": excerpt(finding.near)}
-        words |= {"index": excerpt(index), "key": excerpt(raised.text)}
+        is_text = f"'{raised.text}'" in finding.near.split(", ")
+        help_ = msg("Ask for one of these, with quotes or without as there, or add {key}{where}.")
+        text = msg("{name} has no entry {key}; it has: {has}")
         if is_index:
-            return Hint(
-                msg("Indexes begin at 0: if you count from 1, write {name}[{index} - 1].", **words),
-                msg("{name} has the indexes {has}, and `{index}` is another", **words),
-            )
-        if f"'{raised.text}'" in finding.near.split(", "):
-            return Hint(
-                msg("Write {key}: instead of '{key}': there, and so on.", **words),
-                msg("{name} has the text '{key}', and is asked for the number {key}", **words),
-                finding.place,
-            )
-        return Hint(
-            msg(
-                "Ask for one of these, with quotes or without as there, or add {key}{where}.",
-                where=line(finding.place),
-                **words,
-            ),
-            msg("{name} has no entry {key}; it has: {has}", **words),
-        )
-    return None
+            help_ = msg("Indexes begin at 0: if you count from 1, write {name}[{index} - 1].")
+            text = msg("{name} has the indexes {has}, and `{index}` is another")
+        elif is_text:
+            help_ = msg("Write {key}: instead of '{key}': there, and so on.")
+            text = msg("{name} has the text '{key}', and is asked for the number {key}")
+        words = {"has": excerpt(finding.near), "index": excerpt(index), "key": excerpt(raised.text)}
+        hint = _hint(finding, help_, text, **words)
+        yield hint if is_text and not is_index else replace(hint, place=None)
 
 
-def _is_zero(case: Case, raised: Raised) -> Hint | None:
+def _is_zero(case: Case, raised: Raised) -> Iterator[Hint]:
     """A division by what begins with 0."""
     place = raised.place
     for finding in of_kind(case, "zero") if raised.type == "ZeroDivisionError" else ():
         if place is not None and re.search(rf"[/%] *{re.escape(finding.name)}\b", place.text):
-            name, number = excerpt(finding.name), excerpt(finding.near)
-            other = "0.1" if "." in number else "1"
-            text = msg(
-                "line {line} divides by {name}, which begins with {number}",
+            yield _hint(
+                finding,
+                msg("Let it begin with another number: {name} = {other}."),
+                msg("line {line} divides by {name}, which begins with {number}"),
                 line=place.line,
-                name=name,
-                number=number,
+                number=excerpt(finding.near),
+                other="0.1" if "." in finding.near else "1",
             )
-            help_ = msg(
-                "Let it begin with another number: {name} = {other}.", name=name, other=other
-            )
-            return Hint(help_, text, finding.place)
-    return None
 
 
-def _ends(case: Case, raised: Raised) -> Hint | None:
+def _ends(case: Case, raised: Raised) -> Iterator[Hint]:
     """A next() of a generator that has given all."""
     found = [*of_kind(case, "ends")] if raised.type == "StopIteration" else []
-    if len(found) != 1 or raised.place is None:
-        return None
-    name = excerpt(found[0].name)
-    return Hint(
-        msg("Let {name}() go on: while True:, a longer range(), itertools.count().", name=name),
-        msg(
-            "next() in line {line} finds nothing more: {name}() has come to its end",
+    if len(found) == 1 and raised.place is not None:
+        yield _hint(
+            found[0],
+            msg("Let {name}() go on: while True:, a longer range(), itertools.count()."),
+            msg("next() in line {line} finds nothing more: {name}() has come to its end"),
             line=raised.place.line,
-            name=name,
-        ),
-        found[0].place,
-    )
+        )
 
 
-def _misnamed(case: Case, raised: Raised) -> Hint | None:
+def _misnamed(case: Case, raised: Raised) -> Iterator[Hint]:
     """A method that has nearly the name of the one that Python looks for."""
     is_init = "__init__() missing" in raised.text and "'node_name'" in raised.text
     for finding in of_kind(case, "misnamed"):
-        name, near = excerpt(finding.name), excerpt(finding.near)
-        if raised.type == "NotImplementedError" or (is_init and near == "__init__"):
-            return Hint(
-                msg("Write def {near}(...) there.", near=near),
-                msg("{name}() is not called: Python looks for {near}()", name=name, near=near),
-                finding.place,
+        if raised.type == "NotImplementedError" or (is_init and finding.near == "__init__"):
+            yield _hint(
+                finding,
+                msg("Write def {near}(...) there."),
+                msg("{name}() is not called: Python looks for {near}()"),
             )
-    return None
 
 
-def _hidden_method(case: Case, raised: Raised) -> Hint | None:
+def _hidden_method(case: Case, raised: Raised) -> Iterator[Hint]:
     if "object is not callable" not in raised.text[:_LONGEST] or raised.place is None:
-        return None
+        return
     for finding in of_kind(case, "method"):
-        name = excerpt(finding.name)
-        if f"self.{name}(" in raised.place.text:
-            return Hint(
-                msg(
-                    "self.{name} is set to something else{where}, and that hides the method "
-                    "{name}(): give one of them another name.",
-                    name=name,
-                    where=line(finding.place),
-                )
+        if f"self.{excerpt(finding.name)}(" in raised.place.text:
+            help_ = msg(
+                "self.{name} is set to something else{where}, and that hides the method "
+                "{name}(): give one of them another name."
             )
-    return None
+            yield replace(_hint(finding, help_), place=None)
 
 
-def _class_given(case: Case, raised: Raised) -> Hint | None:
+def _class_given(case: Case, raised: Raised) -> Iterator[Hint]:
     place = raised.place
     for finding in of_kind(case, "class"):
         if place is not None and ("spin" in place.text or place.line == finding.place.line):
             call, name = excerpt(finding.near), excerpt(finding.name)
-            return Hint(
+            yield Hint(
                 msg(
                     "The parentheses are missing: node = {name}(), then {call}(node).",
                     name=name,
@@ -233,10 +201,9 @@ def _class_given(case: Case, raised: Raised) -> Hint | None:
                 ),
                 finding.place,
             )
-    return None
 
 
-def _service_for_request(case: Case, raised: Raised) -> Hint | None:
+def _service_for_request(case: Case, raised: Raised) -> Iterator[Hint]:
     services = {each.type.rpartition("/")[2] for each in case.scene_has if each.kind == "service"}
     services |= {end.type.rpartition("/")[2] for end in case.ends if end.kind == "client"}
     text = raised.text[:_LONGEST]
@@ -245,202 +212,168 @@ def _service_for_request(case: Case, raised: Raised) -> Hint | None:
     if _NO_INSTANCE in text and raised.place is not None:
         calls = re.findall(r"(\w{1,60})\(", raised.place.text)
         name = next((each for each in calls if each in services), "")
-    if name not in services:
-        return None
-    return Hint(
-        msg(
-            "Write {name}.Request(...) there: that is what a request is made of.",
-            name=excerpt(name),
-        ),
-        msg("{name} is the service, not a request to it", name=excerpt(name)),
-    )
+    if name in services:
+        help_ = msg("Write {name}.Request(...) there: that is what a request is made of.")
+        what = msg("{name} is the service, not a request to it")
+        yield Hint(help_.given(name=excerpt(name)), what.given(name=excerpt(name)))
 
 
-def _misspelt_field(case: Case, raised: Raised) -> Hint | None:
+def _misspelt_field(case: Case, raised: Raised) -> Iterator[Hint]:
     """A field of an interface of the hand-in's, with the name that it has there."""
     found = _NO_FIELD.search(raised.text[:_LONGEST])
     for name, text in case.recording.interfaces.texts.items() if found is not None else ():
         for field in _FIELD.findall(text):
             if found is not None and field != found[1] and misspelt(field, found[1]):
                 words = {"field": field, "name": excerpt(found[1]), "type": name}
-                return Hint(
+                yield Hint(
                     msg("Write {field} there.", field=field),
                     msg("{type} has no field {name}; it has {field}", **words),
                 )
-    return None
 
 
-def _misspelt(case: Case, raised: Raised) -> Hint | None:
+def _misspelt(case: Case, raised: Raised) -> Iterator[Hint]:
     """An attribute that is set under another name, or nowhere."""
     found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
     if found is None or raised.place is None or f".{found[1]}" not in raised.place.text:
-        return None
+        return
     name = excerpt(found[1])
     for finding in of_kind(case, "local"):
         if finding.name == found[1] and finding.near == f"self.{found[1]}":
-            return Hint(
-                msg("Write self.{name} = ... there.", name=name),
-                msg("`{name}` is a variable of that function; self.{name} is never set", name=name),
-                finding.place,
+            yield _hint(
+                finding,
+                msg("Write self.{name} = ... there."),
+                msg("`{name}` is a variable of that function; self.{name} is never set"),
             )
     for finding in of_kind(case, "never_read"):
         if misspelt(finding.name, found[1]):
-            return Hint(
-                msg("Write self.{name} there, or the other name here.", name=name),
+            yield _hint(
+                finding,
+                msg("Write self.{name} there, or the other name here."),
                 msg(
                     "self.{name} has no value: what is set is self.{other}, which is never read; "
-                    "compare the names",
-                    name=name,
-                    other=excerpt(finding.name),
+                    "compare the names"
                 ),
-                finding.place,
+                name=name,
+                other=excerpt(finding.name),
             )
     for finding in of_kind(case, "never_set"):
         if finding.name == found[1] and "__init__" in finding.place.text:
-            return Hint(
-                msg("Write self.{name} = ... in __init__, or compare the name.", name=name),
-                msg(
-                    "self.{name} has no value when that line runs: nothing has set it by then",
-                    name=name,
-                ),
-                finding.place,
+            yield _hint(
+                finding,
+                msg("Write self.{name} = ... in __init__, or compare the name."),
+                msg("self.{name} has no value when that line runs: nothing has set it by then"),
             )
-    return None
 
 
-def _wrong_callback(case: Case, raised: Raised) -> Hint | None:
+def _wrong_callback(case: Case, raised: Raised) -> Iterator[Hint]:
     """A callback whose own line has to change."""
     text = raised.text[:_LONGEST]
-    if "callback should be" in text:
-        wrong = [*of_kind(case, "no_message", "without_self")]
-        for finding in wrong:
-            if len(wrong) == 1 or raised.place is None or finding.name in raised.place.text:
-                name = excerpt(finding.name)
-                return Hint(
-                    msg(
-                        "A method takes self before all else, and a callback of a subscription the "
-                        "message: def {name}(self, pose).",
-                        name=name,
-                    ),
-                    msg("{name}(), the callback of a subscription, takes no message", name=name),
-                    finding.place,
-                )
+    wrong = [*of_kind(case, "no_message", "without_self")]
+    for finding in wrong if "callback should be" in text else ():
+        if len(wrong) == 1 or raised.place is None or finding.name in raised.place.text:
+            yield _hint(
+                finding,
+                msg(
+                    "A method takes self before all else, and a callback of a subscription the "
+                    "message: def {name}(self, pose)."
+                ),
+                msg("{name}(), the callback of a subscription, takes no message"),
+            )
     missing = known_exceptions.MISSING.search(text)
-    for finding in of_kind(case, "entry") if missing is not None and missing[1] == "main" else ():
+    if missing is None:
+        return
+    for finding in of_kind(case, "entry") if missing[1] == "main" else ():
         takes = excerpt(finding.near)
         with_none = ", ".join(f"{each}=None" for each in takes.split(", "))
-        return Hint(
+        yield Hint(
             msg("Write `def main({takes}):` there.", takes=with_none),
             msg("main() is called with nothing, and takes ({takes})", takes=takes),
             finding.place,
         )
-    timers = sorted(of_kind(case, "message_for_timer"), key=lambda each: not each.near)
-    for finding in timers if missing else ():
-        if missing is not None and missing[1] == finding.name:
-            name = excerpt(finding.name)
-            if finding.near:
-                return Hint(
-                    msg("Give create_timer() the function that is to be called by it."),
-                    msg("{name}() is the callback of your subscription, not of a timer", name=name),
-                    finding.place,
-                )
-            return Hint(
-                msg("Write def {name}(self): a timer is given nothing but self.", name=name),
-                msg("{name}(), the callback of a timer, takes too much", name=name),
-                finding.place,
+    for finding in sorted(of_kind(case, "message_for_timer"), key=lambda each: not each.near):
+        if missing[1] != finding.name:
+            continue
+        if finding.near:
+            yield _hint(
+                finding,
+                msg("Give create_timer() the function that is to be called by it."),
+                msg("{name}() is the callback of your subscription, not of a timer"),
             )
-    return None
+        yield _hint(
+            finding,
+            msg("Write def {name}(self): a timer is given nothing but self."),
+            msg("{name}(), the callback of a timer, takes too much"),
+        )
 
 
-def _called_callback(case: Case, raised: Raised) -> Hint | None:
+def _called_callback(case: Case, raised: Raised) -> Iterator[Hint]:
     for finding in of_kind(case, "called_callback"):
         at = raised.place
         is_in_it = function(at) == f"{finding.name}()" and case.observed.spun_s is None
         if is_in_it or (at is not None and at.line == finding.place.line):
-            return Hint(
-                known_exceptions.NOT_CALLED,
-                msg(
-                    "{name}() is called at once, where it is to be passed",
-                    name=excerpt(finding.name),
-                ),
-                finding.place,
-            )
-    return None
+            text = msg("{name}() is called at once, where it is to be passed")
+            yield _hint(finding, known_exceptions.NOT_CALLED, text)
 
 
-def _hidden_class(case: Case, raised: Raised) -> Hint | None:
+def _hidden_class(case: Case, raised: Raised) -> Iterator[Hint]:
     for finding in of_kind(case, "hides_class"):
         if f"'{finding.name}' object is not callable" in raised.text[:_LONGEST]:
-            name = excerpt(finding.name)
-            return Hint(
-                msg("Give what you make there another name, as message = {name}().", name=name),
-                msg("`{name}` is the class no more: that name was given to something", name=name),
-                finding.place,
+            yield _hint(
+                finding,
+                msg("Give what you make there another name, as message = {name}()."),
+                msg("`{name}` is the class no more: that name was given to something"),
             )
-    return None
 
 
-def _class_kept(case: Case, raised: Raised) -> Hint | None:
+def _class_kept(case: Case, raised: Raised) -> Iterator[Hint]:
     is_sent = raised.place is not None and re.search(
         r"\.(?:call|call_async|publish)\(", raised.place.text
     )
     is_class = "'property' object" in raised.text or "'getset_descriptor' object" in raised.text
     if is_class or (is_sent and raised.type == "TypeError"):
         for finding in of_kind(case, "class_kept"):
-            name = excerpt(finding.name)
-            return Hint(
-                msg("The parentheses are missing: write {name}() there.", name=name),
-                msg("{name} without parentheses is the class, not a message", name=name),
-                finding.place,
+            yield _hint(
+                finding,
+                msg("The parentheses are missing: write {name}() there."),
+                msg("{name} without parentheses is the class, not a message"),
             )
-    return None
 
 
-def _not_begun(case: Case, raised: Raised) -> Hint | None:
+def _not_begun(case: Case, raised: Raised) -> Iterator[Hint]:
     """ROS or a node that was not begun: the line to change is where that should have been."""
     known = known_exceptions.explain(raised)
     for finding in of_kind(case, *_BEGINNINGS.get(known.text, ())):
-        return replace(known, place=finding.place)
-    return None
+        yield replace(known, place=finding.place)
 
 
-def _calls_itself(case: Case, raised: Raised) -> Hint | None:
+def _calls_itself(case: Case, raised: Raised) -> Iterator[Hint]:
     for finding in of_kind(case, "calls_itself") if raised.type == "RecursionError" else ():
-        name, again = excerpt(finding.name), excerpt(finding.near)
-        help_ = msg("Leave that call out, and let a timer call {name}().", name=name)
-        if again:
-            help_ = msg("Write {again} instead: its timer then calls you again.", again=again)
-        if again == "ros":
-            help_ = msg(
-                "Leave that call out: ROS calls {name}() again and again by itself.", name=name
-            )
-        text = msg("{name}() calls itself without end", name=name)
-        return Hint(help_, text, finding.place)
-    return None
+        help_ = msg("Leave that call out, and let a timer call {name}().")
+        if finding.near:
+            help_ = msg("Write {again} instead: its timer then calls you again.")
+        if finding.near == "ros":
+            help_ = msg("Leave that call out: ROS calls {name}() again and again by itself.")
+        text = msg("{name}() calls itself without end")
+        yield _hint(finding, help_, text, again=excerpt(finding.near))
 
 
-def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
+def _none_for_a_value(case: Case, raised: Raised) -> Iterator[Hint]:
     """None: of a shutdown before, of a variable that another hides, of a missing return."""
     if "NoneType" not in raised.text or raised.place is None:
-        return None
+        return
     for finding in of_kind(case, "ends_before_spin"):
         if "spin" in raised.place.text and finding.place.line < raised.place.line:
-            return Hint(
-                msg("Move {name}() to the end of main().", name=excerpt(finding.name)),
+            yield _hint(
+                finding,
+                msg("Move {name}() to the end of main()."),
                 msg("ROS is shut down before that line spins"),
-                finding.place,
             )
     for finding in of_kind(case, "local"):
         if finding.name in raised.place.text and not finding.near.startswith("self."):
-            return Hint(
-                msg(
-                    "Write `{near}` as the first line of the function.", near=excerpt(finding.near)
-                ),
-                msg(
-                    "`{name}` is still None: what is set is another one, of that function",
-                    name=excerpt(finding.name),
-                ),
-                finding.place,
+            yield _hint(
+                finding,
+                msg("Write `{near}` as the first line of the function."),
+                msg("`{name}` is still None: what is set is another one, of that function"),
             )
     for finding in of_kind(case, "no_return"):
         names = rf"\b(?:{re.escape(finding.name)}|{re.escape(finding.near)})\b"
@@ -452,20 +385,17 @@ def _none_for_a_value(case: Case, raised: Raised) -> Hint | None:
             if printed is not None:
                 text = msg("{name}() prints its result and returns None", name=name)
                 help_ = msg("Write `return {result}` there.", result=excerpt(printed[1]))
-            return Hint(help_, text, finding.place)
+            yield Hint(help_, text, finding.place)
     for finding in of_kind(case, "no_effect"):
-        return Hint(
+        yield _hint(
+            finding,
             msg("Write return before it, if that is what you mean."),
-            msg(
-                "a function returned None; nothing uses what `{code}` is",
-                code=excerpt(finding.name),
-            ),
-            finding.place,
+            msg("a function returned None; nothing uses what `{code}` is"),
+            code=excerpt(finding.name),
         )
-    return None
 
 
-_RULES: tuple[Callable[[Case, Raised], Hint | None], ...] = (
+_RULES: tuple[Callable[[Case, Raised], Iterator[Hint]], ...] = (
     *(_called_callback, _misnamed, _not_global, _without_self, _hidden_method, _class_given),
     *(_service_for_request, _hidden_class, _misplaced, _misspelt_field, _misspelt),
     *(_wrong_callback, _class_kept),

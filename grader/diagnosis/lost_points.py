@@ -4,8 +4,19 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from typing import Any
 
-from grader.diagnosis.case import Case, excerpt, line, of_kind, sentences
+from grader.diagnosis.case import (
+    Case,
+    diagnosed,
+    diagnosed_by,
+    excerpt,
+    filled,
+    line,
+    of_kind,
+    sentences,
+    words_of,
+)
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.lint_findings import in_other_order, is_about_stopping
 from grader.diagnosis.unnoticed import NOT_CAUGHT
@@ -156,27 +167,27 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
         return hidden
     for finding in of_kind(case, "swapped"):
         what, help_ = in_other_order(finding)
-        text = msg("{what}{where}.", what=what, where=line(finding.place))
-        cause = sentences(text, found.cause)
-        return replace(found, cause=cause, help=help_, place=finding.place)
+        return _explained(found, finding, msg("{what}{where}.", what=what), help_)
     for finding in of_kind(case, "uncalled", "unread", "local"):
-        text, help_ = _cause_and_help(finding)
-        cause = sentences(text, found.cause)
-        return replace(found, cause=cause, help=help_, place=finding.place)
+        return _explained(found, finding, *_cause_and_help(finding))
     if (meant := _misunderstood(found, case)) is not None:
         return meant
     if (missed := _missed(found, case)) is not None:
         return missed
     for finding in of_kind(case, "swallows"):
-        hides = msg(
-            "`{code}`{where} hides every error in {name}().",
-            code=excerpt(finding.place.text),
-            where=line(finding.place),
-            name=excerpt(finding.name),
-        )
+        hides = filled(msg("`{code}`{where} hides every error in {name}()."), words_of(finding))
         cause, help_ = sentences(found.cause, hides), sentences(found.help, NOT_CAUGHT)
         return replace(found, cause=cause, help=help_, place=finding.place)
     return _beside_condition(found, case)
+
+
+def _explained(
+    found: Diagnosis, finding: LintFinding, cause: Message, help_: Message, **words: Any
+) -> Diagnosis:
+    """Put what the source shows before a check's finding; without a help, that one's stays."""
+    words = words_of(finding) | words
+    cause, help_ = sentences(filled(cause, words), found.cause), filled(help_, words)
+    return replace(found, cause=cause, help=help_ or found.help, place=finding.place)
 
 
 def _hidden(found: Diagnosis, case: Case) -> Diagnosis | None:
@@ -184,17 +195,17 @@ def _hidden(found: Diagnosis, case: Case) -> Diagnosis | None:
     for catches in of_kind(case, "swallows"):
         for finding in of_kind(case, "raises"):
             if finding.place.file == catches.place.file:
-                cause = msg(
-                    "`{code}`{where} ends in an error, {error}, which `{catches}`{there} hides.",
-                    code=excerpt(finding.place.text),
-                    where=line(finding.place),
+                return _explained(
+                    found,
+                    finding,
+                    msg(
+                        "`{code}`{where} ends in an error, {error}, which `{catches}`{there} hides."
+                    ),
+                    sentences(msg("Correct that line."), NOT_CAUGHT),
                     error=excerpt(finding.name),
                     catches=excerpt(catches.place.text),
                     there=line(catches.place),
                 )
-                help_ = sentences(msg("Correct that line."), NOT_CAUGHT)
-                cause = sentences(cause, found.cause)
-                return replace(found, cause=cause, help=help_, place=finding.place)
     return None
 
 
@@ -202,7 +213,7 @@ def unused(found: Diagnosis, case: Case) -> End | None:
     """Return the publisher or client that a finding is about, where it was never used."""
     there = {(each.name, each.type) for each in case.scene_has}
     for end in case.observed.ends if case.observed.spun_s is not None else ():
-        is_meant = (end.name, end.type) in there and end.name in f"{found.cause!s} {found.help!s}"
+        is_meant = (end.name, end.type) in there and end.name in found.spoken
         if is_meant and not end.used and end.kind in ("publisher", "client"):
             return end
     return None
@@ -210,12 +221,12 @@ def unused(found: Diagnosis, case: Case) -> End | None:
 
 def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add why a run has not reached what would have earned the points."""
-    end, spoken = unused(found, case), f"{found.cause!s} {found.help!s}"
+    end = unused(found, case)
     if end is not None:
         goals = ["publish"] if end.kind == "publisher" else ["call", "call_async"]
-    elif _COLOURS in spoken:
+    elif _COLOURS in found.spoken:
         goals = ["branch"]
-    elif "ran into" in spoken:  # it has come to a wall, and should have stopped there
+    elif "ran into" in found.spoken:  # it has come to a wall, and should have stopped there
         goals = ["publish", "branch"]
     else:
         return None
@@ -226,11 +237,8 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
         is_flag = goal == "branch" and not re.search("[<>=]", finding.name)
         if goal not in goals or finding.place in known or is_flag or "__name__" in finding.name:
             continue
-        seen = msg(" ({values})", values=excerpt(values)) if values else NOTHING
-        words = {"code": excerpt(finding.name), "where": line(finding.place), "seen": seen}
         is_tried = how == "past" and finding.name.startswith("try")
         cause, help_ = _NOT_TAKEN["tried" if is_tried else how if how in _NOT_TAKEN else "past"]
-        cause = msg(cause.key, **words)
         if is_tried:
             help_ = next((advice for text, advice in _LOOKED_UP if text in case.tail), help_)
         if (kept := stays.get(finding.place)) is not None:
@@ -239,28 +247,17 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
                 name=excerpt(kept.name),
             )
         if goal == "branch" and end is None:
-            help_ = found.help
-        return replace(found, cause=sentences(cause, found.cause), help=help_, place=finding.place)
+            help_ = NOTHING  # the check's own stays
+        seen = msg(" ({values})", values=excerpt(values)) if values else NOTHING
+        return _explained(found, finding, cause, help_, code=excerpt(finding.name), seen=seen)
     return None
 
 
 def _misunderstood(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add what the source says otherwise than it was meant, where that may cost the points."""
-    spoken = f"{found.cause!s} {found.help!s}"
     for kind, (about, cause, help_) in _MEANT.items():
-        for finding in of_kind(case, kind) if about in spoken else ():
-            words = {
-                "name": excerpt(finding.name),
-                "near": excerpt(finding.near),
-                "code": excerpt(finding.place.text),
-                "where": line(finding.place),
-            }
-            return replace(
-                found,
-                cause=sentences(msg(cause.key, **words), found.cause),
-                help=msg(help_.key, **words) if help_ else found.help,
-                place=finding.place,
-            )
+        for finding in of_kind(case, kind) if about in found.spoken else ():
+            return _explained(found, finding, cause, help_)
     return None
 
 
@@ -270,72 +267,66 @@ def _unspun(case: Case) -> Diagnosis | None:
     is_deaf = any(end.kind == "subscription" and not end.used for end in ends)
     is_idle = not any(end.used for end in ends)
     for finding in of_kind(case, "unspun") if is_deaf or is_idle else ():
-        words = {"name": excerpt(finding.name), "kind": excerpt(finding.near)}
-        return Diagnosis(
+        return diagnosed(
             "unspun",
             msg(
-                "Nothing spins `{name}`{where}: no timer and no callback of {kind} is ever called.",
-                where=line(finding.place),
-                **words,
+                "Nothing spins `{name}`{where}: no timer and no callback of {kind} is ever called."
             ),
-            msg("Give it to what spins: executor.add_node({name}).", **words),
-            place=finding.place,
+            msg("Give it to what spins: executor.add_node({name})."),
+            finding.place,
+            name=excerpt(finding.name),
+            kind=excerpt(finding.near),
         )
     return None
 
 
 def _beside_condition(found: Diagnosis, case: Case) -> Diagnosis:
     """Add to a check's finding the condition that may be its cause."""
-    spoken = f"{found.cause!s} {found.help!s}"
+    spoken = found.spoken
     walls = [*of_kind(case, "at_wall")] if is_about_stopping(spoken) else []
     for finding in walls:
         if (wrong := _wrong_condition(finding, spoken)) is not None:
-            text, help_ = wrong
-            cause = sentences(text, found.cause)
-            return replace(found, cause=cause, help=help_ or found.help, place=finding.place)
+            return _explained(found, finding, *wrong, code=excerpt(finding.name), seen=NOTHING)
     is_about_memory = "driving" in spoken or "needless call" in spoken
     for finding in of_kind(case, "stays") if is_about_memory else ():
-        text = msg(
-            "`{code}`{where} is always {value}: nothing sets it after the start.",
-            code=excerpt(finding.name),
-            where=line(finding.place),
-            value=excerpt(finding.near),
-        )
-        place = walls[0].place if walls else finding.place
-        return replace(found, cause=sentences(text, found.cause), place=place)
+        text = msg("`{code}`{where} is always {value}: nothing sets it after the start.")
+        code, value = excerpt(finding.name), excerpt(finding.near)
+        explained = _explained(found, finding, text, NOTHING, code=code, value=value)
+        return replace(explained, place=walls[0].place) if walls else explained
     return found
 
 
-def _wrong_condition(finding: LintFinding, spoken: str) -> tuple[Message, Message | None] | None:
-    """Say what is wrong with a condition that is to tell that a wall is near, and the way out."""
-    words = {"code": excerpt(finding.name), "where": line(finding.place)}
-    match finding.near:
-        case "never":
-            return (
-                msg("`{code}`{where} is never true{seen}.", seen=NOTHING, **words),
-                msg("Look at `and` and `or`, at < and >: x and y go from 0 to 11.09."),
-            )
-        case "always":
-            return (
-                msg("`{code}`{where} is always true{seen}.", seen=NOTHING, **words),
-                msg("Look at `and` and `or`, and at < and >."),
-            )
-        case "middle":
-            return (
-                msg("`{code}`{where} is true in the middle of the window, too.", **words),
-                msg("Which of its signs has to be the other one, < or >?"),
-            )
-        case "corners":
-            return (
-                msg("`{code}`{where} is true in a corner only.", **words),
-                msg("Join the walls by `or`: one of them is enough."),
-            )
-    help_ = None
+#: What is wrong with a condition that is to tell that a wall is near, and the way out.
+_WRONG_CONDITIONS: dict[str, tuple[Message, Message]] = {
+    "never": (
+        msg("`{code}`{where} is never true{seen}."),
+        msg("Look at `and` and `or`, at < and >: x and y go from 0 to 11.09."),
+    ),
+    "always": (
+        msg("`{code}`{where} is always true{seen}."),
+        msg("Look at `and` and `or`, and at < and >."),
+    ),
+    "middle": (
+        msg("`{code}`{where} is true in the middle of the window, too."),
+        msg("Which of its signs has to be the other one, < or >?"),
+    ),
+    "corners": (
+        msg("`{code}`{where} is true in a corner only."),
+        msg("Join the walls by `or`: one of them is enough."),
+    ),
+}
+
+
+def _wrong_condition(finding: LintFinding, spoken: str) -> tuple[Message, Message] | None:
+    """Say what is wrong with a condition, also if it does not watch the wall that is spoken of."""
+    if finding.near in _WRONG_CONDITIONS:
+        return _WRONG_CONDITIONS[finding.near]
+    help_ = NOTHING
     if finding.name.startswith("not ") and " and " in finding.name:
         help_ = msg("`not` belongs to the comparison beside it only: write not (... and ...).")
     for wall in finding.near.split(", ") if finding.near else ():
         if f"{wall} wall" in spoken:
-            return msg("`{code}`{where} does not watch that wall.", **words), help_
+            return msg("`{code}`{where} does not watch that wall."), help_
     return None
 
 
@@ -343,79 +334,51 @@ def _lacks(case: Case) -> Diagnosis | None:
     """A function that looks like a callback, and that nothing passes on."""
     ends = [end.kind for end in case.observed.ends]
     for finding in of_kind(case, "unused") if case.observed.is_known else ():
-        name, where = excerpt(finding.name), line(finding.place)
         if finding.near == "create_timer" and not case.observed.timers:
-            return Diagnosis(
+            return diagnosed_by(
+                finding,
                 "lacks_timer",
-                msg(
-                    "There is no timer{where}: nothing ever calls {name}().", where=where, name=name
-                ),
-                msg("Write self.create_timer(0.1, self.{name}) there, in __init__.", name=name),
-                place=finding.place,
+                msg("There is no timer{where}: nothing ever calls {name}()."),
+                msg("Write self.create_timer(0.1, self.{name}) there, in __init__."),
             )
         if finding.near == "create_subscription" and "subscription" not in ends:
-            return Diagnosis(
+            return diagnosed_by(
+                finding,
                 "lacks_subscription",
-                msg(
-                    "There is no subscription{where}: nothing ever calls {name}().",
-                    where=where,
-                    name=name,
-                ),
+                msg("There is no subscription{where}: nothing ever calls {name}()."),
                 msg(
                     "Write self.create_subscription(Pose, '/turtle1/pose', self.{name}, 10) there, "
-                    "in __init__.",
-                    name=name,
+                    "in __init__."
                 ),
-                place=finding.place,
             )
     return None
 
 
 def _cause_and_help(finding: LintFinding) -> tuple[Message, Message]:
-    name, near, where = excerpt(finding.name), excerpt(finding.near), line(finding.place)
     if finding.kind == "unread":
         return (
-            msg(
-                "`self.{name}` is set and never read; what is read is `self.{near}`{where}.",
-                name=name,
-                near=near,
-                where=where,
-            ),
-            msg("Write self.{near} there, if that is what you mean.", near=near),
+            msg("`self.{name}` is set and never read; what is read is `self.{near}`{where}."),
+            msg("Write self.{near} there, if that is what you mean."),
         )
-    if finding.kind == "local" and near.startswith("self."):
+    if finding.kind == "local" and finding.near.startswith("self."):
         return (
             msg(
                 "`{name}` is a variable of this function and never read; what is read "
-                "elsewhere is `{near}`{where}.",
-                name=name,
-                near=near,
-                where=where,
+                "elsewhere is `{near}`{where}."
             ),
-            msg("Write {near} = ... there.", near=near),
+            msg("Write {near} = ... there."),
         )
     if finding.kind == "local":
         return (
             msg(
                 "`{name}` is set in this function only, and never read; outside there "
-                "is another `{name}`{where}.",
-                name=name,
-                where=where,
+                "is another `{name}`{where}."
             ),
-            msg("Write `{near}` as the first line of the function.", near=near),
+            msg("Write `{near}` as the first line of the function."),
         )
-    text = finding.place.text.lstrip()
-    if text.partition(";")[0].rstrip() == finding.name:
-        return msg(
-            "`{name}` stands there without parentheses, and does nothing{where}.",
-            name=name,
-            where=where,
-        ), msg("Write {name}().", name=name)
-    return (
-        msg(
-            "`{name}` stands there without parentheses: a function itself is always true{where}.",
-            name=name,
-            where=where,
-        ),
-        msg("Write {name}().", name=name),
+    cause = msg(
+        "`{name}` stands there without parentheses: a function itself is always true{where}."
     )
+    if finding.place.text.lstrip().partition(";")[0].rstrip() == finding.name:
+        cause = msg("`{name}` stands there without parentheses, and does nothing{where}.")
+    return cause, msg("Write {name}().")

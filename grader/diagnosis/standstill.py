@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from grader.diagnosis.case import Case, after, excerpt, function, line, of_kind, sentences, since
+from typing import Any
+
+from grader.diagnosis.case import (
+    Case,
+    after,
+    diagnosed,
+    diagnosed_by,
+    excerpt,
+    function,
+    of_kind,
+    sentences,
+    since,
+)
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, msg_many
-from grader.recording.observations import SourceLine
+from grader.recording.observations import SourceLine, Standstill
 from grader.text import clip
 
 #: A program that comes to its end by itself before this has hardly spun [s].
@@ -35,11 +47,7 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
     who = function(stop.place) or msg("a callback")
     cause = msg(
         "Your node is stuck in {who}{where}{since}: it waits in this callback{in_call}, and "
-        "meanwhile no answer, message or timer is handled.",
-        who=who,
-        where=line(stop.place),
-        since=since(stop.time_s),
-        in_call=_in_call(stop.call),
+        "meanwhile no answer, message or timer is handled."
     )
     help_ = msg(
         "Do not wait in a callback: send the request by call_async(request), "
@@ -52,7 +60,7 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
         )
     if "sleep" in stop.call:
         help_ = msg("Do not sleep in a callback: return, and let create_timer() call you later.")
-    return Diagnosis("stuck_in_callback", cause, help_, time_s=stop.time_s, place=stop.place)
+    return _stuck("stuck_in_callback", cause, help_, stop, who=who)
 
 
 def stuck_in_call(case: Case) -> Diagnosis | None:
@@ -62,11 +70,9 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
         return None
     cause = msg(
         "Your program is stuck{since}{where}: it waits{in_call} while nobody spins "
-        "the node, so nothing can reach it.",
-        since=since(stop.time_s),
-        where=line(stop.place),
-        in_call=_in_call(stop.call),
+        "the node, so nothing can reach it."
     )
+    help_ = _SPIN
     if "Rate" in stop.call or "sleep" in stop.call:
         help_ = msg(
             "A Rate needs a node that spins: use create_timer() with a callback and "
@@ -77,9 +83,7 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
             "Use call_async() and rclpy.spin_until_future_complete(node, future), "
             "or spin in another thread."
         )
-    else:
-        help_ = _SPIN
-    return Diagnosis("stuck_in_call", cause, help_, time_s=stop.time_s, place=stop.place)
+    return _stuck("stuck_in_call", cause, help_, stop)
 
 
 def endless_loop(case: Case) -> Diagnosis | None:
@@ -95,12 +99,9 @@ def endless_loop(case: Case) -> Diagnosis | None:
         inside = msg(" in {name}", name=name) if name else NOTHING
         cause = msg(
             "Your program never leaves a loop{inside}{where}: it repeats without waiting for "
-            "anything{since}.",
-            inside=inside,
-            where=line(stop.place),
-            since=since(stop.time_s),
+            "anything{since}."
         )
-        return Diagnosis("endless_loop", cause, help_, time_s=stop.time_s, place=stop.place)
+        return _stuck("endless_loop", cause, help_, stop, inside=inside)
     if case.run.outcome == "stalled" and any(_WITHOUT_WAITING in str(f) for f in case.run.flags):
         cause = msg(
             "Your program computes without end: it used processor time, and never waited for ROS."
@@ -120,9 +121,7 @@ def stays_in_init(case: Case) -> Diagnosis | None:
         return None
     cause = msg(
         "Your program never leaves __init__(): it stays at {code}{where}, and "
-        "what comes after is never reached.",
-        code=_code(stop.place),
-        where=line(stop.place),
+        "what comes after is never reached."
     )
     help_ = msg(
         "Let __init__ only make the publisher, the subscription and a timer, "
@@ -135,7 +134,7 @@ def stays_in_init(case: Case) -> Diagnosis | None:
             "rclpy.spin_once(self, timeout_sec=0.01) each time instead. Or: {other_help}",
             other_help=help_,
         )
-    return Diagnosis("stays_in_init", cause, help_, place=stop.place)
+    return diagnosed("stays_in_init", cause, help_, stop.place, code=_code(stop.place))
 
 
 def spins_in_loop(case: Case) -> Diagnosis | None:
@@ -144,45 +143,40 @@ def spins_in_loop(case: Case) -> Diagnosis | None:
     publishers = [end for end in case.observed.ends if end.kind == "publisher"]
     if stop is None or stop.kind != "spin" or not publishers or any(e.used for e in publishers):
         return None
-    cause = (
-        msg(
+    cause = msg("A loop calls spin(), which returns only when the program ends.")
+    if stop.place:
+        cause = msg(
             "The loop around {code}{where} never repeats: spin() returns only when the program "
             "ends, and nothing after it is reached.",
             code=_code(stop.place),
-            where=line(stop.place),
         )
-        if stop.place
-        else msg("A loop calls spin(), which returns only when the program ends.")
-    )
     help_ = msg(
         "In a loop of your own call rclpy.spin_once(node, timeout_sec=0.01) each time. Or let "
         "create_timer() call what the loop does, and call rclpy.spin(node) once, without a loop."
     )
-    return Diagnosis("spins_in_loop", cause, help_, place=stop.place)
+    return diagnosed("spins_in_loop", cause, help_, stop.place)
 
 
 def does_nothing(case: Case) -> Diagnosis | None:
     """The program ended without a publisher, a subscription or a client."""
     if case.ended_s is None or case.observed.ends or case.observed.spun_s is not None:
         return None
-    cause = msg(
-        "Your program ended {after} without a publisher, a subscription or a "
-        "client: is main() ever called?",
-        after=after(case.ended_s),
-    )
-    help_ = msg("Let the file end with: if __name__ == '__main__': main()")
+    ended = after(case.ended_s)
     for finding in of_kind(case, "misnamed"):
         if finding.near == "__init__":
             cause = msg(
                 "Your program ended {after}, and nothing called {name}(){where}: Python looks for "
                 "__init__().",
-                after=after(case.ended_s),
-                name=excerpt(finding.name),
-                where=line(finding.place),
+                after=ended,
             )
-            help_ = msg("Write def {near}(...) there.", near="__init__")
-            return Diagnosis("does_nothing", cause, help_, place=finding.place)
-    return Diagnosis("does_nothing", cause, help_, time_s=case.ended_s)
+            help_ = msg("Write def {near}(...) there.")
+            return diagnosed_by(finding, "does_nothing", cause, help_)
+    cause = msg(
+        "Your program ended {after} without a publisher, a subscription or a "
+        "client: is main() ever called?"
+    )
+    help_ = msg("Let the file end with: if __name__ == '__main__': main()")
+    return diagnosed("does_nothing", cause, help_, None, case.ended_s, after=ended)
 
 
 def is_deaf(case: Case) -> Diagnosis | None:
@@ -205,6 +199,7 @@ def never_spins(case: Case) -> Diagnosis | None:
         none = msg("no answer ever reaches it")
     place = deaf[0].place if deaf else None
     help_ = _SPIN
+    cause = msg("Your program never spins its node, so {none}{where}.")
     if (loop := _loop_at_end(case)) is not None:
         place = loop
         help_ = msg(
@@ -214,20 +209,11 @@ def never_spins(case: Case) -> Diagnosis | None:
         cause = msg(
             "Your program stays in the loop {code}{where} and never spins its node, so {none}.",
             code=_code(loop),
-            where=line(loop),
-            none=none,
         )
-    elif case.ended_s is None:
-        cause = msg(
-            "Your program never spins its node, so {none}{where}.", none=none, where=line(place)
-        )
-    else:
-        cause = msg(
-            "Your program ended {after} and never spun its node, so {none}.",
-            after=after(case.ended_s),
-            none=none,
-        )
-    return Diagnosis("never_spins", cause, help_, time_s=case.ended_s, place=place)
+    elif case.ended_s is not None:
+        cause = msg("Your program ended {after} and never spun its node, so {none}.")
+        cause = cause.given(after=after(case.ended_s))
+    return diagnosed("never_spins", cause, help_, place, case.ended_s, none=none)
 
 
 def ends_early(case: Case) -> Diagnosis | None:
@@ -252,18 +238,14 @@ def ends_early(case: Case) -> Diagnosis | None:
         )
     raised = case.observed.raised
     place = raised.place if raised is not None else None
-    cause = msg(
-        "Your program ended {after}, by itself{where}; until then it had published {what}.",
-        after=after(ended_s),
-        where=line(place),
-        what=what,
-    )
+    cause = msg("Your program ended {after}, by itself{where}; until then it had published {what}.")
     help_ = msg(
         "rclpy.spin_once(node) handles one message and returns: "
         "rclpy.spin(node) goes on. If it does spin, look for what ends it: "
         "shutdown(), sys.exit(), a loop that is left too soon."
     )
-    return Diagnosis("ends_early", cause, help_, time_s=ended_s, place=place)
+    words = {"after": after(ended_s), "what": what}
+    return diagnosed("ends_early", cause, help_, place, ended_s, **words)
 
 
 def slow_callback(case: Case) -> Diagnosis | None:
@@ -276,20 +258,21 @@ def slow_callback(case: Case) -> Diagnosis | None:
     )
     if slow is None:
         return None
-    who = function(slow.place) or msg("A callback")
-    cause = msg(
-        "{who} takes up to {longest_s:.2g} s each time it is called{where}; meanwhile your node "
-        "handles no message and no timer.",
-        who=who,
+    return diagnosed(
+        "slow_callback",
+        msg(
+            "{who} takes up to {longest_s:.2g} s each time it is called{where}; meanwhile your "
+            "node handles no message and no timer."
+        ),
+        msg(
+            "Do not sleep or wait in a callback: do what is to be done now, and "
+            "return. The next message comes by itself, and create_timer() calls you"
+            " later."
+        ),
+        slow.place,
+        who=function(slow.place) or msg("A callback"),
         longest_s=slow.longest_s,
-        where=line(slow.place),
     )
-    help_ = msg(
-        "Do not sleep or wait in a callback: do what is to be done now, and "
-        "return. The next message comes by itself, and create_timer() calls you"
-        " later."
-    )
-    return Diagnosis("slow_callback", cause, help_, place=slow.place)
 
 
 def publishes_without_waiting(case: Case) -> Diagnosis | None:
@@ -300,28 +283,28 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
         if end.kind != "publisher" or not case.observed.is_known or rate < _FLOOD_PER_S:
             continue
         loop = _loop_at_end(case)
-        words = {"sent": end.used, "topic": excerpt(end.name), "run_s": run_s}
+        cause = msg(
+            "You published {sent} messages on {topic} in {run_s:.0f} s{where}: nothing in "
+            "that loop waits."
+        )
         if loop is not None:
             cause = msg(
                 "You published {sent} messages on {topic} in {run_s:.0f} s: nothing in the loop "
                 "{code}{where} waits.",
                 code=_code(loop),
-                where=line(loop),
-                **words,
             )
-        else:
-            cause = msg(
-                "You published {sent} messages on {topic} in {run_s:.0f} s{where}: nothing in "
-                "that loop waits.",
-                where=line(end.used_at or end.place),
-                **words,
-            )
-        help_ = msg(
-            "A few commands a second are enough: publish in the callback of "
-            "create_timer(), and let rclpy.spin(node) call it."
+        return diagnosed(
+            "publishes_without_waiting",
+            cause,
+            msg(
+                "A few commands a second are enough: publish in the callback of "
+                "create_timer(), and let rclpy.spin(node) call it."
+            ),
+            loop or end.used_at or end.place,
+            sent=end.used,
+            topic=excerpt(end.name),
+            run_s=run_s,
         )
-        place = loop or end.used_at or end.place
-        return Diagnosis("publishes_without_waiting", cause, help_, place=place)
     return None
 
 
@@ -348,19 +331,13 @@ def hears_once(case: Case) -> Diagnosis | None:
         if (end.name, end.type) in published and 0 < end.used <= _ONCE:
             cause = msg(
                 "Your node received {topic} hardly more than once in {run_s:.0f} s{where}, "
-                "though it is published all the time.",
-                topic=excerpt(end.name),
-                run_s=run_s,
-                where=line(end.place),
+                "though it is published all the time."
             )
             if loop is not None:
                 cause = msg(
                     "Your node stays in the loop {code}{where}, so it received {topic} hardly "
                     "more than once in {run_s:.0f} s.",
                     code=_code(loop),
-                    where=line(loop),
-                    topic=excerpt(end.name),
-                    run_s=run_s,
                 )
             help_ = msg(
                 "The next message is handled only after the callback has returned: don't wait "
@@ -369,7 +346,8 @@ def hears_once(case: Case) -> Diagnosis | None:
             if loop is None or function(loop) in ("", "main()"):
                 more = msg("And rclpy.spin(node) has to go on meanwhile.")
                 help_ = sentences(help_, more)
-            return Diagnosis("hears_once", cause, help_, place=loop or end.place)
+            words = {"topic": excerpt(end.name), "run_s": run_s}
+            return diagnosed("hears_once", cause, help_, loop or end.place, **words)
     return None
 
 
@@ -384,6 +362,8 @@ def _code(place: SourceLine) -> str:
     return f"`{clip(excerpt(place.text), _LONGEST_CODE)}`"
 
 
-def _in_call(call: str) -> Message:
-    """' in Client.call()'; '' where that is not known."""
-    return msg(" in {call}()", call=excerpt(call)) if call else NOTHING
+def _stuck(key: str, cause: Message, help_: Message, stop: Standstill, **words: Any) -> Diagnosis:
+    """Diagnose a program that goes no further; its cause may name `{since}` and `{in_call}`."""
+    words["since"] = since(stop.time_s)
+    words["in_call"] = msg(" in {call}()", call=excerpt(stop.call)) if stop.call else NOTHING
+    return diagnosed(key, cause, help_, stop.place, stop.time_s, **words)

@@ -5,7 +5,15 @@ from __future__ import annotations
 import re
 from pathlib import PurePath
 
-from grader.diagnosis.case import Case, after, excerpt, function, is_library, line, sentences
+from grader.diagnosis.case import (
+    Case,
+    after,
+    diagnosed,
+    excerpt,
+    function,
+    is_library,
+    sentences,
+)
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import explain
 from grader.message import NOTHING, Message, joined, msg, plain_text
@@ -43,14 +51,14 @@ def ended_by_caught(case: Case) -> Diagnosis | None:
         return None
     for caught in case.observed.caught:
         if 0 <= ended_s - caught.time_s <= _SOON_S:
-            cause = msg(
-                "Your program caught an exception, and so ended {after}: {error}{where}.",
+            return diagnosed(
+                "ended_by_caught",
+                msg("Your program caught an exception, and so ended {after}: {error}{where}."),
+                _help(caught),
+                caught.place,
+                ended_s,
                 after=after(ended_s),
                 error=_error(caught),
-                where=line(caught.place),
-            )
-            return Diagnosis(
-                "ended_by_caught", cause, _help(caught), time_s=ended_s, place=caught.place
             )
     return None
 
@@ -60,14 +68,17 @@ def hides_errors(case: Case) -> Diagnosis | None:
     for caught in case.observed.caught:
         if not _is_mistake(caught):
             continue
-        who = function(caught.place) or msg("A callback")
-        cause = msg(
-            "{who} fails, and something in your program catches that and goes on: {error}{where}.",
-            who=who,
+        return diagnosed(
+            "hides_errors",
+            msg(
+                "{who} fails, and something in your program catches that and goes on: "
+                "{error}{where}."
+            ),
+            _help(caught),
+            caught.place,
+            who=function(caught.place) or msg("A callback"),
             error=_error(caught),
-            where=line(caught.place),
         )
-        return Diagnosis("hides_errors", cause, _help(caught), place=caught.place)
     return None
 
 
@@ -78,20 +89,17 @@ def never_awaits(case: Case) -> Diagnosis | None:
             continue
         text = (found["text"] or "").strip()
         place = SourceLine(PurePath(found["file"]).name, int(found["line"]), "", text)
-        name = excerpt(found["name"].rpartition(".")[2])
-        return Diagnosis(
+        return diagnosed(
             "never_awaits",
             msg(
-                "An `async def` that nobody awaits was called{where}: nothing of {name}() was run.",
-                where=line(place),
-                name=name,
+                "An `async def` that nobody awaits was called{where}: nothing of {name}() was run."
             ),
             msg(
                 "Make it a plain `def {name}`: call_async(request) in it sends the "
-                "request, and you go on without waiting for the answer.",
-                name=name,
+                "request, and you go on without waiting for the answer."
             ),
-            place=place,
+            place,
+            name=excerpt(found["name"].rpartition(".")[2]),
         )
     return None
 
@@ -105,28 +113,32 @@ def waits_for_timer(case: Case) -> Diagnosis | None:
     timers = case.observed.timers
     if not timers or any(timer.period_s < max(_LONG_PERIOD_S, run_s) for timer in timers):
         return None
-    timer = timers[0]
-    cause = msg(
-        "Your timer{where} has a period of {period_s:g} s: in {run_s:.0f} s it has not come once.",
-        where=line(timer.place),
-        period_s=timer.period_s,
+    return diagnosed(
+        "waits_for_timer",
+        msg(
+            "Your timer{where} has a period of {period_s:g} s: in {run_s:.0f} s it has not come "
+            "once."
+        ),
+        msg("create_timer() takes seconds, not milliseconds: 0.1 is ten times a second."),
+        timers[0].place,
+        period_s=timers[0].period_s,
         run_s=run_s,
     )
-    help_ = msg("create_timer() takes seconds, not milliseconds: 0.1 is ten times a second.")
-    return Diagnosis("waits_for_timer", cause, help_, place=timer.place)
 
 
 def hurries(case: Case) -> Diagnosis | None:
     """The program has a timer that comes in every tick of the simulator, or more often."""
     for timer in case.observed.timers:
         if timer.period_s < _SHORT_PERIOD_S:
-            cause = msg(
-                "Your timer{where} has a period of {period_s:g} s: it comes as often as it can.",
-                where=line(timer.place),
+            return diagnosed(
+                "hurries",
+                msg(
+                    "Your timer{where} has a period of {period_s:g} s: it comes as often as it can."
+                ),
+                msg("create_timer() takes seconds: 0.1 is ten times a second."),
+                timer.place,
                 period_s=timer.period_s,
             )
-            help_ = msg("create_timer() takes seconds: 0.1 is ten times a second.")
-            return Diagnosis("hurries", cause, help_, place=timer.place)
     return None
 
 
@@ -138,14 +150,16 @@ def makes_timers(case: Case) -> Diagnosis | None:
         each_time = NOTHING
         if name := function(timer.place):
             each_time = msg(" each time that {name} is called", name=name)
-        cause = msg(
-            "You create a new timer{each_time}{where}: {times} of them, and each keeps firing.",
+        return diagnosed(
+            "makes_timers",
+            msg(
+                "You create a new timer{each_time}{where}: {times} of them, and each keeps firing."
+            ),
+            msg("Make it once, in __init__: it calls again and again by itself."),
+            timer.place,
             each_time=each_time,
-            where=line(timer.place),
             times=timer.times,
         )
-        help_ = msg("Make it once, in __init__: it calls again and again by itself.")
-        return Diagnosis("makes_timers", cause, help_, place=timer.place)
     return None
 
 

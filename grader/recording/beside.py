@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from grader.message import Message
 from grader.recording.channel import Channel
 from grader.recording.subject import CAST_SCENE, BagMessage, Start, Subject, Trace, load_subject
 
@@ -48,16 +47,6 @@ class CastKeeper(Subject):
     def name(self) -> str:  # type: ignore[override]
         """The scene's."""
         return self._scene.name
-
-    @property
-    def thing(self) -> Message:  # type: ignore[override]
-        """The scene's."""
-        return self._scene.thing
-
-    @property
-    def the_thing(self) -> Message:  # type: ignore[override]
-        """The scene's."""
-        return self._scene.the_thing
 
     def untouched(self, start: Start | None) -> Trace:
         """Both, with nothing in them."""

@@ -6,10 +6,8 @@ import json
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from grader import content, limited, strict_json
 from grader.errors import RecordingError
@@ -50,9 +48,6 @@ from grader.recording.subject import (
     Trace,
     load_subject,
 )
-
-if TYPE_CHECKING:
-    import jsonschema
 
 #: The files that are read, and their most bytes. A minute's usual run is 0.2 MB.
 SIZES = {
@@ -170,9 +165,7 @@ def _facts(folder: Path) -> dict[str, Any]:
     if isinstance(facts.get("run"), dict):
         facts["run"].update((k, v) for k, v in circumstances.items() if k in CIRCUMSTANCES)
     facts[PROVENANCE] = circumstances.get(PROVENANCE)
-    from jsonschema.exceptions import best_match  # here: what is only written is not validated
-
-    error = best_match(_validator().iter_errors(facts))
+    error = strict_json.first_error("grader.recording", "recording", facts)
     if error is not None:
         raise RecordingError(
             "{run} is damaged: {place}: {message}",
@@ -350,11 +343,3 @@ def _read_json(path: Path) -> dict[str, Any]:
             data=f"{data!r:.40}",
         )
     return data
-
-
-@cache
-def _validator() -> jsonschema.Draft202012Validator:
-    import jsonschema
-
-    text = (files(__package__) / "recording.schema.json").read_text(encoding="utf-8")
-    return jsonschema.Draft202012Validator(json.loads(text))

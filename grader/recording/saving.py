@@ -71,7 +71,7 @@ class Unsaved:
 
     def put(self) -> None:
         """Put all of them in place of older ones, of which none is left."""
-        _withdraw(self._folder)  # comes back as the last file of all
+        (self._folder / METADATA).unlink(missing_ok=True)  # comes back as the last file of all
         for number in range(1, self._varied_runs + 1):
             into = self._folder / f"varied_{number}"
             if into.is_symlink():
@@ -123,16 +123,12 @@ def _clear(place: Path) -> None:
 def _put(made: Path, folder: Path) -> None:
     """Move the files of a recording to where they belong, metadata.yaml last."""
     folder.mkdir(parents=True, exist_ok=True)
-    _withdraw(folder)
+    (folder / METADATA).unlink(missing_ok=True)
     for name in FILES:
         if (made / name).exists():
             (made / name).replace(folder / name)
         else:
             (folder / name).unlink(missing_ok=True)
-
-
-def _withdraw(folder: Path) -> None:
-    (folder / METADATA).unlink(missing_ok=True)
 
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from grader import strict_json
 from grader.errors import UsageError
@@ -15,18 +13,8 @@ from grader.files import read_ours
 from grader.message import Message, joined, msg, plain_text, reason
 from grader.strict_json import Bounds, Made
 
-if TYPE_CHECKING:
-    import jsonschema
-
 #: No file of ours is longer [bytes].
 MOST_BYTES = 2**26
-
-
-def schema(name: str) -> dict[str, Any]:
-    """Return the JSON Schema of `result` or `error`."""
-    text = (files("grader.result") / f"{name}.schema.json").read_text(encoding="utf-8")
-    loaded: dict[str, Any] = json.loads(text)
-    return loaded
 
 
 def validate(data: object, name: str, version: str) -> None:
@@ -39,9 +27,7 @@ def validate(data: object, name: str, version: str) -> None:
     family = version.rpartition("/")[0]
     if isinstance(found, str) and found != version and found.startswith(f"{family}/"):
         raise ValueError(f"is no {name} of {version}: it is of another version, {found:.60}")
-    from jsonschema.exceptions import best_match  # here: what is only written is not validated
-
-    error = best_match(_validator(name).iter_errors(data))
+    error = strict_json.first_error("grader.result", name, data)
     if error is not None:
         raise ValueError(f"is no {name} of {version}: {error.message}")
 
@@ -133,10 +119,3 @@ def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
         return make(data)
     except ValueError as error:
         raise UsageError(joined([str(path), reason(error)], " ")) from None
-
-
-@cache
-def _validator(name: str) -> jsonschema.Draft202012Validator:
-    import jsonschema
-
-    return jsonschema.Draft202012Validator(schema(name))

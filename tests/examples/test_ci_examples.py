@@ -18,11 +18,10 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import jsonschema
 import pytest
 import yaml
 
-from grader.result import json_file
+from grader.strict_json import first_error
 from tests.grader.reports.samples import FORMATS
 from tests.needs import needs
 from tests.tiers import others_are_more
@@ -168,7 +167,7 @@ class Machine:
     def error(self) -> tuple[str, str]:
         """Whose turn it is, and why."""
         error = json.loads((self.work / "error.json").read_text())
-        jsonschema.validate(error, json_file.schema("error"))
+        assert first_error("grader.result", "error", error) is None
         return error["whose"], error["message"]
 
 

@@ -16,16 +16,15 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-import jsonschema
 import psutil
 import pytest
 import yaml
 
 from grader import scratch
 from grader.cli import main
-from grader.result import json_file
 from grader.run.processes import FORK_SERVER
 from grader.scenes.turtlesim.interfaces import adapted
+from grader.strict_json import first_error
 from tests import once
 from turtlesim_py.ros.interfaces import installed
 
@@ -253,7 +252,7 @@ def test_a_submission_that_starts_processes_is_graded_in_real_time_and_the_resul
 )
 def test_a_result_follows_the_schema_its_files_exist_and_no_process_is_left(graded, name):
     run = graded(name)
-    jsonschema.validate(run.result, json_file.schema("result"))
+    assert first_error("grader.result", "result", run.result) is None
     assert all((run.out / path).exists() for path in run.result["artifacts"].values())
     assert not run.left_running
 
