@@ -11,10 +11,12 @@ templates (`expressions`); times are simulated seconds from the start of the run
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
 from grader import strict_json
@@ -289,6 +291,49 @@ def endpoints(peers: Mapping[str, Peer]) -> Iterator[Endpoint]:
                     yield Endpoint(met, name, each, absolute(node), entry.begin)
         for frame in peer.frames.values():
             yield Endpoint("publisher", frame.topic, TF, absolute(node))
+
+
+def check_types(
+    peers: Mapping[str, Peer], definitions: Collection[str], keys: Sequence[str]
+) -> None:
+    """Check that there are the types of packages that are known here; others a hand-in may bring.
+
+    Args:
+        definitions: the names of the exercise's own types.
+        keys: of the cast.
+
+    Raises:
+        Mistake: one is missing in its package.
+    """
+    for node, peer in peers.items():
+        for kind in _TYPES:
+            for name, entry in getattr(peer, kind).items():
+                for each in entry.types:
+                    package = each.partition("/")[0]
+                    known = [d for d in definitions if d.startswith(f"{package}/")]
+                    known = known or _installed(package, each.split("/")[1])
+                    if known and each not in known:
+                        near = difflib.get_close_matches(each, known, 3, 0.5) or known[:3]
+                        raise Mistake(
+                            (*keys, node, kind, name, "type"),
+                            msg(
+                                "{package} has no {type}; it has {near}",
+                                package=package,
+                                type=each,
+                                near=", ".join(near),
+                            ),
+                        )
+
+
+def _installed(package: str, kind: str) -> list[str]:
+    """Return the names of the types of a kind that an installed package has."""
+    from ament_index_python.packages import get_package_share_directory
+
+    try:
+        files = Path(get_package_share_directory(package), kind).glob(f"*.{kind}")
+    except LookupError:
+        return []
+    return sorted(f"{package}/{kind}/{file.stem}" for file in files)
 
 
 def _peer(name: Any, parts: Any, at: tuple[str, ...]) -> Peer:

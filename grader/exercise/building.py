@@ -77,6 +77,8 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     cases = read_cases(data, has_cast=subject.has_cast)
     checks, heard = _checks(data, place, cases)
     cases = [each.hearing(heard) for each in cases]
+    for each in cases:
+        each.check_types(interfaces)
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
         raise Mistake(("tolerances", wrong[0]), wrong[1])

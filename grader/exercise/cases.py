@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -54,6 +54,14 @@ class RunCase:
         from grader.cast import script  # here: most exercises have none
 
         return tuple(script.endpoints(script.parse(self.cast))) if self.cast else ()
+
+    def check_types(self, definitions: Collection[str]) -> None:
+        """Check that the types of the peers are there; see `grader.cast.script`."""
+        if self.cast:
+            from grader.cast import script
+
+            keys = (CASES, self.name) if self.name else (CAST,)
+            script.check_types(script.parse(self.cast), definitions, keys)
 
     def hearing(self, topics: Iterable[str]) -> RunCase:
         """Return it with more topics, which are recorded if anything is."""

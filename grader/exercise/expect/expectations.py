@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from grader import strict_json
 from grader.cast import script
+from grader.exercise.expect.comparing import RANGE
 from grader.message import msg
 from grader.strict_json import OURS, not_negative
 from grader.yaml_file import Mistake, expect
@@ -298,4 +299,20 @@ def parse(values: Any, at: tuple[str, ...]) -> Expectation:
         if key == "log" and not (getattr(made, "each", "") or getattr(made, "heard", "")):
             known = set()
         script.check_templates(getattr(made, key), known, (*at, key), has_patterns=True)
+        _check_ranges(getattr(made, key), (*at, key))
     return made
+
+
+def _check_ranges(value: Any, at: tuple[str, ...]) -> None:
+    for each in value if isinstance(value, list) else []:
+        _check_ranges(each, at)
+    if not isinstance(value, Mapping):
+        return
+    is_range = set() < value.keys() <= RANGE
+    for key, each in value.items():
+        if not is_range:
+            _check_ranges(each, (*at, str(key)))
+            continue
+        is_expression = isinstance(each, str) and each.startswith("=")
+        fits = is_expression or (isinstance(each, (int, float)) and not isinstance(each, bool))
+        expect(fits, (*at, key), "expected a number or an expression, found {found}", each)
