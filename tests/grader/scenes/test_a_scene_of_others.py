@@ -173,7 +173,10 @@ def test_a_mistake_of_a_scene_is_told_as_that_scene_s(folder: Path, name: str) -
 
 
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("name", ["ticks", "nothing"])
+@pytest.mark.parametrize(
+    "name",
+    ["ticks", pytest.param("nothing", marks=pytest.mark.more("ticks stands for it"))],
+)
 def test_a_mistake_of_a_scene_is_told_in_real_time_too(folder: Path, name: str) -> None:
     code, told = run(folder, name, "--time", "real")
     assert code == 3, told
