@@ -9,6 +9,7 @@ import pytest
 from grader.recording.recording import Recording
 from grader.run import virtual_time
 from grader.run.handover import Plan
+from grader.run.limits import Patience
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
 from tests.runs import SUBMISSIONS
@@ -120,32 +121,80 @@ def main():
 SETUP = """
 from setuptools import setup
 setup(name="company", packages=["company"],
-      data_files=[("share/company/launch", ["launch/both.launch.py"])],
-      entry_points={"console_scripts": ["controller = company.controller:main",
-                                        "idle = company.idle:main"]})
+      data_files=[("share/company/launch", ["launch/all.launch.py"])],
+      entry_points={"console_scripts": [f"{n} = company.{n}:main" for n in NAMES]})
 """
-BOTH = """
+LAUNCH = """
 from launch import LaunchDescription
 from launch_ros.actions import Node
 
 def generate_launch_description():
     return LaunchDescription([Node(package="company", executable=name) for name in NAMES])
 """
+DRIVES = """
+import rclpy
+from geometry_msgs.msg import Twist
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("drives")
+    velocity = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+    twist = Twist()
+    twist.linear.x = 1.0
+    node.create_timer(0.1, lambda: velocity.publish(twist))
+    rclpy.spin(node)
+"""
+COMPUTES = """
+import time
+
+def main():
+    time.sleep(1.0)
+    while True:
+        pass
+"""
+RAISES = """
+import time
+
+def main():
+    time.sleep(2.0)
+    raise ValueError("no more")
+"""
 
 
-@pytest.mark.parametrize("names", [("controller", "idle"), ("idle", "controller")])
-def test_beside_an_idle_one_a_program_does_what_it_does_alone(
-    tmp_path: Path, names: tuple[str, str]
-) -> None:
-    package = "<package><name>company</name></package>"
-    for name, text in {
-        "package.xml": package, "setup.py": SETUP, "company/__init__.py": "",
-        "company/controller.py": CONTROLLER, "company/idle.py": IDLE,
-        "launch/both.launch.py": BOTH.replace("NAMES", repr(names)),
-    }.items():  # fmt: skip
-        file = tmp_path / "company" / name
+def package(folder: Path, **programs: str) -> Path:
+    """A package whose launch file starts these programs, in this order."""
+    names = repr(list(programs))
+    files = {
+        "package.xml": "<package><name>company</name></package>",
+        "setup.py": SETUP.replace("NAMES", names),
+        "launch/all.launch.py": LAUNCH.replace("NAMES", names),
+        "company/__init__.py": "",
+        **{f"company/{name}.py": text for name, text in programs.items()},
+    }
+    for name, text in files.items():
+        file = folder / "company" / name
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text)
-    both = recorded(tmp_path / "company")
-    alone = recorded(tmp_path / "company", executable="controller")
+    return folder / "company"
+
+
+@pytest.mark.parametrize("order", [("controller", "idle"), ("idle", "controller")])
+def test_beside_an_idle_one_a_program_does_what_it_does_alone(
+    tmp_path: Path, order: tuple[str, str]
+) -> None:
+    programs = {"controller": CONTROLLER, "idle": IDLE}
+    folder = package(tmp_path, **{name: programs[name] for name in order})
+    both, alone = recorded(folder), recorded(folder, executable="controller")
     assert both.run.trace_sha256 == alone.run.trace_sha256
+
+
+def test_who_computes_without_end_stalls_alone_and_the_first_that_failed_is_to_blame(
+    tmp_path: Path,
+) -> None:
+    folder = package(tmp_path, raises=RAISES, computes=COMPUTES, drives=DRIVES)
+    with open_submission(folder) as submission:
+        recording = virtual_time.run(submission, PLAN, patience=Patience(stall_cpu_s=0.5))
+    assert (recording.run.time, recording.run.outcome) == ("virtual", "stalled")
+    assert "[raises-1] ValueError: no more" in recording.output
+    times_s = [event.tick * 0.016 for event in recording.trace.of_kind(CmdVel)]
+    assert times_s[-1] > 5.5, times_s  # who drives goes on to the end
