@@ -24,6 +24,8 @@ if TYPE_CHECKING:  # what only a package needs takes time to import
 _ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
 _SIMULATOR: Final = ("turtlesim", "turtlesim_node")
+#: So many programs a run may have at once: they share its limits.
+MOST_PROGRAMS: Final = 8
 #: What ROS takes as a name, in the arguments of a program.
 _NAME: Final = re.compile(r"[A-Za-z_~/{}][\w~/{}.]*")
 
@@ -78,7 +80,11 @@ def is_launch_file(file: Path) -> bool:
 def find_launched(
     submitted: SubmissionFolder, packages: Packages, inspection: Inspection
 ) -> Launched | None:
-    """Find the launch file that starts several programs; None if there is none, or many."""
+    """Find the launch file that starts several programs; None if there is none, or many.
+
+    Raises:
+        SubmissionError: it starts more than `MOST_PROGRAMS`.
+    """
     folder = submitted.base / inspection.package
     package = next((each for each in packages.readable if each.folder == folder), None)
     setup = inspection.trace.setup
@@ -89,6 +95,13 @@ def find_launched(
     found = [launched for launch in plain if (launched := _launched(launch, package, names))]
     if len({launched.programs for launched in found}) != 1:
         return None
+    if len(found[0].programs) > MOST_PROGRAMS:
+        raise SubmissionError(
+            "{file} starts {number} programs; a run may have {most}",
+            file=submitted.called(package.folder / found[0].launch.file),
+            number=len(found[0].programs),
+            most=MOST_PROGRAMS,
+        )
     scripts = (script for script, _ in found[0].programs)
     try:
         modules = {find_module(submitted, package, script) for script in scripts}

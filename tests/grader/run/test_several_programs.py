@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.errors import SubmissionError
 from grader.recording.recording import Recording
 from grader.run import virtual_time
 from grader.run.handover import Plan
@@ -198,3 +199,9 @@ def test_who_computes_without_end_stalls_alone_and_the_first_that_failed_is_to_b
     assert "[raises-1] ValueError: no more" in recording.output
     times_s = [event.tick * 0.016 for event in recording.trace.of_kind(CmdVel)]
     assert times_s[-1] > 5.5, times_s  # who drives goes on to the end
+
+
+def test_a_ninth_program_is_refused(tmp_path: Path) -> None:
+    folder = package(tmp_path, **{f"idle{n}": IDLE for n in range(9)})
+    with pytest.raises(SubmissionError, match=r"all.launch.py starts 9 programs; a run may have 8"):
+        recorded(folder)
