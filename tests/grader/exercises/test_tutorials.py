@@ -95,6 +95,7 @@ def test_the_starter_is_a_package_or_workspace_whose_todos_earn_next_to_nothing(
     assert grader.grade(tmp_path / "mine", name).score <= MOST_FOR_NOTHING
 
 
+@pytest.mark.timeout(3600)
 @pytest.mark.more
 @pytest.mark.parametrize("name", WHOLE)
 def test_an_exercise_is_in_order(name, capsys):
