@@ -73,7 +73,7 @@ FULL = msg("a program that did not read lost messages: more than {n} MB waited f
 
 
 @dataclass(eq=False)
-class Member:
+class LinkedProgram:
     """One of the programs.
 
     Attributes:
@@ -120,7 +120,7 @@ class Hub:
             share_core: called once, when a program first asks for time.
             on_met: called once, at the first packet of a program.
         """
-        self._members = [Member(number, link) for number, link in enumerate(links, 1)]
+        self._members = [LinkedProgram(number, link) for number, link in enumerate(links, 1)]
         self._on_met = on_met
         self._share_core = share_core
         #: the time that all programs have reached, and that of the scene, whole ticks
@@ -197,7 +197,7 @@ class Hub:
             "marks": self._marks,
         }
 
-    def _alive(self) -> list[Member]:
+    def _alive(self) -> list[LinkedProgram]:
         return [member for member in self._members if not member.is_gone]
 
     def _mark(self, name: str) -> None:
@@ -235,7 +235,7 @@ class Hub:
 
     # A program's turn -------------------------------------------------------------------------
 
-    def _give_turn(self, member: Member, *, is_alone: bool) -> None:
+    def _give_turn(self, member: LinkedProgram, *, is_alone: bool) -> None:
         """Let a program run until it asks for time.
 
         Args:
@@ -268,7 +268,7 @@ class Hub:
             member.link.break_off(VAIN)
             self._lose(member)
 
-    def _hear(self, member: Member) -> None:
+    def _hear(self, member: LinkedProgram) -> None:
         """Handle what a program says, until it asks for time or says nothing more."""
         while (packet := member.link.receive()) is not None:
             if "met" not in self._marks:
@@ -290,7 +290,7 @@ class Hub:
                 member.link.break_off(NONSENSE)
         self._lose(member)
 
-    def _lose(self, member: Member) -> None:
+    def _lose(self, member: LinkedProgram) -> None:
         """Note that a program says nothing more; what it has sent before counts."""
         member.is_gone = True
         self._catch_up(member.link.reached(), member)
@@ -312,7 +312,7 @@ class Hub:
         known = (*self._registry.own.values(), *self._registry.others.values())
         return Table(tuple(each.info() for each in known))
 
-    def _note(self, member: Member, table: Table) -> None:
+    def _note(self, member: LinkedProgram, table: Table) -> None:
         """Note what a program has, and has no more.
 
         Raises:
@@ -329,7 +329,7 @@ class Hub:
 
     # Messages ---------------------------------------------------------------------------------
 
-    def _receive_mail(self, member: Member) -> None:
+    def _receive_mail(self, member: LinkedProgram) -> None:
         """Pass on what a program has sent."""
         for parcels in member.link.mail():
             self._registry.receive([p for p in parcels if p.endpoint >> SHIFT == 0])
@@ -350,7 +350,7 @@ class Hub:
                 each.is_awake = True
             self._put(each, parcels, wakes=is_answered or each.request.listens)
 
-    def _put(self, member: Member, parcels: Parcels, *, wakes: bool = True) -> None:
+    def _put(self, member: LinkedProgram, parcels: Parcels, *, wakes: bool = True) -> None:
         """Add what a program gets of these messages to its inbox, as far as there is room."""
         for parcel in parcels:
             if not self._gets(member, parcel.endpoint):
@@ -362,7 +362,7 @@ class Hub:
             member.is_awake |= wakes
             member.inbox.append(parcel._replace(time_ns=min(parcel.time_ns, self._time_ns)))
 
-    def _gets(self, member: Member, number: int) -> bool:
+    def _gets(self, member: LinkedProgram, number: int) -> bool:
         """Whether a reader is a program's, or it hears a writer of the simulator's."""
         if number >> SHIFT:
             return member.has(number)
@@ -373,7 +373,7 @@ class Hub:
 
     # Time -------------------------------------------------------------------------------------
 
-    def _catch_up(self, reached: int, member: Member) -> None:
+    def _catch_up(self, reached: int, member: LinkedProgram) -> None:
         """Make the forecast ticks that a program has used."""
         parcels = self._foresight.parcels
         while self._tick < min(reached, self._foresight.end) and not self._reason:
