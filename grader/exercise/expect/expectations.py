@@ -300,6 +300,10 @@ def parse(values: Any, at: tuple[str, ...]) -> Expectation:
             known = set()
         script.check_templates(getattr(made, key), known, (*at, key), has_patterns=True)
         _check_ranges(getattr(made, key), (*at, key))
+    holds = getattr(made, "holds", "")
+    fits = not holds or (isinstance(holds, str) and holds.startswith("="))
+    what = "expected an expression such as {example}, found {found}"
+    expect(fits, (*at, "holds"), what, holds, example='"=len(messages) > 3"')
     return made
 
 

@@ -133,6 +133,7 @@ CAST = f"  a: {{calls: {{x: {{service: y, type: {ADD}}}}}}}"
 FILES = {
     ("  a: {calls: {x: {service: y}}}", "  it: {node: n}"): (5, "object of type, service"),
     (CAST, "  it: {node: n, nod: 1}"): (8, "object of title, rubric"),
+    (CAST, "  it: {topic: t, holds: len(messages) > 3}"): (8, "an expression such as"),
     (CAST, "  it: {topic: t, values: {at_least: a}}"): (8, "a number or an expression"),
     (CAST, "  it: {topic: t, values: [{x: {at_most: [1]}}]}"): (8, "a number or an expression"),
     (CAST.replace("AddTwoInts", "AddTwoInt"), "  it: {node: n}"): (5, "it has example_interfaces"),
