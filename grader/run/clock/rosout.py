@@ -6,18 +6,17 @@ from typing import Any
 
 from rcl_interfaces.msg import Log
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 
 from grader.run.clock.link import SimulatorLink
 from grader.run.lockstep.endpoints import serialized
 from grader.run.lockstep.faults import guarded
-from grader.run.lockstep.registry import Writer
+from grader.run.lockstep.graph import log_writer
 
 
 def install(link: SimulatorLink) -> None:
     """Have loggers publish, besides what they do."""
-    qos = QoSProfile(depth=1000, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
-    writer = Writer("topic /rosout", "rcl_interfaces/msg/Log", qos, is_stream=True)
+    writer = log_writer("/")
+    writer.is_hidden = True  # the graph shows that of each node
     link.add(writer)
     log = _rclpy.rclpy_logging_rcutils_log
     level_of = type(Log().level)

@@ -11,35 +11,23 @@ from __future__ import annotations
 import functools
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 from rclpy.duration import Infinite
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.qos import QoSHistoryPolicy
+from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile
 from rclpy.topic_endpoint_info import TopicEndpointTypeEnum
 
 from grader.run.lockstep import endpoints
 from grader.run.lockstep.faults import as_python_does
-from grader.run.lockstep.registry import Endpoint, NodeEntry, Writer
+from grader.run.lockstep.registry import Endpoint, NodeEntry, Reader, Writer
 
-#: What rclpy's C++ makes for a node by itself.
-LOG = ("/rosout", "rcl_interfaces/msg/Log")
+#: A service that rclpy's C++ makes for a node by itself.
 DESCRIPTION = ("get_type_description", "type_description_interfaces/srv/GetTypeDescription")
 #: What is between an action's name and that of the topic by which it is known, and after its type.
 FEEDBACK, FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
 
 NamesAndTypes = list[tuple[str, list[str]]]
-
-
-class Seen(NamedTuple):
-    """A reader or writer as the graph shows it."""
-
-    node: str
-    kind: str
-    name: str
-    type: str
-    writes: bool
-    endpoint: Endpoint | None = None
 
 
 def install() -> None:
@@ -83,31 +71,36 @@ def _all() -> Iterator[Endpoint]:
     return (each for _, each in both if not each.is_hidden)
 
 
-def _seen(kind: str = "", writes: bool | None = None, node: str = "") -> Iterator[Seen]:
-    """Yield the readers and writers of a kind of channel, '' for all, and of a node."""
+def _seen(kind: str, writes: bool | None = None, node: str = "") -> Iterator[Endpoint]:
+    """Yield the readers and writers of a kind of channel; of a node alone, where one is given."""
     for each in _everything():
-        is_of_kind = not kind or each.kind == kind
-        if is_of_kind and writes in (None, each.writes) and node in ("", each.node):
+        is_of_side = writes in (None, isinstance(each, Writer))
+        if each.kind == kind and is_of_side and node in ("", each.node):
             yield each
 
 
-def _everything() -> Iterator[Seen]:
+def _everything() -> Iterator[Endpoint]:
     for each in _all():
         if not isinstance(each, NodeEntry):
-            shown = each.type.rstrip()
-            yield Seen(each.node, each.kind, each.name, shown, isinstance(each, Writer), each)
+            yield each
             continue
         if each.logs:
-            yield Seen(each.name, "topic", *LOG, True)
+            yield log_writer(each.name)
         if hasattr(_rclpy, "TypeDescriptionService"):
             name, kind = DESCRIPTION
-            yield Seen(each.name, "request", f"{each.name}/{name}", kind, False)
+            yield Reader(f"request {each.name}/{name}", kind, QoSProfile(depth=10), node=each.name)
 
 
-def _names(found: Iterable[Seen]) -> NamesAndTypes:
+def log_writer(node: str) -> Writer:
+    """Return the writer on /rosout of a node."""
+    qos = QoSProfile(depth=1000, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+    return Writer("topic /rosout", "rcl_interfaces/msg/Log", qos, node=node, is_stream=True)
+
+
+def _names(found: Iterable[Endpoint]) -> NamesAndTypes:
     types: dict[str, set[str]] = defaultdict(set)
     for each in found:
-        types[each.name].add(each.type)
+        types[each.name].add(each.type.rstrip())
     return [(name, sorted(types[name])) for name in sorted(types)]
 
 
@@ -190,22 +183,21 @@ def _info(writes: bool) -> Callable[..., list[dict[str, Any]]]:
     return info
 
 
-def _described(seen: Seen) -> dict[str, Any]:
+def _described(seen: Endpoint) -> dict[str, Any]:
     """Return what the graph tells of a publisher or subscription, as rclpy's C++ does."""
     name, space = _split(seen.node)
-    kind = TopicEndpointTypeEnum.PUBLISHER if seen.writes else TopicEndpointTypeEnum.SUBSCRIPTION
-    number = 0 if seen.endpoint is None else seen.endpoint.number
-    lasting = seen.endpoint is None or seen.endpoint.is_lasting
-    reliability = 1 if seen.endpoint is None else int(seen.endpoint.qos.reliability)
+    writes = isinstance(seen, Writer)
+    kind = TopicEndpointTypeEnum.PUBLISHER if writes else TopicEndpointTypeEnum.SUBSCRIPTION
     return {
         "node_name": name,
         "node_namespace": space,
-        "topic_type": seen.type,
+        "topic_type": seen.type.rstrip(),
         "endpoint_type": int(kind),
-        "endpoint_gid": list(number.to_bytes(16, "big")),
+        "endpoint_gid": list(seen.number.to_bytes(16, "big")),
         "qos_profile": {
             **{"depth": 0, "history": int(QoSHistoryPolicy.UNKNOWN)},
-            **{"reliability": reliability, "durability": 1 if lasting else 2},
+            "reliability": int(seen.qos.reliability),
+            "durability": 1 if seen.is_lasting else 2,
             **{"lifespan": Infinite, "deadline": Infinite, "liveliness": 1},
             **{"liveliness_lease_duration": Infinite, "avoid_ros_namespace_conventions": False},
         },
