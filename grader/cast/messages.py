@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Final
 
-from ament_index_python import get_package_share_directory
-
+from grader.cast.script import interfaces_folder
 from grader.rosidl.cdr import member_class, members, value_type
 from grader.rosidl.definitions import Definitions
 
@@ -69,11 +67,7 @@ class Types:
 def _is_installed(name: str) -> bool:
     """Whether a package of interfaces is installed that may have a type."""
     package, kind, _ = name.split("/")
-    try:
-        folder = Path(get_package_share_directory(package), kind)
-    except LookupError:
-        return False
-    return kind in ("msg", "srv", "action") and folder.is_dir()
+    return kind in ("msg", "srv", "action") and interfaces_folder(package, kind) is not None
 
 
 def _written(slot: Any) -> str:

@@ -16,6 +16,7 @@ import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, fields, replace
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -309,31 +310,38 @@ def check_types(
         for kind in _TYPES:
             for name, entry in getattr(peer, kind).items():
                 for each in entry.types:
-                    package = each.partition("/")[0]
-                    known = [d for d in definitions if d.startswith(f"{package}/")]
-                    known = known or _installed(package, each.split("/")[1])
-                    if known and each not in known:
-                        near = difflib.get_close_matches(each, known, 3, 0.5) or known[:3]
-                        raise Mistake(
-                            (*keys, node, kind, name, "type"),
-                            msg(
-                                "{package} has no {type}; it has {near}",
-                                package=package,
-                                type=each,
-                                near=", ".join(near),
-                            ),
-                        )
+                    _check_type(each, definitions, (*keys, node, kind, name, "type"))
 
 
+def _check_type(name: str, definitions: Collection[str], at: tuple[str, ...]) -> None:
+    package, kind, _ = name.split("/")
+    known = [each for each in definitions if each.startswith(f"{package}/")]
+    known = known or _installed(package, kind)
+    if not known or name in known:
+        return
+    near = ", ".join(difflib.get_close_matches(name, known, 3, 0.5) or known[:3])
+    raise Mistake(
+        at, msg("{package} has no {type}; it has {near}", package=package, type=name, near=near)
+    )
+
+
+@cache
 def _installed(package: str, kind: str) -> list[str]:
     """Return the names of the types of a kind that an installed package has."""
-    from ament_index_python.packages import get_package_share_directory
+    folder = interfaces_folder(package, kind)
+    files = folder.glob(f"*.{kind}") if folder else ()
+    return sorted(f"{package}/{kind}/{file.stem}" for file in files)
+
+
+def interfaces_folder(package: str, kind: str) -> Path | None:
+    """Return the folder of an installed package's definitions of a kind; None where it has none."""
+    from ament_index_python import get_package_share_directory
 
     try:
-        files = Path(get_package_share_directory(package), kind).glob(f"*.{kind}")
+        folder = Path(get_package_share_directory(package), kind)
     except LookupError:
-        return []
-    return sorted(f"{package}/{kind}/{file.stem}" for file in files)
+        return None
+    return folder if folder.is_dir() else None
 
 
 def _peer(name: Any, parts: Any, at: tuple[str, ...]) -> Peer:

@@ -74,11 +74,9 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     tolerances = data.get("tolerances") or {}
     is_dict = isinstance(tolerances, dict)
     expect(is_dict, ("tolerances",), "expected names with values, found {found}", tolerances)
-    cases = read_cases(data, has_cast=subject.has_cast)
+    cases = read_cases(data, interfaces, has_cast=subject.has_cast)
     checks, heard = _checks(data, place, cases)
     cases = [each.hearing(heard) for each in cases]
-    for each in cases:
-        each.check_types(interfaces)
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
         raise Mistake(("tolerances", wrong[0]), wrong[1])

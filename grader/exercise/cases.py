@@ -55,24 +55,19 @@ class RunCase:
 
         return tuple(script.endpoints(script.parse(self.cast))) if self.cast else ()
 
-    def check_types(self, definitions: Collection[str]) -> None:
-        """Check that the types of the peers are there; see `grader.cast.script`."""
-        if self.cast:
-            from grader.cast import script
-
-            keys = (CASES, self.name) if self.name else (CAST,)
-            script.check_types(script.parse(self.cast), definitions, keys)
-
     def hearing(self, topics: Iterable[str]) -> RunCase:
         """Return it with more topics, which are recorded if anything is."""
         heard = tuple(sorted({*self.hears, *topics}))
         return self if self.cast is None else replace(self, hears=heard)
 
 
-def read_cases(data: Mapping[str, Any], *, has_cast: bool) -> list[RunCase]:
+def read_cases(
+    data: Mapping[str, Any], definitions: Collection[str], *, has_cast: bool
+) -> list[RunCase]:
     """Read the cases of an exercise's description, the usual one first.
 
     Args:
+        definitions: the names of the exercise's own types.
         has_cast: whether something is recorded though there are no peers.
 
     Raises:
@@ -85,7 +80,7 @@ def read_cases(data: Mapping[str, Any], *, has_cast: bool) -> list[RunCase]:
     usual = {key: data[key] for key in (CAST, HEARS, ARGUMENTS) if key in data}
     if has_cast or HEARS in data or "expect" in data:
         usual.setdefault(CAST, {})
-    cases = [_case("", usual, ())]
+    cases = [_case("", usual, definitions, ())]
     for name, change in given.items():
         at = (CASES, str(name))
         is_name = isinstance(name, str) and _NAME.fullmatch(name) and name != USUAL
@@ -93,12 +88,15 @@ def read_cases(data: Mapping[str, Any], *, has_cast: bool) -> list[RunCase]:
         is_known = isinstance(change, dict) and change.keys() <= {CAST, HEARS, ARGUMENTS}
         what = "expected some of {known}, found {found}"
         expect(is_known, at, what, change, known=", ".join((CAST, HEARS, ARGUMENTS)))
-        cases.append(_case(name, _changed(usual, change), at))
+        cases.append(_case(name, _changed(usual, change), definitions, at))
     return cases
 
 
-def _case(name: str, data: Mapping[str, Any], at: tuple[str, ...]) -> RunCase:
-    return RunCase(name, _cast(data, at), _texts(data, HEARS, at), _texts(data, ARGUMENTS, at))
+def _case(
+    name: str, data: Mapping[str, Any], definitions: Collection[str], at: tuple[str, ...]
+) -> RunCase:
+    cast = _cast(data, definitions, at)
+    return RunCase(name, cast, _texts(data, HEARS, at), _texts(data, ARGUMENTS, at))
 
 
 def _changed(usual: Mapping[str, Any], change: Mapping[str, Any]) -> dict[str, Any]:
@@ -112,16 +110,19 @@ def _changed(usual: Mapping[str, Any], change: Mapping[str, Any]) -> dict[str, A
     return made
 
 
-def _cast(data: Mapping[str, Any], at: tuple[str, ...]) -> Mapping[str, Any] | None:
+def _cast(
+    data: Mapping[str, Any], definitions: Collection[str], at: tuple[str, ...]
+) -> Mapping[str, Any] | None:
     """Check the scripted peers; None for none."""
     if CAST not in data:
         return None
     from grader.cast import script  # here: most exercises have none
 
     peers = data[CAST] or {}
-    script.parse(peers, (*at, CAST))
+    keys = (*at, CAST)
+    script.check_types(script.parse(peers, keys), definitions, keys)
     if len(json.dumps(peers)) > LONGEST_CAST:
-        raise Mistake((*at, CAST), msg("expected {n:,} characters at most", n=LONGEST_CAST))
+        raise Mistake(keys, msg("expected {n:,} characters at most", n=LONGEST_CAST))
     return dict(peers)
 
 

@@ -29,14 +29,14 @@ def differences(
             of a number or of each in a list. Fields that it does not name may be anything.
         tolerance: how far numbers may be off; None for `RELATIVE`.
     """
-    is_range = isinstance(expected, Mapping) and set() < expected.keys() <= RANGE
-    is_value = is_range or not isinstance(expected, Mapping)
+    has_range = is_range(expected)
+    is_value = has_range or not isinstance(expected, Mapping)
     if isinstance(found, Mapping) and len(found) == 1 and is_value:
         ((path, found),) = found.items()  # a message's only field
-    if is_range:
+    if has_range:
         low, high = expected.get("at_least", -math.inf), expected.get("at_most", math.inf)
         for place, each in enumerate(found) if isinstance(found, list) else [(-1, found)]:
-            if not all(map(_is_number, (low, each, high))) or not low <= each <= high:
+            if not all(map(is_number, (low, each, high))) or not low <= each <= high:
                 yield (path if place < 0 else f"{path}[{place}]"), each, _range(low, high)
     elif isinstance(expected, Mapping):
         for key, inner in expected.items():
@@ -53,7 +53,7 @@ def differences(
             return
         for n, inner in enumerate(expected):
             yield from differences(found[n], inner, tolerance, f"{path}[{n}]")
-    elif _is_number(expected) and _is_number(found):
+    elif is_number(expected) and is_number(found):
         if not _is_near(found, expected, tolerance):
             yield path, found, msg("{value}", value=shown(expected))
     elif isinstance(expected, re.Pattern):
@@ -85,7 +85,13 @@ def _is_near(found: float, expected: float, tolerance: float | None) -> bool:
     return abs(found - expected) <= slack
 
 
-def _is_number(value: Any) -> bool:
+def is_range(value: Any) -> bool:
+    """Whether an expected value is a range of numbers."""
+    return isinstance(value, Mapping) and set() < value.keys() <= RANGE
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a number, which true and false are not."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from grader import strict_json
 from grader.cast import script
-from grader.exercise.expect.comparing import RANGE
+from grader.exercise.expect.comparing import is_number, is_range
 from grader.message import msg
 from grader.strict_json import OURS, not_negative
 from grader.yaml_file import Mistake, expect
@@ -301,7 +301,7 @@ def parse(values: Any, at: tuple[str, ...]) -> Expectation:
         script.check_templates(getattr(made, key), known, (*at, key), has_patterns=True)
         _check_ranges(getattr(made, key), (*at, key))
     holds = getattr(made, "holds", "")
-    fits = not holds or (isinstance(holds, str) and holds.startswith("="))
+    fits = not holds or _is_expression(holds)
     what = "expected an expression such as {example}, found {found}"
     expect(fits, (*at, "holds"), what, holds, example='"=len(messages) > 3"')
     return made
@@ -312,11 +312,13 @@ def _check_ranges(value: Any, at: tuple[str, ...]) -> None:
         _check_ranges(each, at)
     if not isinstance(value, Mapping):
         return
-    is_range = set() < value.keys() <= RANGE
     for key, each in value.items():
-        if not is_range:
+        if not is_range(value):
             _check_ranges(each, (*at, str(key)))
             continue
-        is_expression = isinstance(each, str) and each.startswith("=")
-        fits = is_expression or (isinstance(each, (int, float)) and not isinstance(each, bool))
+        fits = is_number(each) or _is_expression(each)
         expect(fits, (*at, key), "expected a number or an expression, found {found}", each)
+
+
+def _is_expression(value: Any) -> bool:
+    return isinstance(value, str) and value.startswith("=")
