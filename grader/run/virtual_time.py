@@ -1,7 +1,8 @@
 """A graded run in virtual time: a minute in seconds, and the same every time.
 
-The submission's process and the simulator's move in lockstep, linked by a socket of their own; the
-grader only starts them and waits. What cannot run so runs in real time, and the result says why.
+The processes of a submission's programs and the simulator's move in lockstep, each program linked
+by a socket of its own; the grader only starts them and waits. What cannot run so runs in real time,
+and the result says why.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import json
 import socket
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
@@ -117,7 +118,8 @@ def _try(
         try:
             with ExitStack() as students:
                 for number, program in enumerate(programs, 1):
-                    each = _start(program, number, submission, plan, context, held, running)
+                    first = running[0].student if running else None
+                    each = _start(program, number, submission, plan, context, held, first)
                     students.enter_context(each.student.ended_at_exit(gently=False))
                     running.append(each)
                 pids = json.dumps([each.student.pid for each in running])
@@ -130,7 +132,8 @@ def _try(
                     for each in running:
                         each.link.close()
                     message = _watch(simulator, [e.student.pid for e in running], plan.budget)
-                    codes = [_exit_code(*pair) for pair in _ends(running, message)]
+                    told = message.get("programs", ())  # of a run that was made
+                    codes = list(map(_exit_code, running, told))
             if any(each.student.was_lost for each in running):
                 raise GraderFailure(
                     msg("the process from which a submission's was forked has died")
@@ -165,13 +168,13 @@ def _start(
     plan: Plan,
     context: RunContext,
     held: ExitStack,
-    running: Sequence[_Running],
+    beside: SubmissionProcess | None,
 ) -> _Running:
     """Start a program; what it needs is released when the context is left.
 
     Args:
         program: one of several, with its number, from 1; None where the submission starts one.
-        running: those that were started before.
+        beside: the process of the first.
     """
     name, arguments = "", plan.arguments
     if program is None:
@@ -191,17 +194,9 @@ def _start(
             fds,
             virtual_environment({}),
             fork_servers.for_student(submission.root),
-            beside=running[0].student if running else None,
+            beside=beside,
         )
     return _Running(name, moved, student, account, theirs)
-
-
-def _ends(
-    running: list[_Running], message: SimulatorMessage
-) -> Iterator[tuple[_Running, dict[str, Any]]]:
-    """Yield each program that the simulator has told of, with that."""
-    if message["say"] == "done":
-        yield from zip(running, message["programs"], strict=True)
 
 
 def _exit_code(each: _Running, ended: dict[str, Any]) -> int | None:

@@ -69,7 +69,10 @@ MOST_VAIN = 100_000
 VAIN = msg("its process made more than {number} requests that let no time pass", number=MOST_VAIN)
 #: So much may wait for a program [bytes]: what comes then is lost, as from a full queue.
 MOST_WAITING = 64_000_000
-FULL = msg("a program that did not read lost messages: more than {n} MB waited for it", n=64)
+FULL = msg(
+    "a program that did not read lost messages: more than {n} MB waited for it",
+    n=MOST_WAITING // 1_000_000,
+)
 
 
 @dataclass(eq=False)
@@ -375,18 +378,17 @@ class Hub:
 
     def _catch_up(self, reached: int, member: LinkedProgram) -> None:
         """Make the forecast ticks that a program has used."""
-        parcels = self._foresight.parcels
         while self._tick < min(reached, self._foresight.end) and not self._reason:
             self._count_tick()
             with scene_in_time(self._scene.name):
                 reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
             self._reason = expect_reason(self._scene.name, reason)
         self._clocks.set_now(self.now_ns)
+        used = [p for p in self._foresight.parcels if p.time_ns <= self.now_ns]
+        self._foresight.forget()
         for each in self._alive():
             if each is not member:
-                used = [p for p in parcels if p.time_ns <= self.now_ns]
                 self._put(each, used, wakes=False)
-        self._foresight.forget()
 
     def _make_tick(self) -> None:
         self._count_tick()
