@@ -13,7 +13,7 @@ import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any, Final
 
 from grader.message import Message, msg
@@ -87,16 +87,17 @@ class Expression:
         """The names of the values that it needs."""
         return set(_names(self.tree, frozenset(CONSTANTS)))
 
-    def value(self, names: Mapping[str, Any]) -> Any:
+    def value(self, names: Mapping[str, Any], most_steps: int = MOST_STEPS) -> Any:
         """Compute it.
 
         Args:
             names: the values that it may use.
+            most_steps: so many it may take.
 
         Raises:
             ExpressionError: that is not possible with these.
         """
-        return _Evaluation(names).of(self)
+        return _Evaluation(names, most_steps).of(self)
 
 
 @cache
@@ -185,9 +186,9 @@ def _is_allowed(node: ast.AST) -> bool:
 class _Evaluation:
     """One evaluation, with what it may still cost."""
 
-    def __init__(self, names: Mapping[str, Any]) -> None:
+    def __init__(self, names: Mapping[str, Any], most_steps: int) -> None:
         self._names = {**CONSTANTS, **names}
-        self._left = MOST_STEPS
+        self._most = self._left = most_steps
 
     def of(self, expression: Expression) -> Any:
         try:
@@ -311,7 +312,7 @@ class _Evaluation:
                 if self._left >= 0:
                     todo += each.values() if isinstance(each, Mapping) else each
             if self._left < 0:
-                raise ExpressionError(msg("an expression takes more than {n} steps", n=MOST_STEPS))
+                raise ExpressionError(msg("an expression takes more than {n} steps", n=self._most))
 
     def _bounded(self, value: Any) -> Any:
         is_long = isinstance(value, (str, list)) and len(value) > LONGEST
@@ -349,30 +350,53 @@ def check(template: Any, *, has_patterns: bool = False) -> set[str]:
     return names
 
 
-def filled(template: Any, names: Mapping[str, Any], *, has_patterns: bool = False) -> Any:
+def looked_up(template: Any, name: str) -> set[str]:
+    """Return what a template's expressions look up by a fixed key in a value: `heard["/data"]`."""
+    if isinstance(template, Mapping):
+        return set[str]().union(*(looked_up(each, name) for each in template.values()))
+    if isinstance(template, (list, tuple)):
+        return set[str]().union(*(looked_up(each, name) for each in template))
+    if not isinstance(template, str):
+        return set()
+    parts = [template[1:]] if template.startswith("=") else _HOLE.findall(template)
+    trees = [node for part in parts for node in ast.walk(_parsed(part, template).tree)]
+    keys = [each.slice for each in trees if isinstance(each, ast.Subscript)
+            and _name(each.value) == name]  # fmt: skip
+    return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
+
+
+def filled(
+    template: Any,
+    names: Mapping[str, Any],
+    *,
+    has_patterns: bool = False,
+    most_steps: int = MOST_STEPS,
+) -> Any:
     """Return plain data with the values of a template's expressions.
 
     Args:
         has_patterns: whether texts between strokes become patterns: /[0-9]+/. What an expression
             returns is none.
+        most_steps: so many an expression may take.
 
     Raises:
         ExpressionError: one cannot be computed with these.
     """
+    fill = partial(filled, names=names, has_patterns=has_patterns, most_steps=most_steps)
     if isinstance(template, Mapping):
-        return {k: filled(v, names, has_patterns=has_patterns) for k, v in template.items()}
+        return {key: fill(value) for key, value in template.items()}
     if isinstance(template, (list, tuple)):
-        return [filled(each, names, has_patterns=has_patterns) for each in template]
+        return [fill(each) for each in template]
     if not isinstance(template, str):
         return template
     if template.startswith("="):
-        return parse(template[1:]).value(names)
+        return parse(template[1:]).value(names, most_steps)
     is_one = has_patterns and is_pattern(template)
 
     def written(hole: re.Match[str]) -> str:
         text, form = _split(hole[1])
         try:
-            made = format(parse(text).value(names), form)
+            made = format(parse(text).value(names, most_steps), form)
         except (ValueError, TypeError, OverflowError) as error:
             why = msg("{hole} cannot be written: {why}", hole=hole[0], why=str(error))
             raise ExpressionError(why) from None

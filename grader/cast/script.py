@@ -11,12 +11,10 @@ templates (`expressions`); times are simulated seconds from the start of the run
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, fields, replace
-from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -32,15 +30,15 @@ from grader.yaml_file import Mistake, expect
 MOST_PEERS, MOST_EACH = 20, 100
 _NAME: Final = re.compile(r"[A-Za-z]\w{0,99}", re.ASCII)
 _TOPIC: Final = re.compile(r"(?!/?cast/)/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
-_TYPE: Final = re.compile(r"[a-z]\w*/(msg|srv|action)/[A-Z]\w*", re.ASCII)
+TYPE: Final = re.compile(r"[a-z]\w*/(msg|srv|action)/[A-Z]\w*", re.ASCII)
 
-#: The most of a publisher's messages a second; a tick is longer.
-MOST_HZ: Final = 1_000
+#: The most of a publisher's messages a second: one a tick, that each can be answered by itself.
+MOST_HZ: Final = 62.5
 
 
 def _rate(hz: float) -> float:
     if not 0 <= hz <= MOST_HZ:
-        raise ValueError(f"expected 0 to {MOST_HZ} times a second, found {hz!r:.80}")
+        raise ValueError(f"expected 0 to {MOST_HZ:g} times a second, found {hz!r:.80}")
     return hz
 
 
@@ -48,6 +46,17 @@ Seconds = Annotated[float, not_negative]
 Rate = Annotated[float, _rate]
 #: A value of a message with expressions in it.
 Template = Any
+
+
+def a_name(name: str) -> str:
+    """For `Annotated`: the name of a node, a topic, a service or an action.
+
+    Raises:
+        ValueError: it cannot be one.
+    """
+    if not _TOPIC.fullmatch(name):
+        raise ValueError(f"expected a name such as chatter, found {name!r:.80}")
+    return name
 
 
 @dataclass(frozen=True)
@@ -238,13 +247,13 @@ _MET: Final[Mapping[str, EndpointKind]] = {
     **{"services": "service", "actions": "action"},
 }
 #: Which attribute names it; where that is '', the name that it is listed by does.
-_NAMED_BY: Final = {
+NAMED_BY: Final = {
     **dict.fromkeys(("publishers", "subscriptions"), "topic"),
     **dict.fromkeys(("services", "calls"), "service"),
     **dict.fromkeys(("goals", "actions"), "action"),
 }
-#: A type of each kind.
-_TYPES: Final = {
+#: What has a type, with an example.
+TYPES: Final = {
     **dict.fromkeys(("publishers", "subscriptions"), "std_msgs/msg/String"),
     **dict.fromkeys(("services", "calls"), "example_interfaces/srv/AddTwoInts"),
     **dict.fromkeys(("goals", "actions"), "example_interfaces/action/Fibonacci"),
@@ -287,50 +296,11 @@ def endpoints(peers: Mapping[str, Peer]) -> Iterator[Endpoint]:
     for node, peer in peers.items():
         for kind, met in _MET.items():
             for entry in getattr(peer, kind).values():
-                name = absolute(getattr(entry, _NAMED_BY[kind]))
+                name = absolute(getattr(entry, NAMED_BY[kind]))
                 for each in entry.types:
                     yield Endpoint(met, name, each, absolute(node), entry.begin)
         for frame in peer.frames.values():
             yield Endpoint("publisher", frame.topic, TF, absolute(node))
-
-
-def check_types(
-    peers: Mapping[str, Peer], definitions: Collection[str], keys: Sequence[str]
-) -> None:
-    """Check that there are the types of packages that are known here; others a hand-in may bring.
-
-    Args:
-        definitions: the names of the exercise's own types.
-        keys: of the cast.
-
-    Raises:
-        Mistake: one is missing in its package.
-    """
-    for node, peer in peers.items():
-        for kind in _TYPES:
-            for name, entry in getattr(peer, kind).items():
-                for each in entry.types:
-                    _check_type(each, definitions, (*keys, node, kind, name, "type"))
-
-
-def _check_type(name: str, definitions: Collection[str], at: tuple[str, ...]) -> None:
-    package, kind, _ = name.split("/")
-    known = [each for each in definitions if each.startswith(f"{package}/")]
-    known = known or _installed(package, kind)
-    if not known or name in known:
-        return
-    near = ", ".join(difflib.get_close_matches(name, known, 3, 0.5) or known[:3])
-    raise Mistake(
-        at, msg("{package} has no {type}; it has {near}", package=package, type=name, near=near)
-    )
-
-
-@cache
-def _installed(package: str, kind: str) -> list[str]:
-    """Return the names of the types of a kind that an installed package has."""
-    folder = interfaces_folder(package, kind)
-    files = folder.glob(f"*.{kind}") if folder else ()
-    return sorted(f"{package}/{kind}/{file.stem}" for file in files)
 
 
 def interfaces_folder(package: str, kind: str) -> Path | None:
@@ -369,7 +339,7 @@ def _entry(kind: str, values: Any, at: tuple[str, ...]) -> Any:
         made: Any = strict_json.from_json(made_of, values, OURS)
     except ValueError as error:
         raise Mistake(at, msg("{what}", what=str(error))) from None
-    if (key := _NAMED_BY.get(kind)) and not getattr(made, key):
+    if (key := NAMED_BY.get(kind)) and not getattr(made, key):
         made = replace(made, **{key: at[-1]})
     for each in fields(made_of):
         value = getattr(made, each.name)
@@ -378,9 +348,9 @@ def _entry(kind: str, values: Any, at: tuple[str, ...]) -> Any:
             expect(_TOPIC.fullmatch(value) is not None, (*at, each.name), what, value)
         elif each.name == "type":
             listed = _flat(value)
-            example = _TYPES[kind]
+            example = TYPES[kind]
             are_types = isinstance(listed, list) and all(
-                _TYPE.fullmatch(str(one)) and str(one).split("/")[1] == example.split("/")[1]
+                TYPE.fullmatch(str(one)) and str(one).split("/")[1] == example.split("/")[1]
                 for one in listed
             )
             what = "expected a type such as {example}, or a list of some; found {found}"

@@ -74,8 +74,8 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     tolerances = data.get("tolerances") or {}
     is_dict = isinstance(tolerances, dict)
     expect(is_dict, ("tolerances",), "expected names with values, found {found}", tolerances)
-    cases = read_cases(data, interfaces, has_cast=subject.has_cast)
-    checks, heard = _checks(data, place, cases)
+    cases = read_cases(data, interfaces, limits.total_s, has_cast=subject.has_cast)
+    checks, heard = _checks(data, place, cases, interfaces, limits.total_s)
     cases = [each.hearing(heard) for each in cases]
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
@@ -214,16 +214,21 @@ def _interfaces(where: Any, place: Place) -> dict[str, str]:
 
 
 def _checks(
-    data: Mapping[str, Any], place: Place, cases: Sequence[RunCase]
+    data: Mapping[str, Any],
+    place: Place,
+    cases: Sequence[RunCase],
+    definitions: Mapping[str, str],
+    end_s: float,
 ) -> tuple[Checks, set[str]]:
     """Return the checks of checks.py and those of what is expected, and the topics of these."""
     if EXPECT not in data:
         return places.import_checks(place), set()
     from grader.exercise.expect.checks import add_checks  # here: most exercises have no such part
+    from grader.exercise.known_types import KnownTypes
 
     has_own = (place.folder / places.CHECKS).is_file()
     checks = places.import_checks(place).with_words({}, {}) if has_own else Checks()
-    return checks, add_checks(checks, data[EXPECT], cases)
+    return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s)
 
 
 def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:

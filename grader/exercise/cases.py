@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -62,12 +62,13 @@ class RunCase:
 
 
 def read_cases(
-    data: Mapping[str, Any], definitions: Collection[str], *, has_cast: bool
+    data: Mapping[str, Any], definitions: Mapping[str, str], end_s: float, *, has_cast: bool
 ) -> list[RunCase]:
     """Read the cases of an exercise's description, the usual one first.
 
     Args:
-        definitions: the names of the exercise's own types.
+        definitions: of the exercise's own types.
+        end_s: how long a run lasts [s].
         has_cast: whether something is recorded though there are no peers.
 
     Raises:
@@ -80,7 +81,7 @@ def read_cases(
     usual = {key: data[key] for key in (CAST, HEARS, ARGUMENTS) if key in data}
     if has_cast or HEARS in data or "expect" in data:
         usual.setdefault(CAST, {})
-    cases = [_case("", usual, definitions, ())]
+    cases = [_case("", usual, definitions, end_s, ())]
     for name, change in given.items():
         at = (CASES, str(name))
         is_name = isinstance(name, str) and _NAME.fullmatch(name) and name != USUAL
@@ -88,14 +89,18 @@ def read_cases(
         is_known = isinstance(change, dict) and change.keys() <= {CAST, HEARS, ARGUMENTS}
         what = "expected some of {known}, found {found}"
         expect(is_known, at, what, change, known=", ".join((CAST, HEARS, ARGUMENTS)))
-        cases.append(_case(name, _changed(usual, change), definitions, at))
+        cases.append(_case(name, _changed(usual, change), definitions, end_s, at))
     return cases
 
 
 def _case(
-    name: str, data: Mapping[str, Any], definitions: Collection[str], at: tuple[str, ...]
+    name: str,
+    data: Mapping[str, Any],
+    definitions: Mapping[str, str],
+    end_s: float,
+    at: tuple[str, ...],
 ) -> RunCase:
-    cast = _cast(data, definitions, at)
+    cast = _cast(data, definitions, end_s, at)
     return RunCase(name, cast, _texts(data, HEARS, at), _texts(data, ARGUMENTS, at))
 
 
@@ -111,16 +116,17 @@ def _changed(usual: Mapping[str, Any], change: Mapping[str, Any]) -> dict[str, A
 
 
 def _cast(
-    data: Mapping[str, Any], definitions: Collection[str], at: tuple[str, ...]
+    data: Mapping[str, Any], definitions: Mapping[str, str], end_s: float, at: tuple[str, ...]
 ) -> Mapping[str, Any] | None:
     """Check the scripted peers; None for none."""
     if CAST not in data:
         return None
     from grader.cast import script  # here: most exercises have none
+    from grader.exercise.known_types import KnownTypes, check_cast
 
     peers = data[CAST] or {}
     keys = (*at, CAST)
-    script.check_types(script.parse(peers, keys), definitions, keys)
+    check_cast(script.parse(peers, keys), KnownTypes(definitions), end_s, keys)
     if len(json.dumps(peers)) > LONGEST_CAST:
         raise Mistake(keys, msg("expected {n:,} characters at most", n=LONGEST_CAST))
     return dict(peers)

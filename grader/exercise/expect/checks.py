@@ -2,62 +2,136 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from grader.cast import script
+from grader.cast import expressions, script
 from grader.exercise.cases import USUAL, RunCase
 from grader.exercise.check import Checks
 from grader.exercise.expect import judging
-from grader.exercise.expect.expectations import Expectation, parse
+from grader.exercise.expect.expectations import Expectation, ExpectedTopic, parse
+from grader.exercise.known_types import KnownTypes, check_time
 from grader.exercise.verdict import Finding
 from grader.message import msg
 from grader.recording.recording import Recordings
 from grader.yaml_file import Mistake, expect
 
-#: What a peer does under an id: the key of an expectation -> the part of the peer.
-_IDS: Final = {"call": "calls", "goal": "goals", "parameter": "parameters"}
+#: What an expectation is about: its key -> the part of the peers, and whether that is known by an
+#: id; what is expected of it -> the part of the definition that it is, and the one whose fields its
+#: expressions may use.
+_OF_PEERS: Final[Mapping[str, tuple[str, bool, Mapping[str, tuple[str, str | None]]]]] = {
+    "call": ("calls", True, {"response": ("response", "request")}),
+    "served": ("services", False, {"request": ("request", None)}),
+    "goal": ("goals", True, {"feedback": ("feedback", "goal"), "result": ("result", "goal")}),
+    "sends": ("actions", False, {"values": ("goal", None)}),
+    "parameter": ("parameters", True, {}),
+    "got": ("subscriptions", False, {}),
+    "heard": ("publishers", False, {}),
+}
 
 
 def add_checks(
-    checks: Checks, data: Any, cases: Sequence[RunCase], keys: tuple[str, ...] = ("expect",)
+    checks: Checks,
+    data: Any,
+    cases: Sequence[RunCase],
+    known: KnownTypes,
+    end_s: float,
+    keys: tuple[str, ...] = ("expect",),
 ) -> set[str]:
     """Add a check for each entry; return the topics that they judge.
 
     Args:
         cases: those of the exercise, with their peers.
+        end_s: how long a run lasts [s].
 
     Raises:
         Mistake: something in it is wrong; its keys name the place.
     """
     what = "expected names of checks, each with what is expected; found {found}"
     expect(isinstance(data, dict) and bool(data), keys, what, data)
-    topics: set[str] = set()
-    known = [each.name or USUAL for each in cases]
-    casts = [script.parse(each.cast or {}).values() for each in cases]
+    named = [each.name or USUAL for each in cases]
+    casts = [script.parse(each.cast or {}) for each in cases]
+    made: dict[str, Expectation] = {}
     for name, values in data.items():
         at = (*keys, str(name))
         is_name = isinstance(name, str) and name.isidentifier()
         expect(is_name, at, "expected a name such as talks, found {found}", name)
-        expectation = parse(values, at)
-        unknown = sorted({*expectation.cases} - {*known})
+        expectation = made[name] = parse(values, at)
+        unknown = sorted({*expectation.cases} - {*named})
         what = "expected some of {known}, found {found}"
-        expect(not unknown, (*at, "cases"), what, unknown, known=", ".join(known))
-        for key, part in _IDS.items():
-            if (wanted := getattr(expectation, key, None)) is None:
-                continue
-            ids = [[each for peer in peers for each in getattr(peer, part)] for peers in casts]
-            if max(each.count(wanted) for each in ids) != 1:
-                what = "expected one that a peer has among its {part}, {ids}; found {found}"
-                listed = ", ".join(dict.fromkeys(each for case in ids for each in case)) or "none"
-                raise Mistake((*at, key), what, part=part, ids=listed, found=repr(wanted))
+        expect(not unknown, (*at, "cases"), what, unknown, known=", ".join(named))
+        _check_fit(expectation, casts, known, at)
+        check_time(getattr(expectation, "begin", 0.0), end_s, (*at, "begin"))
         check = _check(str(name), expectation)
         try:
             checks(after=expectation.after)(check)
         except ValueError as error:
             raise Mistake(at, msg("{what}", what=str(error))) from None
-        topics.update(expectation.topics)
+    topics = {topic for each in made.values() for topic in each.topics}
+    hears = {topic for each in cases for topic in each.hears} | topics
+    sent = {each.name for peers in casts for each in script.endpoints(peers)}
+    listed = sorted(sent.union(*(script.heard(peers, hears) for peers in casts)))
+    for name, expectation in made.items():
+        for key in expectation.names:
+            for topic in expressions.looked_up(getattr(expectation, key), "heard") - {*listed}:
+                what = "nobody hears {topic} here, only {known}"
+                words = {"topic": repr(topic), "known": _listed(listed)}
+                raise Mistake((*keys, name, key), what, **words)
     return topics
+
+
+def _check_fit(
+    wanted: Expectation,
+    casts: Sequence[Mapping[str, script.Peer]],
+    known: KnownTypes,
+    at: tuple[str, ...],
+) -> None:
+    """Check that there is what something is expected of, and that values fit its type.
+
+    Raises:
+        Mistake: there is no such thing, or a value does not fit.
+    """
+    by, nodes = getattr(wanted, "by", ""), {name for peers in casts for name in peers}
+    what = "expected a node of the cast, {nodes}; found {found}"
+    expect(by.lstrip("/") in {"", *nodes}, (*at, "by"), what, by, nodes=_listed(sorted(nodes)))
+    if isinstance(wanted, ExpectedTopic):
+        hearing = [e for peers in casts for n, e in _entries(peers, "subscriptions")
+                   if n == script.absolute(wanted.topic)]  # fmt: skip
+        types = [wanted.type] if wanted.type else [t for each in hearing for t in each.types]
+        for each in types:
+            known.expect(each, (*at, "type"))
+        known.check_each([wanted.values], types, "", (*at, "values"), is_expected=True)
+    for key, (part, has_id, said) in _OF_PEERS.items():
+        if not (name := getattr(wanted, key, "")):
+            continue
+        there = [[*_entries(peers, part, has_id=has_id)] for peers in casts]
+        full = name if has_id else script.absolute(name)
+        most = max(sum(each == full for each, _ in entries) for entries in there)
+        if most < 1 or (has_id and most > 1):
+            what = "expected one that a peer has among its {part}, {ids}; found {found}"
+            ids = _listed(list(dict.fromkeys(each for entries in there for each, _ in entries)))
+            raise Mistake((*at, key), what, part=part, ids=ids, found=repr(name))
+        types = [t for entries in there for each, entry in entries if each == full
+                 for t in getattr(entry, "types", ())]  # fmt: skip
+        for field, (inner, asked) in said.items():
+            value = getattr(wanted, field)
+            values = value if isinstance(value, tuple) else (value,)
+            known.check_each(values, types, inner, (*at, field), is_expected=True)
+            if asked is not None:
+                known.check_names(value, types, asked, {asked}, (*at, field))
+
+
+def _entries(
+    peers: Mapping[str, script.Peer], part: str, *, has_id: bool = False
+) -> Iterator[tuple[str, Any]]:
+    """Yield what peers have of a kind, by its id or else by its name."""
+    for peer in peers.values():
+        for key, entry in getattr(peer, part).items():
+            yield key if has_id else script.absolute(getattr(entry, script.NAMED_BY[part])), entry
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names) or "none"
 
 
 def _check(name: str, expectation: Expectation) -> Any:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from grader import strict_json
 from grader.cast import script
-from grader.exercise.expect.comparing import is_number, is_range
+from grader.exercise.comparing import is_number, is_range
 from grader.message import msg
 from grader.strict_json import OURS, not_negative
 from grader.yaml_file import Mistake, expect
@@ -24,6 +24,13 @@ def _above_zero(number: float) -> float:
     return number
 
 
+def _message_type(name: str) -> str:
+    if name and not (script.TYPE.fullmatch(name) and "/msg/" in name):
+        raise ValueError(f"expected a type such as std_msgs/msg/String, found {name!r:.80}")
+    return name
+
+
+Name = Annotated[str, script.a_name]
 Seconds = Annotated[float, not_negative]
 Number = Annotated[int, not_negative]
 Tolerance = Annotated[float, not_negative] | None
@@ -36,6 +43,10 @@ class ExpectedCount:
     at_least: Number = 1
     at_most: Number = 1 << 30
 
+    def __post_init__(self) -> None:
+        if self.at_least > self.at_most:
+            raise ValueError(f"at_least is {self.at_least}, more than at_most, {self.at_most}")
+
 
 @dataclass(frozen=True)
 class ExpectedRate:
@@ -43,7 +54,8 @@ class ExpectedRate:
 
     Attributes:
         hz: so often a second.
-        tolerance: which share of a period the middle of all periods may be off.
+        tolerance: which share of a period the mean of all may be off. None may be twice as long,
+            and there are messages to the end.
     """
 
     hz: Annotated[float, _above_zero]
@@ -89,7 +101,7 @@ class Expectation:
 class ExpectedNode(Expectation):
     """There is a node of this name."""
 
-    node: str
+    node: Name
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,11 +113,11 @@ class ExpectedTopic(Expectation):
             before, of a topic on which peers publish theirs alone: `=heard["/data"][-1].data`.
         holds: an expression over all `messages` together, which is to be true.
         tolerance: how far numbers may be off.
-        begin: messages before are left alone [s].
+        begin, end: messages before and after are left alone [s].
     """
 
-    topic: str
-    type: str = ""
+    topic: Name
+    type: Annotated[str, _message_type] = ""
     count: ExpectedCount = ExpectedCount()
     rate: ExpectedRate | None = None
     values: Any = None
@@ -113,6 +125,7 @@ class ExpectedTopic(Expectation):
     tolerance: Tolerance = None
     qos: ExpectedQuality = ExpectedQuality()
     begin: Seconds = 0.0
+    end: Seconds = 1e9
 
     names: ClassVar[Names] = {"values": {"n", "t", "heard", "message"}, "holds": {"messages"}}
 
@@ -126,8 +139,8 @@ class ExpectedTopic(Expectation):
 class ExpectedReceipt(Expectation):
     """What a peer gets of a topic, which may join late."""
 
-    got: str
-    by: str
+    got: Name
+    by: Name
     count: ExpectedCount = ExpectedCount()
 
 
@@ -151,6 +164,11 @@ class ExpectedLog(Expectation):
 
     names: ClassVar[Names] = {"log": None}
 
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """The program's topics that it judges."""
+        return (self.each,) if self.each else ()
+
 
 @dataclass(frozen=True, kw_only=True)
 class ExpectedAnswer(Expectation):
@@ -168,7 +186,7 @@ class ExpectedAnswer(Expectation):
 class ExpectedRequest(Expectation):
     """What the program asks of a service of a peer's."""
 
-    served: str
+    served: Name
     request: Any = field(default_factory=dict)
     count: ExpectedCount = ExpectedCount()
     tolerance: Tolerance = None
@@ -200,7 +218,7 @@ class ExpectedOutcome(Expectation):
 class ExpectedGoal(Expectation):
     """The goal that the program sends an action server of a peer's."""
 
-    sends: str
+    sends: Name
     values: Any = field(default_factory=dict)
 
     names: ClassVar[Names] = {"values": set()}

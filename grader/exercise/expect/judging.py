@@ -16,12 +16,12 @@ from dataclasses import replace
 from itertools import pairwise, zip_longest
 from typing import Any, Final
 
-from grader.cast.expressions import ExpressionError, filled
+from grader.cast.expressions import MOST_STEPS, ExpressionError, filled
 from grader.cast.script import absolute
 from grader.cast.trace import ROSOUT, CastTrace, Event, SentMessage
 from grader.exercise.cases import USUAL
+from grader.exercise.comparing import LONGEST_MATCHED, differences, shown
 from grader.exercise.expect import expectations as e
-from grader.exercise.expect.comparing import LONGEST_MATCHED, differences, shown
 from grader.exercise.verdict import Evidence, Finding
 from grader.message import Message, chained, msg
 from grader.recording.recording import Recording, Recordings
@@ -39,6 +39,8 @@ _OBJECTS: Final = (
 _SHUT_DOWN: Final = "rclpy.executors.ExternalShutdownException"
 #: What is earned where the main thing is right.
 PART: Final = 0.5
+#: An expression over all messages of a topic may take so many steps: some seconds.
+STEPS_FOR_ALL: Final = 2_000_000
 #: In real time, how much later something may be [s], and how far a rate may be off.
 REAL_LATE_S, REAL_RATE = 1.0, 0.3
 _DURABILITY: Final = {"transient_local": 1, "volatile": 2}
@@ -126,10 +128,12 @@ def _expect_all(trace: CastTrace) -> None:
         )  # fmt: skip
 
 
-def _filled(template: Any, names: Mapping[str, Any], time_ns: int) -> Any:
+def _filled(
+    template: Any, names: Mapping[str, Any], time_ns: int, most_steps: int = MOST_STEPS
+) -> Any:
     """Fill in what is expected; what the program has sent may make that impossible."""
     try:
-        return filled(template, names, has_patterns=True)
+        return filled(template, names, has_patterns=True, most_steps=most_steps)
     except ExpressionError as error:
         raise Lacks(
             msg("What should have come then cannot be told: {why}.", why=error.message),
@@ -227,10 +231,9 @@ def _topic(trace: CastTrace, wanted: e.ExpectedTopic, _: Recording) -> Message:
                 topic=topic, found=kinds[0], type=wanted.type),
             msg("Look at what create_publisher gets."),
         )  # fmt: skip
-    begin_ns = round(wanted.begin * 1e9)
-    messages = [m for m in trace.sent(topic) if m.time_ns >= begin_ns]
+    messages = [m for m in trace.sent(topic) if wanted.begin <= m.time_ns / 1e9 <= wanted.end]
     if 2 < len(messages) < wanted.count.at_least:
-        _expect_rate(wanted, topic, messages, 0.0)
+        _expect_rate(trace, wanted, topic, messages, 0.0)
     _expect_count(wanted.count, len(messages), msg("messages on {topic}", topic=topic))
     share = 0.0
     if wanted.values is not None:
@@ -238,11 +241,12 @@ def _topic(trace: CastTrace, wanted: e.ExpectedTopic, _: Recording) -> Message:
         share = PART
     if wanted.holds:
         all_ = [trace.values(each) for each in messages]
-        if not _filled(wanted.holds, {"messages": all_}, messages[-1].time_ns if messages else 0):
-            text = msg("Of the messages on {topic} this does not hold: {what}.",
-                       topic=topic, what=wanted.holds.removeprefix("="))  # fmt: skip
+        last_ns = messages[-1].time_ns if messages else 0
+        if not _filled(wanted.holds, {"messages": all_}, last_ns, STEPS_FOR_ALL):
+            text = msg("Of the {n} messages on {topic} this does not hold: {what}.",
+                       n=len(all_), topic=topic, what=wanted.holds[1:].strip())  # fmt: skip
             raise Lacks(text)
-    _expect_rate(wanted, topic, messages, share)
+    _expect_rate(trace, wanted, topic, messages, share)
     _expect_quality(wanted.qos, topic, own, share)
     values = {"n": len(messages), "topic": topic}
     return msg("{n} messages came on {topic}, as expected.", **values)
@@ -299,26 +303,41 @@ class _Heard:
 
 
 def _expect_rate(
-    wanted: e.ExpectedTopic, topic: str, messages: Sequence[SentMessage], share: float
+    trace: CastTrace,
+    wanted: e.ExpectedTopic,
+    topic: str,
+    messages: Sequence[SentMessage],
+    share: float,
 ) -> None:
+    """Expect messages so often, evenly, and to the end."""
     if wanted.rate is None:
         return
-    gaps = [(b.time_ns - a.time_ns) / 1e9 for a, b in pairwise(messages)]
-    right_s = 1 / wanted.rate.hz
-    found_s = statistics.median(gaps) if gaps else 0.0
-    worst = max(gaps, default=0.0)
-    if abs(found_s - right_s) > wanted.rate.tolerance * right_s or worst > 2 * right_s:
-        hz = f"{1 / found_s:.2f}" if found_s else "0"
-        raise Lacks(
-            msg(
-                "{topic} came {hz} times a second, with a longest pause of {worst:.2f} s; expected "
-                "{right:g} times a second.",
-                **{"topic": topic, "hz": hz, "worst": worst, "right": wanted.rate.hz},
-            ),
-            msg("Look at the period of the timer, in seconds."),
-            messages[gaps.index(worst)].time_ns if gaps else None,
-            share,
+    times_s = [each.time_ns / 1e9 for each in messages]
+    gaps = [b - a for a, b in pairwise(times_s)]
+    right_s, worst = 1 / wanted.rate.hz, max(gaps, default=0.0)
+    found_s = statistics.fmean(gaps) if gaps else 0.0
+    end_s = min(wanted.end, trace.duration_ns / 1e9)
+    values = {"topic": topic, "worst": worst, "right": wanted.rate.hz}
+    help_, at_ns = msg("Look at the period of the timer, in seconds."), None
+    is_off = abs(found_s - right_s) > wanted.rate.tolerance * right_s
+    usual_s = statistics.median(gaps) if gaps else 0.0
+    if gaps and usual_s < min(right_s, found_s) / 2:
+        text = msg("{topic} came several times at once, with pauses of {worst:.2f} s; expected "
+                   "{right:g} times a second, one by one.")  # fmt: skip
+    elif not gaps or is_off or worst > 2 * right_s:
+        text = msg(
+            "{topic} came {hz} times a second, with a longest pause of {worst:.2f} s; expected "
+            "{right:g} times a second.",
+            hz=f"{1 / found_s:.2f}" if found_s else "0",
         )
+        at_ns = messages[gaps.index(worst)].time_ns if gaps else None
+    elif len(messages) < wanted.count.at_most and end_s - times_s[-1] > 2 * right_s:
+        text = msg("{topic} came no more after {last:.2f} s; expected {right:g} times a second, to "
+                   "the end at {end:g} s.", last=times_s[-1], end=end_s)  # fmt: skip
+        help_, at_ns = msg("What keeps your node from sending on?"), messages[-1].time_ns
+    else:
+        return
+    raise Lacks(text.given(**values), help_, at_ns, share)
 
 
 def _expect_quality(

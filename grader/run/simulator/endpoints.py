@@ -59,9 +59,8 @@ class SimulatorEndpoints(EndpointRegistry):
         self._outgoing_bytes = 0
         self._unread_bytes = 0  # at most: what was read since is not subtracted
         self.theirs: tuple[EndpointInfo, ...] = ()
-        #: what hidden readers have received, and since when [ns, on the clock of the run]
+        #: what hidden readers have received
         self._heard: list[tuple[str, str, int, bytes]] = []
-        self._heard_ns = EPOCH_NS
         self.published: dict[str, str] = {}
         self._may_have_unread = True
 
@@ -131,7 +130,6 @@ class SimulatorEndpoints(EndpointRegistry):
         Topic, type, when it was sent [ns, on the clock of the run], CDR.
         """
         heard, self._heard = self._heard, []
-        self._heard_ns = self.now_ns()
         return heard
 
     # Messages ---------------------------------------------------------------------------------
@@ -172,8 +170,13 @@ class SimulatorEndpoints(EndpointRegistry):
         self.answered = False
         return parcels
 
-    def receive(self, parcels: Parcels) -> None:
-        """Put what the student's side has sent into the readers."""
+    def receive(self, parcels: Parcels, since_ns: int, until_ns: int) -> None:
+        """Put what a program has sent in its turn into the readers.
+
+        Args:
+            since_ns, until_ns: of the turn, from the start of the run; the messages say themselves
+                when in it they were sent.
+        """
         self._may_have_unread = True
         for endpoint, client, number, time_ns, data in parcels:
             reader = self.own.get(endpoint)
@@ -188,7 +191,7 @@ class SimulatorEndpoints(EndpointRegistry):
                 self._flag(msg("a message on {channel} could not be read", channel=reader.channel))
                 continue
             if reader.is_hidden:
-                sent_ns = min(max(self._heard_ns, EPOCH_NS + time_ns), self.now_ns())
+                sent_ns = EPOCH_NS + min(max(since_ns, time_ns), until_ns)
                 self._heard.append((reader.name, reader.type, sent_ns, data))
                 continue
             asked_by = client if reader.kind == "request" else None

@@ -82,7 +82,7 @@ class LinkedProgram:
     Attributes:
         number: from 1, in the order in which they were started.
         request: its last one.
-        until_ns: before this it could pass time alone.
+        since_ns: when its last turn began; until_ns: before this it could pass time alone.
         inbox, news: what it gets at its next turn.
         waiting_bytes: of the former.
         is_awake: whether something has come for which it waits.
@@ -93,6 +93,7 @@ class LinkedProgram:
     number: int
     link: StudentLink
     request: Advance = field(default_factory=lambda: Advance(0, False, 0, 0))
+    since_ns: int = 0
     until_ns: int = 0
     inbox: Parcels = field(default_factory=list)
     news: list[Table] = field(default_factory=list)
@@ -249,6 +250,7 @@ class Hub:
         others = [each for each in self._alive() if each is not member]
         is_alone = is_alone and not any(each.is_awake for each in others)
         until_ns = min((each.request.target_ns for each in others), default=NEVER)
+        member.since_ns = self._time_ns
         member.until_ns = until_ns if is_alone else self._time_ns
         news, member.news = member.news, []
         for table in news:
@@ -335,7 +337,8 @@ class Hub:
     def _receive_mail(self, member: LinkedProgram) -> None:
         """Pass on what a program has sent."""
         for parcels in member.link.mail():
-            self._registry.receive([p for p in parcels if p.endpoint >> SHIFT == 0])
+            ours = [p for p in parcels if p.endpoint >> SHIFT == 0]
+            self._registry.receive(ours, member.since_ns, self._time_ns)
             others = [p for p in parcels if p.endpoint >> SHIFT]
             for each in self._alive():
                 self._put(each, others)

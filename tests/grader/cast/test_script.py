@@ -10,6 +10,7 @@ import yaml
 
 from grader.cast import script
 from grader.cli import main
+from grader.exercise.known_types import KnownTypes, check_cast
 from grader.yaml_file import Mistake
 
 STRING, ADD = "std_msgs/msg/String", "example_interfaces/srv/AddTwoInts"
@@ -23,6 +24,25 @@ expect:
 {expect}
 points: {{it: 1}}
 """
+
+
+TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
+FIBONACCI = "example_interfaces/action/Fibonacci"
+#: A peer that says what does not fit -> words of the sentence.
+UNFIT = {
+    f"calls: {{x: {{service: y, type: {ADD}, request: {{c: 1}}}}}}": "has no field c, only a, b",
+    f"calls: {{x: {{service: y, type: {ADD}, request: {{a: 1.5}}}}}}": "a whole number",
+    f"calls: {{x: {{service: y, type: {ADD}, at: 60}}}}": "60 s is after the end of a run",
+    f"services: {{x: {{type: {ADD}, response: {{sum: '=a + c'}}}}}}": "no value c here",
+    f"services: {{x: {{type: {ADD}, response: 'ok'}}}}": "a whole number",
+    f"publishers: {{x: {{type: {STRING}, rate: 1, message: {{dat: x}}}}}}": "has no field dat",
+    f"publishers: {{x: {{type: {STRING}, rate: 1, messages: [a, {{data: 2}}]}}}}": "a text",
+    f"publishers: {{x: {{type: {TWIST}, rate: 1, message: {{linear: {{w: 1}}}}}}}}": "no field w",
+    f"publishers: {{x: {{type: {TWIST}, rate: 1, message: {{linear: 1}}}}}}": "fields with values",
+    f"publishers: {{x: {{type: {TWIST}, rate: 1, message: 1}}}}": "values of linear, angular",
+    f"publishers: {{x: {{type: {SCAN}, rate: 1, message: {{ranges: 1}}}}}}": "expected a list",
+    f"goals: {{x: {{action: y, type: {FIBONACCI}, goal: {{orders: 1}}}}}}": "has no field orders",
+}
 
 
 def parsed(cast: str) -> dict[str, script.Peer]:
@@ -42,7 +62,7 @@ MISTAKES = {
     ("cast: a: publishers: x", "rate: expected a number"): (
         f"a: {{publishers: {{x: {{type: {STRING}, rate: often}}}}}}"
     ),
-    ("cast: a: publishers: x", "0 to 1000 times"): (
+    ("cast: a: publishers: x", "0 to 62.5 times"): (
         f"a: {{publishers: {{x: {{type: {STRING}, rate: 1.0e+9}}}}}}"
     ),
     ("cast: a: publishers: x", "begin: expected 0 or more"): (
@@ -148,7 +168,33 @@ FILES = {
     (CAST, "  it: {topic: t, qos: {depth: -1}}"): (8, "0 or more"),
     (CAST, "  it: {call: x, response: {sum: '=1 << 2'}}"): (8, "`1 << 2` is not allowed"),
     (CAST, "  it: {node: n, after: [other]}"): (8, "no check above is named other"),
+    (CAST, "  it: {node: my node}"): (8, "a name such as chatter, found 'my node'"),
+    (CAST, "  it: {topic: t, type: std_msgs/String}"): (8, "such as std_msgs/msg/String"),
+    (CAST, "  it: {topic: t, type: std_msgs/msg/Text}"): (8, "std_msgs has no std_msgs/msg/Text"),
+    (CAST, "  it: {topic: t, count: {at_least: 3, at_most: 2}}"): (8, "at_least is 3, more than"),
+    (CAST, "  it: {topic: t, begin: 60}"): (8, "60 s is after the end of a run"),
+    (CAST, "  it: {served: y}"): (8, "among its services, none; found 'y'"),
+    (CAST, "  it: {got: t, by: a}"): (8, "among its subscriptions, none; found 't'"),
+    (CAST, "  it: {got: t, by: b}"): (8, "a node of the cast, a; found 'b'"),
+    (CAST, "  it: {log: x, heard: t}"): (8, "among its publishers, none; found 't'"),
+    (CAST, "  it: {topic: t, values: '=heard[\"/u\"][-1].data'}"): (
+        8,
+        "nobody hears '/u' here, only",
+    ),
+    (CAST, "  it: {call: x, response: {total: 3}}"): (8, "has no field total, only sum"),
+    (CAST, "  it: {call: x, response: {sum: three}}"): (8, "a number, since it is a int64"),
+    (CAST, "  it: {call: x, response: {sum: '=a + c'}}"): (
+        8,
+        "no value c here, only a, b, request",
+    ),
 }
+
+
+@pytest.mark.parametrize("peer", UNFIT)
+def test_what_a_peer_says_has_to_fit_its_type_and_the_run(peer: str) -> None:
+    with pytest.raises(Mistake) as caught:
+        check_cast(parsed(f"a: {{{peer}}}"), KnownTypes({}), 20, ("cast",))
+    assert UNFIT[peer] in str(caught.value)
 
 
 @pytest.mark.parametrize("verb", ["run", "check-exercise"])

@@ -11,6 +11,7 @@ from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks, judge
 from grader.exercise.expect.checks import add_checks
 from grader.exercise.expect.judging import LISTED
+from grader.exercise.known_types import KnownTypes
 from grader.exercise.verdict import Finding
 from grader.limited import WorkLimits
 from grader.recording.recording import Recording, Recordings
@@ -137,7 +138,7 @@ RATE = {"topic": "chatter", "rate": {"hz": 2, "tolerance": 0.05}}
 
 
 def test_a_rate_is_right_within_its_tolerance_and_without_pauses() -> None:
-    assert judged(RATE, TALKS, *FIVE).share == 1
+    assert judged(RATE, TALKS, *FIVE, length_s=3).share == 1
     paused = [*FIVE, text(9.9, "/chatter", "")]
     fails(judged(RATE, TALKS, *paused), "a longest pause of 7.40 s; expected 2 times a second")
 
@@ -151,6 +152,27 @@ def test_half_a_rate_is_not_half_of_the_points(period_s: float) -> None:
     assert judged({**RATE, "values": "Hello"}, TALKS, *other).share == 0
 
 
+@pytest.mark.parametrize("hz", [25.0, 50.0, 100.0])
+def test_a_rate_is_the_mean_of_all_periods(hz: float) -> None:
+    wanted = {"topic": "chatter", "rate": {"hz": hz, "tolerance": 0.02}}
+    uneven = [text((n + 0.4 * (n % 2)) / hz, "/chatter", "") for n in range(100)]
+    assert judged(wanted, TALKS, *uneven, length_s=100 / hz).share == 1
+    slower = [text(n / (0.97 * hz), "/chatter", "") for n in range(100)]
+    fails(judged(wanted, TALKS, *slower, length_s=100 / hz), f"came {0.97 * hz:.2f} times")
+
+
+def test_messages_that_come_together_have_not_the_rate_of_their_mean() -> None:
+    pairs = [text(n // 2 * 1.0, "/chatter", "") for n in range(20)]
+    fails(judged(RATE, TALKS, *pairs), "several times at once, with pauses of 1.00 s")
+
+
+def test_a_rate_lasts_to_the_end_or_to_the_last_message_that_is_expected() -> None:
+    words = "came no more after 2.50 s; expected 2 times a second, to the end at 10 s"
+    fails(judged(RATE, TALKS, *FIVE), words)
+    assert judged({**RATE, "end": 3}, TALKS, *FIVE).share == 1
+    assert judged({**RATE, "count": {"at_most": 5}}, TALKS, *FIVE).share == 1
+
+
 def test_one_message_has_no_rate() -> None:
     fails(judged(RATE, TALKS, FIVE[0]), "came 0 times a second")
 
@@ -159,7 +181,8 @@ def test_a_wrong_rate_is_told_before_the_count_that_it_makes() -> None:
     wanted = {**RATE, "count": {"at_least": 8}}
     slow = [text(n, "/chatter", "Hello") for n in range(1, 6)]
     fails(judged(wanted, TALKS, *slow), "/chatter came 1.00 times a second")
-    fails(judged(wanted, TALKS, *FIVE), "5 messages on /chatter came, expected at least 8")
+    few = judged(wanted, TALKS, *FIVE, length_s=3)
+    fails(few, "5 messages on /chatter came, expected at least 8")
 
 
 @pytest.mark.parametrize(
@@ -487,7 +510,7 @@ def test_a_hint_of_the_author_takes_the_place_of_ours() -> None:
 def test_a_pattern_of_the_author_that_never_ends_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(asking, "LIMITS", WorkLimits(cpu_s=0.3, wall_s=30.0))
     checks = Checks()
-    add_checks(checks, {"logs": {"log": "/^(a+)+$/"}}, [RunCase()])
+    add_checks(checks, {"logs": {"log": "/^(a+)+$/"}}, [RunCase()], KnownTypes({}), 10)
     recording = Recording(trace(line(1, "a" * 60 + "!")), scene="graph")
     (verdict,) = judge(Recordings(recording), checks, {"logs": 1}, {})
     assert verdict.status == "not_judged"

@@ -85,9 +85,13 @@ def trace(*parts: Any, length_s: float = 10) -> CastTrace:
 
 
 def judged(
-    expected: dict[str, Any], *parts: Any, output: str = "", code: int | None = 0
+    expected: dict[str, Any],
+    *parts: Any,
+    output: str = "",
+    code: int | None = 0,
+    length_s: float = 10,
 ) -> Finding:
     """The finding on what is expected of a trace with these parts."""
     run = Run("virtual", exit_code=code)
-    recording = Recording(trace(*parts), run, output=output, scene="graph")
+    recording = Recording(trace(*parts, length_s=length_s), run, output=output, scene="graph")
     return judging.judge(parse(expected, ("expect", "it")), Recordings(recording))

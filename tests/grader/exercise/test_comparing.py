@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from grader.exercise.expect.comparing import LONGEST_MATCHED, SHOWN, differences, shown
+from grader.exercise.comparing import LONGEST_MATCHED, SHOWN, differences, shown
 
 INF, NAN = math.inf, math.nan
 

@@ -1,0 +1,236 @@
+"""The types that are known when an exercise is read: what it says of messages has to fit them.
+
+They are the exercise's own and those of installed packages; any other a hand-in may bring, and then
+nothing is checked.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from typing import Any, Final
+
+from grader.cast import script
+from grader.cast.expressions import is_pattern
+from grader.exercise.comparing import is_number, is_range
+from grader.message import msg
+from grader.recording.recording import OwnInterfaces
+from grader.yaml_file import Mistake
+
+#: The parts of a definition, which lines of --- separate.
+_PARTS: Final = {"request": 0, "response": 1, "goal": 0, "result": 1, "feedback": 2}
+_ARRAY: Final = re.compile(r"(.+?)\[.*\]")
+_WHOLE: Final = re.compile(r"u?int(8|16|32|64)|byte|char")
+#: What a peer says, by its kind -> the part of the definition that it is, and the one whose fields
+#: its expressions may use, with more names; None for what is no message, or for no such fields.
+_SAID: Final[Mapping[str, Mapping[str, tuple[str | None, str | None, set[str]]]]] = {
+    "publishers": {"message": ("", None, set()), "messages": ("", None, set())},
+    "services": {"response": ("response", "request", {"request", "n"})},
+    "calls": {"request": ("request", None, set())},
+    "goals": {"goal": ("goal", None, set())},
+    "actions": {
+        "accepts": (None, "goal", {"goal"}),
+        "feedback": ("feedback", "goal", {"goal", "n"}),
+        "result": ("result", "goal", {"goal"}),
+    },
+}
+
+
+class KnownTypes:
+    """The fields of types.
+
+    Args:
+        definitions: the exercise's own types: 'my_interfaces/msg/Num' -> the definition.
+    """
+
+    def __init__(self, definitions: Mapping[str, str]) -> None:
+        self._definitions = definitions
+
+    def expect(self, name: str, at: tuple[str, ...]) -> None:
+        """Expect a type of a known package to be there.
+
+        Raises:
+            Mistake: it is not.
+        """
+        package, kind, _ = name.split("/")
+        known = [each for each in self._definitions if each.startswith(f"{package}/")]
+        known = known or _installed(package, kind)
+        if not known or name in known:
+            return
+        near = ", ".join(difflib.get_close_matches(name, known, 3, 0.5) or known[:3])
+        raise Mistake(
+            at, msg("{package} has no {type}; it has {near}", package=package, type=name, near=near)
+        )
+
+    def fields(self, name: str, part: str = "") -> dict[str, str]:
+        """Return the fields of a type and their types; none where it is not known.
+
+        Args:
+            part: of a service or an action: `request`, `response`, `goal`, `result`, `feedback`.
+        """
+        package, kind, own = name.split("/")
+        text = self._definitions.get(name)
+        if text is None and (folder := script.interfaces_folder(package, kind)) is not None:
+            file = folder / f"{own}.{kind}"
+            text = file.read_text("utf-8", "replace") if file.is_file() else None
+        parts: list[dict[str, str]] = [{}]
+        for line in OwnInterfaces.fields(text or ""):
+            if line == "---":
+                parts.append({})
+            elif " " in line:
+                inner, _, field = line.partition(" ")
+                parts[-1][field] = inner
+        return parts[_PARTS.get(part, 0)] if _PARTS.get(part, 0) < len(parts) else {}
+
+    def check(
+        self, values: Any, name: str, part: str, at: tuple[str, ...], *, is_expected: bool = False
+    ) -> None:
+        """Check the values of a message.
+
+        Args:
+            is_expected: whether they may be ranges and patterns.
+
+        Raises:
+            Mistake: it has no such field, or a value does not fit.
+        """
+        fields = self.fields(name, part)
+        if not fields or values in (None, {}) or _is_open(values, is_expected=is_expected):
+            return
+        if not isinstance(values, Mapping):
+            if len(fields) != 1:
+                what = "expected values of {fields}, found {found}"
+                raise Mistake(at, what, fields=", ".join(fields), found=repr(values)[:80])
+            values = {next(iter(fields)): values}
+        for field, value in values.items():
+            here = (*at, str(field))
+            if field not in fields:
+                what = "{type} has no field {name}, only {fields}"
+                words = {"type": name, "name": field, "fields": ", ".join(fields)}
+                raise Mistake(here, what, **words)
+            self._check(value, fields[field], name, here, is_expected=is_expected)
+
+    def _check(
+        self, value: Any, kind: str, within: str, at: tuple[str, ...], *, is_expected: bool
+    ) -> None:
+        """Check the value of a field of a type that stands in another."""
+        if _is_open(value, is_expected=is_expected):
+            return
+        if array := _ARRAY.fullmatch(kind):
+            if not isinstance(value, list):
+                raise Mistake(at, "expected a list, found {found}", found=repr(value)[:80])
+            for n, each in enumerate(value):
+                self._check(each, array[1], within, (*at, str(n)), is_expected=is_expected)
+            return
+        base = kind.partition("<")[0]
+        if base in ("string", "wstring"):
+            fits, wanted = isinstance(value, str), msg("a text")
+        elif base == "bool":
+            fits, wanted = isinstance(value, bool), msg("true or false")
+        elif base in ("float32", "float64") or (is_expected and _WHOLE.fullmatch(base)):
+            fits, wanted = is_number(value), msg("a number")
+        elif _WHOLE.fullmatch(base):
+            fits, wanted = is_number(value) and isinstance(value, int), msg("a whole number")
+        elif not isinstance(value, Mapping) and not is_expected:
+            fits, wanted = False, msg("fields with values")
+        else:
+            package = base.partition("/")[0] if "/" in base else within.partition("/")[0]
+            inner = f"{package}/msg/{base.rpartition('/')[2]}"
+            self.check(value, inner, "", at, is_expected=is_expected)
+            return
+        if not fits:
+            what = "expected {wanted}, since it is a {type}; found {found}"
+            raise Mistake(at, what, wanted=wanted, type=kind, found=repr(value)[:80])
+
+    def check_each(
+        self,
+        said: Iterable[Any],
+        types: Sequence[str],
+        part: str,
+        at: tuple[str, ...],
+        *,
+        is_expected: bool = False,
+    ) -> None:
+        """Check values of messages that may have one of several types.
+
+        Raises:
+            Mistake: one fits none of them.
+        """
+        for values in said:
+            faults = []
+            for each in types:
+                try:
+                    self.check(values, each, part, at, is_expected=is_expected)
+                except Mistake as fault:
+                    faults.append(fault)
+            if len(faults) == len(types) > 0:
+                raise faults[0]
+
+    def check_names(
+        self, said: Any, types: Iterable[str], part: str, more: set[str], at: tuple[str, ...]
+    ) -> None:
+        """Check that expressions use the fields of a part of a type, or some more names.
+
+        Raises:
+            Mistake: one uses another.
+        """
+        fields = [self.fields(each, part) for each in types]
+        if all(fields):
+            script.check_templates(said, more.union(*fields), at, has_patterns=True)
+
+
+def check_cast(
+    peers: Mapping[str, script.Peer], known: KnownTypes, end_s: float, keys: tuple[str, ...]
+) -> None:
+    """Check the types and the times of a cast, and what its peers say.
+
+    Args:
+        end_s: how long a run lasts [s].
+        keys: of the cast.
+
+    Raises:
+        Mistake: a type is missing in its package, a value does not fit, or nobody sees the end.
+    """
+    for node, peer in peers.items():
+        for kind in script.KINDS:
+            for name, entry in getattr(peer, kind).items():
+                at = (*keys, node, kind, name)
+                for key in ("begin", "at"):
+                    check_time(getattr(entry, key, 0.0), end_s, (*at, key))
+                for each in getattr(entry, "types", ()):
+                    known.expect(each, (*at, "type"))
+                for key, (part, asked, more) in _SAID.get(kind, {}).items():
+                    given = getattr(entry, key)
+                    said = given if isinstance(given, tuple) else (given,)
+                    if part is not None:
+                        known.check_each(said, entry.types, part, (*at, key))
+                    if asked is not None:
+                        known.check_names(given, entry.types, asked, more, (*at, key))
+
+
+def check_time(time_s: Any, end_s: float, at: tuple[str, ...]) -> None:
+    """Check that a time, or one of several, is in a run.
+
+    Raises:
+        Mistake: it is after the end.
+    """
+    for each in time_s if isinstance(time_s, tuple) else (time_s,):
+        if each > end_s:
+            raise Mistake(at, "{time:g} s is after the end of a run, {end:g} s",
+                          time=each, end=end_s)  # fmt: skip
+
+
+@cache
+def _installed(package: str, kind: str) -> list[str]:
+    """Return the names of the types of a kind that an installed package has."""
+    folder = script.interfaces_folder(package, kind)
+    files = folder.glob(f"*.{kind}") if folder else ()
+    return sorted(f"{package}/{kind}/{file.stem}" for file in files)
+
+
+def _is_open(value: Any, *, is_expected: bool) -> bool:
+    """Whether a value is only known in the run, or says itself what may come."""
+    if isinstance(value, str):
+        return value.startswith("=") or (is_expected and is_pattern(value))
+    return is_expected and is_range(value)
