@@ -22,7 +22,7 @@ from rich.text import Text
 
 from grader import files, grading, judging
 from grader.cli import options
-from grader.errors import SubmissionError
+from grader.errors import SubmissionError, UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.grading import Finished
@@ -40,6 +40,7 @@ from grader.result.result import (
 )
 from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
+from grader.submission.launching import LaunchAsked
 from grader.submission.reader import Marks
 from grader.submission.start import Submission
 from grader.text import for_terminal
@@ -74,7 +75,8 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
     with ExitStack() as held:
         opening = exercise.opening
         try:
-            with open_submission(args.submission, args.executable, **opening) as submission:
+            started = (args.submission, args.executable, _launch_asked(args.launch))
+            with open_submission(*started, **opening) as submission:
                 result, recordings = _run_and_judge(args, submission, exercise, out, held, live)
         except SubmissionError as error:
             if advice := _advice(args.submission, marks, None):
@@ -86,6 +88,22 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
         if live is not None:
             live.know(report)
     return result
+
+
+def _launch_asked(words: list[str] | None) -> LaunchAsked | None:
+    """Parse FILE ARG:=VALUE ... of the command line."""
+    if words is None:
+        return None
+    file, *given = words
+    for each in given:
+        if ":=" not in each:
+            raise UsageError(
+                "--launch: expected ARG:=VALUE behind {file}, found {found}; what is handed in "
+                "comes before --launch",
+                file=file,
+                found=each,
+            )
+    return LaunchAsked(file, dict(each.split(":=", 1) for each in given))
 
 
 def _advice(path: Path, marks: Marks | None, recordings: Recordings | None) -> Message:

@@ -49,7 +49,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", type=Path, metavar="FILE", help=tr("write the result here as well")
     )
-    parser.add_argument("--executable", metavar="NAME", help=tr("which console script to start"))
+    starts = parser.add_mutually_exclusive_group()
+    starts.add_argument("--executable", metavar="NAME", help=tr("which console script to start"))
+    starts.add_argument(
+        "--launch",
+        nargs="+",
+        metavar=("FILE", "ARG:=VALUE"),
+        help=tr("which launch file to start, with values of its arguments"),
+    )
     parser.add_argument(
         "--fail-under", type=points, metavar="POINTS", help=tr("exit 1 below this score")
     )

@@ -57,6 +57,8 @@ RUNS = "runs"
 #: A turtle that drives so many times as fast crosses the window in a tick or two.
 MOST_FACTOR = 100
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
+#: So many programs of a submission are started together.
+MOST_PROGRAMS = 8
 #: Of an exercise, a program, a package.
 NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
@@ -95,7 +97,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         looks_at_package=data.get(INSPECTS, False),
         inspections=_inspections(data, scene, subject),
         cpu_s=_cpu_s(data.get(CPU)),
-        program=data.get("program", ""),
+        programs=_programs(data),
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, {SETTING: setting, **interfaces}, place.folder),
@@ -233,14 +235,8 @@ def _checks(
 
 def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
     """Refuse a task, a program or a switch of another type."""
-    task, program, inspects = (
-        data.get("task", ""),
-        data.get("program", ""),
-        data.get(INSPECTS, False),
-    )
+    task, inspects = data.get("task", ""), data.get(INSPECTS, False)
     expect(isinstance(task, str), ("task",), "expected a text, found {found}", task)
-    is_name = isinstance(program, str) and (not program or NAME.fullmatch(program))
-    expect(is_name, ("program",), "expected the name of a console script, found {found}", program)
     expect(
         isinstance(inspects, bool), (INSPECTS,), "expected true or false, found {found}", inspects
     )
@@ -248,6 +244,21 @@ def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
         raise Mistake(
             (INSPECTS,), "the scene {scene} does nothing else: leave it out", scene=repr(scene)
         )
+
+
+def _programs(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """Read the names of the console scripts that are started together, or of the one."""
+    one = data.get("program", "")
+    fits = isinstance(one, str) and (not one or NAME.fullmatch(one))
+    expect(fits, ("program",), "expected the name of a console script, found {found}", one)
+    several = data.get("programs", [one] if one else [])
+    fits = isinstance(several, list) and len({*map(str, several)}) == len(several) <= MOST_PROGRAMS
+    fits = fits and all(isinstance(each, str) and NAME.fullmatch(each) for each in several)
+    what = "expected names of console scripts, each once, at most {n}; found {found}"
+    expect(fits, ("programs",), what, several, n=MOST_PROGRAMS)
+    if one and "programs" in data:
+        raise Mistake(("programs",), "there is `program` already: leave one of them out")
+    return tuple(several)
 
 
 def _inspections(data: Mapping[str, Any], scene: str, subject: Subject) -> tuple[str, ...]:

@@ -37,7 +37,7 @@ class Opening(TypedDict, total=False):
     """Arguments of `grader.run.opening.open_submission`."""
 
     is_started: bool
-    usual: str
+    programs: tuple[str, ...]
     inspections: tuple[str, ...] | None
     cpu_s: float
     interfaces: Mapping[str, str]
@@ -111,7 +111,7 @@ class Exercise:
         is_to_end: whether a program is to end by itself.
         looks_at_package: whether the package around what is started is inspected as well.
         inspections: the names of the inspectors that examine packages.
-        program: the one to start where a submission has several; '' for the usual one.
+        programs: those to start where a submission has them; none for the usual one.
         folder: where its files are.
         starter: the folder that `grader new` copies, or a program around which it makes a package;
             None where there is none.
@@ -131,7 +131,7 @@ class Exercise:
     looks_at_package: bool = False
     inspections: tuple[str, ...] = ()
     cpu_s: float = math.inf
-    program: str = ""
+    programs: tuple[str, ...] = ()
     folder: Path = Path()
     starter: Path | None = None
     sha256: str = ""
@@ -162,15 +162,13 @@ class Exercise:
     @property
     def opening(self) -> Opening:
         """The arguments for opening a submission to it."""
-        opening: Opening = {
+        return {
             "is_started": self.is_started,
+            "programs": self.programs,
             "inspections": self.inspections if self.looks_at_package else None,
             "cpu_s": self.cpu_s,
             "interfaces": self.interfaces,
         }
-        if self.program:
-            opening["usual"] = self.program
-        return opening
 
     @property
     def conditions(self) -> dict[str, float]:

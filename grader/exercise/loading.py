@@ -30,7 +30,17 @@ SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", INSPECTS, CPU),
     *(INSPECTIONS, INTERFACES, *cases.KEYS, EXPECT),
-    *("points", "visible", "late", "tolerances", "starter", "program", FITS, translated.PART),
+    *(
+        "points",
+        "visible",
+        "late",
+        "tolerances",
+        "starter",
+        "program",
+        "programs",
+        FITS,
+        translated.PART,
+    ),
 )
 
 

@@ -6,6 +6,7 @@ code ran: a claim, which whoever uses it holds against the files.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from grader.inspection import trace
@@ -60,6 +61,21 @@ class SetUp:
 
 
 @dataclass(frozen=True)
+class LaunchOrder:
+    """How a launch file starts its nodes.
+
+    Attributes:
+        delays_s: when each starts, in their order [s].
+        included: the submission's own launch files that it includes.
+        ignored: actions and options that are not followed, by their names.
+    """
+
+    delays_s: tuple[float, ...] = ()
+    included: tuple[str, ...] = ()
+    ignored: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Inspection:
     """All of it.
 
@@ -67,13 +83,13 @@ class Inspection:
         set_ups: in the order in which they were asked for.
         package: the folder of the package that is likely to be started; '' for none.
         trace: what was found of that package; its launch files at least.
-        plain: those in which there is nothing but nodes.
+        orders: of launch files that came to their end, by their names in the trace.
     """
 
     set_ups: tuple[SetUp, ...] = ()
     package: str = ""
     trace: PackageTrace = field(default_factory=PackageTrace)
-    plain: tuple[str, ...] = ()
+    orders: Mapping[str, LaunchOrder] = field(default_factory=dict)
 
 
 def decode(data: bytes) -> Inspection:

@@ -177,8 +177,6 @@ def _facts(folder: Path) -> dict[str, Any]:
         facts[INTERFACES] = strict_json.from_json(
             OwnInterfaces, circumstances.get(INTERFACES, {}), strict_json.OURS
         )
-    with _refusing(folder / RUN):
-        facts["run"]["flags"] = tuple(map(Message.parse, facts["run"]["flags"]))
     return facts
 
 
@@ -225,7 +223,7 @@ def _read_header(folder: Path) -> _Header:
     with _refusing(folder):
         digest = content.of_file(folder / BAG)
         output = (folder / OUTPUT).read_bytes().decode("utf-8", "surrogatepass")
-        run = Run(**facts["run"])
+        run = strict_json.from_json(Run, facts["run"], strict_json.OURS)
     if digest != facts["bag_sha256"]:
         raise RecordingError(
             "{bag} is damaged: it is cut off or was changed since it was saved",

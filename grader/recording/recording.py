@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
-from typing import Literal
+from typing import Final, Literal
 
 from grader.message import Message
 from grader.recording.observations import Observations
@@ -23,6 +23,27 @@ from grader.strict_json import SPARSE
 _CONSTANT = re.compile(r"\S+ \w+ ?=")
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed", "not_run"]
 Clock = Literal["virtual", "real"]
+#: Of what each program has printed, a run keeps so much beside the output of all [characters].
+LONGEST_OUTPUT: Final = 4_000
+
+
+@dataclass(frozen=True)
+class ProgramRun:
+    """How one of the submission's programs went.
+
+    Attributes:
+        name: as `ros2 launch` prints it, 'talker-1'; of a script that of its file.
+        package, executable: what was started; '' and the file for a script.
+        outcome, exit_code: as a run's.
+        output: the end of what it has printed, at most `LONGEST_OUTPUT` characters.
+    """
+
+    name: str
+    package: str
+    executable: str
+    outcome: Outcome
+    exit_code: int | None = None
+    output: str = ""
 
 
 @dataclass(frozen=True)
@@ -44,6 +65,7 @@ class Run:
         seed: chose where the varied runs start; None where there are none.
         interfaces: with which the scene was run; '' where it has no choice, or had none.
         case: of the exercise; '' for the usual one.
+        programs: of the submission, in the order of their start.
     """
 
     time: Clock = "real"
@@ -58,6 +80,7 @@ class Run:
     seed: int | None = None
     interfaces: str = field(default="", metadata=SPARSE)
     case: str = field(default="", metadata=SPARSE)
+    programs: tuple[ProgramRun, ...] = field(default=(), metadata=SPARSE)
 
 
 @dataclass(frozen=True)

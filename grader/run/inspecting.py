@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 from grader import linux
@@ -69,6 +70,7 @@ def inspect(
     program: str,
     budget: CpuBudget,
     inspections: Sequence[str] | None,
+    given: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Inspection, tuple[Message, ...]]:
     """Find what packages have to start; return it with remarks on what could not be found.
 
@@ -77,12 +79,14 @@ def inspect(
         folders: those with set-up files, below its root.
         program: the console script that is asked for.
         inspections: by which its package is inspected as by `inspect_beside`; None for not at all.
+        given: values of launch arguments.
 
     Raises:
         GraderFailure: the process could not be started.
     """
     inspectors = None if inspections is None else inspector.places(inspections)
-    asked = {"set_ups": list(folders), "program": program, "inspectors": inspectors}
+    asked: dict[str, object] = {"set_ups": list(folders), "program": program}
+    asked |= {"inspectors": inspectors, "given": dict(given)}
     found, ending = _inspected(submission, asked, budget)
     if found is None or [each.folder for each in found.set_ups] != list(folders):
         found = Inspection(tuple(SetUp(each, SetUpFacts(), None) for each in folders))

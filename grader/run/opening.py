@@ -15,17 +15,18 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.message import NOTHING, Message
 from grader.run.limits import CpuBudget
 from grader.scratch import make_folder
 from grader.submission import reader
 from grader.submission.folder import USUAL_NAME
+from grader.submission.launching import LaunchAsked
 from grader.submission.private_copy import PrivateCopy, copy_privately
 from grader.submission.reader import Marks
 from grader.submission.set_ups import NotInspected
-from grader.submission.start import EntryPoint, Script, Submission, Whole
+from grader.submission.start import EntryPoint, Submission, Whole
 
 if TYPE_CHECKING:
     from grader.inspection.trace import PackageTrace
@@ -35,9 +36,10 @@ if TYPE_CHECKING:
 def open_submission(
     path: Path,
     executable: str | None = None,
+    launch: LaunchAsked | None = None,
     *,
     is_started: bool = True,
-    usual: str = USUAL_NAME,
+    programs: Sequence[str] = (),
     inspections: Sequence[str] | None = None,
     cpu_s: float = math.inf,
     interfaces: Mapping[str, str] = MappingProxyType({}),
@@ -45,11 +47,12 @@ def open_submission(
     """Find what to start, in a copy that is removed when the context ends.
 
     `executable` chooses among the console scripts or Python files of a folder or zip; a single
-    .py file leaves no choice. Without it, `usual` is used where there are several. Where nothing
-    is started (`is_started`), the submission is all of it, a folder or an archive with a package;
-    `executable` then chooses among packages.
+    .py file leaves no choice. Where nothing is started (`is_started`), the submission is all of it,
+    a folder or an archive with a package; `executable` then chooses among packages.
 
     Args:
+        launch: the launch file that is asked for.
+        programs: those of the exercise, which are started where the submission has them.
         inspections: by which the whole package around what is started is inspected at the same
             time; None for not at all.
         cpu_s: the processor time that it may use [s].
@@ -64,13 +67,15 @@ def open_submission(
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()
-        read = partial(reader.read, path, executable, scratch, usual=usual, interfaces=interfaces)
+        more: dict[str, Any] = {"programs": programs, "launch": launch}
+        more["interfaces"] = interfaces
+        read = partial(reader.read, path, executable, scratch, **more)
         try:
             found = read(is_started=is_started)
         except NotInspected as asked:
-            found, copy = _inspected(
-                path, scratch, read, asked, cpu_s, executable or usual, inspections
-            )
+            program = executable or next(iter(programs), USUAL_NAME)
+            given = launch.given if launch else {}
+            found, copy = _inspected(path, scratch, read, asked, cpu_s, program, inspections, given)
         else:
             copy = copy_privately(path, found.root, scratch)
         yield _in_private(found, copy)
@@ -90,6 +95,7 @@ def _inspected(
     cpu_s: float,
     program: str,
     inspections: Sequence[str] | None,
+    given: Mapping[str, str],
 ) -> tuple[Submission, PrivateCopy]:
     """Return a package as it is started according to an inspection, and its copy."""
     from grader.run import inspecting  # here: most submissions are a file
@@ -97,7 +103,7 @@ def _inspected(
     copy, budget = copy_privately(path, asked.base, scratch), CpuBudget(cpu_s)
     everything = Submission(path.name, copy.of(asked.base), Whole(), NOTHING, copy=copy)
     inspection, remarks = inspecting.inspect(
-        everything, asked.folders, program, budget, inspections
+        everything, asked.folders, program, budget, inspections, given
     )
     found = read(again=(asked, inspection))
     notes = (*remarks, *found.notes)
@@ -116,11 +122,7 @@ def _inspected(
 
 def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
     """Return a submission with its paths in a private copy."""
-    start = submission.start
-    if isinstance(start, Script):
-        start = replace(start, path=copy.of(start.path))
-    root, package = copy.of(submission.root), submission.package and copy.of(submission.package)
-    return replace(submission, root=root, start=start, package=package, copy=copy)
+    return replace(submission.with_paths(copy.of), copy=copy)
 
 
 def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable
-from contextlib import ExitStack, closing
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,14 +15,16 @@ from grader import linux
 from grader.cast import script
 from grader.errors import GraderFailure, NotNow, SceneFailure
 from grader.message import Message
+from grader.recording.observations import Observations
 from grader.recording.recording import Recording
 from grader.run import compiling, handover, run_context
 from grader.run.environment import student_environment
 from grader.run.evidence import EvidencePage
-from grader.run.finish import SimulatorLost, ended, not_run, outcome, record
+from grader.run.finish import SimulatorLost, not_run, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import FIRST_NODE_S
-from grader.run.processes.started_process import SubmissionProcess
+from grader.run.programs import ProgramEnd, RunningProgram, blamed, ending_of
+from grader.run.run_context import RunContext
 from grader.run.simulator_process import (
     Audience,
     Simulator,
@@ -31,7 +33,7 @@ from grader.run.simulator_process import (
     start_simulator,
 )
 from grader.scenes import load_scene
-from grader.scenes.scene import Introduction
+from grader.scenes.scene import Introduction, Reason
 from grader.submission.start import Submission
 
 #: Called with the simulated time [s] now and then.
@@ -63,10 +65,8 @@ def run(
         SimulatorLost: it died beside the submission.
     """
     started = time.monotonic()
-    scene = load_scene(plan.scene)
     with (
         run_context.open_context(plan.budget) as context,
-        closing(EvidencePage()) as account,
         live_feed(audience, plan, "real") as feed,
         ExitStack() as stack,
     ):
@@ -81,61 +81,131 @@ def run(
             start_simulator(MODULE, its, plan, (), str(FIRST_NODE_S), feed=feed)
         )
         simulator.expect("ready")
-        submission, student = context.start(
-            submission,
-            lambda private: command(private, scene.introduction, plan, account.page),
-            (account.page,),
-            student_environment(theirs.env),
-            more=theirs.folders,
-        )
-        ending = partial(ended, "real", submission, student, context.isolation, started)
-        began_s = time.monotonic()
+        programs = _Programs(submission, plan, context, theirs, stack)
+        programs.start_due(0.0)
         try:
-            with student.ended_at_exit():
-                done, exit_code, ended_s = _watch(simulator, student, progress)
-                ended_s -= began_s
-                computes = linux.process_stat(student.pid).cpu_s > COMPUTES * ended_s
-                if exit_code is None:
-                    account.request_dump(student.pid)
-                account.close()  # later entries are only about the end that we ask for
-            trace, topics = handover.fetch(context.recording, handover.keeper(plan, scene))
+            with programs.ended_at_exit():
+                done = _watch(simulator, programs, progress)
+                ends, observations = programs.ends(done["reason"])
+            trace, topics = handover.fetch(context.recording, handover.keeper(plan, programs.scene))
         except (NotNow, SceneFailure):  # it was never started, or is not to blame
             raise
         except GraderFailure as failure:
-            raise SimulatorLost(failure, ending("killed", None)) from failure
-    how = outcome(done["reason"], exit_code)
-    observations = account.observations(submission, ended_s, computes=computes)
-    flags = tuple(map(Message.parse, done["flags"]))
-    return record(plan, trace, topics, ending(how, exit_code, flags), observations)
+            lost = [ProgramEnd("killed", None, 0.0, has_failed=True) for _ in programs.running]
+            killed = ending_of("real", programs.running, lost, context.isolation, started)
+            raise SimulatorLost(failure, killed) from failure
+        flags = tuple(map(Message.parse, done["flags"]))
+        ending = ending_of("real", programs.running, ends, context.isolation, started, flags)
+    return record(plan, trace, topics, ending, observations)
 
 
-def command(submission: Submission, introduction: Introduction, plan: Plan, page: int) -> list[str]:
-    """Return the command of the submission's process."""
+class _Programs:
+    """The programs of a submission, each started when it is its turn.
+
+    Attributes:
+        running: those that were started.
+        waiting: the others, the next first.
+    """
+
+    def __init__(
+        self,
+        submission: Submission,
+        plan: Plan,
+        context: RunContext,
+        interfaces: compiling.Importable,
+        held: ExitStack,
+    ) -> None:
+        self.scene = load_scene(plan.scene)
+        self.running: list[RunningProgram] = []
+        self.waiting = sorted(submission.programs, key=lambda each: each.delay_s)
+        self._ended: dict[int, tuple[int, float]] = {}  # exit codes, and when [s]
+        self._submission, self._plan, self._context = submission, plan, context
+        self._interfaces, self._held = interfaces, held
+        self.began_s = time.monotonic()
+
+    def start_due(self, now_s: float) -> None:
+        """Start those whose turn has come."""
+        while self.waiting and self.waiting[0].delay_s <= now_s:
+            program, introduction = self.waiting.pop(0), self.scene.introduction
+            account = self._held.enter_context(closing(EvidencePage()))
+            arguments = (*program.arguments, *self._plan.arguments)
+            words = partial(command, introduction=introduction, plan=self._plan,
+                            page=account.page, arguments=arguments)  # fmt: skip
+            moved, process = self._context.start(
+                self._submission.alone(program),
+                words,
+                (account.page,),
+                student_environment(self._interfaces.env),
+                more=self._interfaces.folders,
+                beside=self.running[0].process if self.running else None,
+            )
+            self.running.append(RunningProgram(program, moved, process, account))
+
+    @contextmanager
+    def ended_at_exit(self) -> Iterator[None]:
+        """End all when the context is left."""
+        try:
+            yield
+        finally:
+            for each in self.running:
+                each.process.end()
+
+    def have_ended(self) -> bool:
+        """Whether all were started and have ended."""
+        for number, each in enumerate(self.running):
+            if number not in self._ended and (code := each.process.poll()) is not None:
+                self._ended[number] = code, time.monotonic() - self.began_s
+        return not self.waiting and len(self._ended) == len(self.running)
+
+    def ends(self, reason: Reason) -> tuple[list[ProgramEnd], Observations]:
+        """Return how they have ended, with the account of the one that a run's outcome is due to.
+
+        Those that still run are asked where they are.
+        """
+        now_s = time.monotonic() - self.began_s
+        ends = []
+        for number in range(len(self.running)):
+            code, at_s = self._ended.get(number, (None, now_s))
+            ends.append(ProgramEnd(outcome(reason, code), code, at_s, has_failed=bool(code)))
+        number = blamed(ends)
+        its, at_s = self.running[number], ends[number].at_s
+        computes = linux.process_stat(its.process.pid).cpu_s > COMPUTES * at_s
+        if ends[number].exit_code is None:
+            its.account.request_dump(its.process.pid)
+        its.account.close()  # later entries are only about the end that we ask for
+        return ends, its.account.observations(its.submission, at_s, computes=computes)
+
+
+def command(
+    submission: Submission,
+    introduction: Introduction,
+    plan: Plan,
+    page: int,
+    arguments: Sequence[str],
+) -> list[str]:
+    """Return the command of a program's process."""
     heard = [] if plan.cast is None else script.heard(script.parse(plan.cast), plan.hears)
     topics = [*introduction.topics, *heard]
-    introduced = json.dumps([topics, introduction.services, plan.arguments])
+    introduced = json.dumps([topics, introduction.services, arguments])
     words = [introduced, str(page), *run_context.start_arguments(submission)]
     return [sys.executable, str(STUDENT / "main.py"), *words]
 
 
 def _watch(
-    simulator: Simulator, student: SubmissionProcess, progress: Progress | None
-) -> tuple[SimulatorMessage, int | None, float]:
-    """Start the clock of the run and wait for its end.
-
-    Returns:
-        The simulator's last message; the exit code of the submission's process; when that, or the
-        run, ended, on the machine's monotonic clock [s].
-    """
+    simulator: Simulator, programs: _Programs, progress: Progress | None
+) -> SimulatorMessage:
+    """Start the clock of the run and wait for its end; return the simulator's last message."""
     simulator.send("start")
-    exit_code: int | None = None
-    ended_s = 0.0
+    programs.began_s = time.monotonic()
+    has_ended = False
     while True:
         message = simulator.next(0.05)
+        programs.start_due(time.monotonic() - programs.began_s)
+        is_over = programs.have_ended()
         if message and message["say"] == "done":
-            return message, exit_code, ended_s or time.monotonic()
+            return message
         if message and progress:
             progress(message["seconds"])
-        if exit_code is None and (exit_code := student.poll()) is not None:
-            ended_s = time.monotonic()
+        if is_over and not has_ended:
+            has_ended = True
             simulator.send("exited")

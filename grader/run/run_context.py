@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -16,7 +15,7 @@ from grader.run.processes import levels, network
 from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
-from grader.submission.start import EntryPoint, Launch, Submission, Whole
+from grader.submission.start import EntryPoint, Script, Submission
 
 
 @dataclass(frozen=True)
@@ -105,18 +104,12 @@ def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
 
 
 def start_arguments(submission: Submission) -> list[str]:
-    """Return a submission's start as arguments of its process's `main`."""
+    """Return a submission's start, of one program, as arguments of its process's `main`."""
     start = submission.start
-    if isinstance(start, Launch):
-        words = [json.dumps([[p.name, _entry(p.entry), p.arguments] for p in start.programs])]
-    elif isinstance(start, EntryPoint):
-        words = [_entry(start)]
-    elif isinstance(start, Whole):
-        raise ValueError("nothing of this submission is started")
-    else:
+    if isinstance(start, EntryPoint):
+        words = [f"{start.module}:{start.function}"]
+    elif isinstance(start, Script):
         words = [str(start.path), *([start.function] if start.function else [])]
+    else:
+        raise ValueError("this submission starts nothing, or several programs")
     return [str(submission.root), *words]
-
-
-def _entry(entry: EntryPoint) -> str:
-    return f"{entry.module}:{entry.function}"

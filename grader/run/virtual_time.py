@@ -13,7 +13,7 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from grader import linux
 from grader.errors import GraderFailure, SceneFailure
@@ -22,11 +22,12 @@ from grader.recording.recording import Outcome, Recording
 from grader.run import fork_servers, handover, real_time, run_context
 from grader.run.environment import virtual_environment
 from grader.run.evidence import EvidencePage
-from grader.run.finish import Ending, SimulatorLost, ended, outcome, record
+from grader.run.finish import SimulatorLost, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import END_S, SIMULATOR_S, CpuBudget, Patience
 from grader.run.processes import cores
 from grader.run.processes.started_process import SubmissionProcess
+from grader.run.programs import ProgramEnd, RunningProgram, blamed, ending_of
 from grader.run.real_time import Progress
 from grader.run.run_context import RunContext
 from grader.run.simulator_process import (
@@ -38,7 +39,7 @@ from grader.run.simulator_process import (
 )
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
-from grader.submission.start import Launch, Program, Submission
+from grader.submission.start import Program, Submission
 
 WAITS_FOR_EVER = msg("every thread of the node waits for something that will not come")
 STUCK = msg("the node waits for something that can no longer happen")
@@ -81,22 +82,6 @@ def run(
     return real_time.run(submission, replace(plan, flags=(flag, *plan.flags)), progress, audience)
 
 
-class _Running(NamedTuple):
-    """A program whose process was started.
-
-    Attributes:
-        name: as `ros2 launch` prints it; '' for one that was started alone.
-        submission: with its paths in the copy of that process.
-        link: the simulator's end.
-    """
-
-    name: str
-    submission: Submission
-    student: SubmissionProcess
-    account: EvidencePage
-    link: socket.socket
-
-
 def _try(
     submission: Submission,
     plan: Plan,
@@ -107,147 +92,132 @@ def _try(
     """Return the recording of a run in virtual time, or None and why there is none."""
     started = time.monotonic()
     scene = load_scene(plan.scene)
-    launched = submission.start
-    programs = launched.programs if isinstance(launched, Launch) else (None,)
     with ExitStack() as held:
         context = held.enter_context(run_context.open_context(plan.budget))
         core_id = held.enter_context(cores.reserve_core(context.recording))
         feed = held.enter_context(live_feed(audience, plan, "virtual"))
         simulator: Simulator | None = None
-        running: list[_Running] = []
+        running: list[RunningProgram] = []
+        links: list[socket.socket] = []
         try:
             with ExitStack() as students:
-                for number, program in enumerate(programs, 1):
-                    first = running[0].student if running else None
-                    each = _start(program, number, submission, plan, context, held, first)
-                    students.enter_context(each.student.ended_at_exit(gently=False))
-                    running.append(each)
-                pids = json.dumps([each.student.pid for each in running])
+                programs = submission.programs
+                first_number = 1 if len(programs) > 1 or programs[0].delay_s else 0
+                for number, program in enumerate(programs, first_number):
+                    first = running[0].process if running else None
+                    its, link = _start(program, number, submission, plan, context, held, first)
+                    students.enter_context(its.process.ended_at_exit(gently=False))
+                    running.append(its)
+                    links.append(link)
+                starts = [(e.process.pid, round(e.program.delay_s * 1e9)) for e in running]
+                pids = json.dumps(starts)
                 more = (pids, str(core_id), json.dumps(asdict(patience)))
                 server = fork_servers.server(fork_servers.SIMULATOR)
-                shared = [fd for e in running for fd in (e.link.fileno(), e.account.page)]
+                pages = [each.account.page for each in running]
+                shared = [fd for pair in zip(map(socket.socket.fileno, links), pages, strict=True)
+                          for fd in pair]  # fmt: skip
                 with start_simulator(
                     fork_servers.MODULE, context, plan, shared, *more, server=server, feed=feed
                 ) as simulator:
-                    for each in running:
-                        each.link.close()
-                    message = _watch(simulator, [e.student.pid for e in running], plan.budget)
+                    for link in links:
+                        link.close()
+                    message = _watch(simulator, [e.process.pid for e in running], plan.budget)
                     told = message.get("programs", ())  # of a run that was made
                     codes = list(map(_exit_code, running, told))
-            if any(each.student.was_lost for each in running):
+            if any(each.process.was_lost for each in running):
                 raise GraderFailure(
                     msg("the process from which a submission's was forked has died")
                 )
             if message["say"] == "refused":
-                reason = Message.parse(message["reason"])
-                return None, reason.map_texts(running[0].submission.with_original_paths)
+                its, reason = running[message["program"]], Message.parse(message["reason"])
+                reason = reason.map_texts(its.submission.with_original_paths)
+                if len(running) > 1:
+                    reason = msg("{why} ({program})", why=reason, program=its.program.name)
+                return None, reason
             marks.update(message["marks"])
             trace, topics = handover.fetch(context.recording, handover.keeper(plan, scene))
         except SceneFailure:
             raise
         except GraderFailure as failure:
-            lost = any(each.student.was_lost for each in running)
+            lost = any(each.process.was_lost for each in running)
             if simulator is None or not simulator.is_driven or lost:
                 raise
-            killed = _ended(running, running[0], context.isolation, started, "killed", None)
+            ends = [ProgramEnd("killed", None, 0.0, has_failed=True) for _ in running]
+            killed = ending_of("virtual", running, ends, context.isolation, started)
             raise SimulatorLost(failure, killed) from failure
-    blamed = _blamed(message, codes)
-    program, its, exit_code = message["programs"][blamed], running[blamed], codes[blamed]
-    how, flags = _judge({**message, **program}, exit_code, patience)
-    flags += map(Message.parse, message["flags"])
+    judged = [
+        _judge({**message, **program}, code, patience)
+        for program, code in zip(message["programs"], codes, strict=True)
+    ]
+    ends = [
+        ProgramEnd(how, code, program["reached_s"], _has_failed(program, code))
+        for (how, _), program, code in zip(judged, message["programs"], codes, strict=True)
+    ]
+    number = blamed(ends)
+    its, program = running[number], message["programs"][number]
+    flags = (*judged[number][1], *map(Message.parse, message["flags"]))
     computes = program["silence"] in COMPUTES
     observations = its.account.observations(its.submission, program["reached_s"], computes=computes)
-    ending = _ended(running, its, context.isolation, started, how, exit_code, tuple(flags))
+    ending = ending_of("virtual", running, ends, context.isolation, started, flags)
     return record(plan, trace, topics, ending, observations), NOTHING
 
 
 def _start(
-    program: Program | None,
+    program: Program,
     number: int,
     submission: Submission,
     plan: Plan,
     context: RunContext,
     held: ExitStack,
     beside: SubmissionProcess | None,
-) -> _Running:
+) -> tuple[RunningProgram, socket.socket]:
     """Start a program; what it needs is released when the context is left.
 
     Args:
-        program: one of several, with its number, from 1; None where the submission starts one.
+        number: of several, from 1; 0 for one alone, which need not wait for its turn.
         beside: the process of the first.
+
+    Returns:
+        The program, and the simulator's end of its link.
     """
-    name, arguments = "", plan.arguments
-    if program is None:
-        number = 0
-    else:
-        name, arguments = f"{program.name}-{number}", program.arguments
-        submission = replace(submission, start=program.entry)
     account = held.enter_context(closing(EvidencePage()))
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     held.enter_context(theirs)
-    scene = load_scene(plan.scene)
+    scene, arguments = load_scene(plan.scene), (*program.arguments, *plan.arguments)
+    start_ns = round(program.delay_s * 1e9)
     with ours:
         fds = (ours.fileno(), account.page)
-        moved, student = context.start(
-            submission,
-            lambda private: command(private, scene.introduction, plan, *fds, arguments, number),
+        moved, process = context.start(
+            submission.alone(program),
+            lambda private: command(
+                private, scene.introduction, plan, *fds, arguments, number, start_ns
+            ),
             fds,
             virtual_environment({}),
-            fork_servers.for_student(submission.root),
+            fork_servers.for_student(program.root),
             beside=beside,
         )
-    return _Running(name, moved, student, account, theirs)
+    return RunningProgram(program, moved, process, account), theirs
 
 
-def _exit_code(each: _Running, ended: dict[str, Any]) -> int | None:
+def _exit_code(each: RunningProgram, ended: dict[str, Any]) -> int | None:
     """Return a program's exit code once it is known why it says nothing more; None without one.
 
     Where it did not end by itself, have it leave its last account.
     """
-    if each.student.ends_for_excess():
+    if each.process.ends_for_excess():
         ended["silence"] = "gone"  # for what it has filled just before
     if ended["silence"] == "gone":
-        return each.student.wait(END_S)
+        return each.process.wait(END_S)
     if ended["silence"] in COMPUTES:
-        each.account.request_dump(each.student.pid)
+        each.account.request_dump(each.process.pid)
     elif ended["silence"] == "":
-        each.account.await_last_write(each.student.pid)  # the run is over
+        each.account.await_last_write(each.process.pid)  # the run is over
     return None
 
 
-def _blamed(message: SimulatorMessage, codes: list[int | None]) -> int:
-    """Return which program a run's outcome is due to: the first that failed, else the first."""
-    programs = message["programs"]
-    failed = [
-        (ended["reached_s"], number)
-        for number, (ended, code) in enumerate(zip(programs, codes, strict=True))
-        if code or ended["silence"] not in ("", "gone")
-    ]
-    return min(failed, default=(0.0, 0))[1]
-
-
-def _ended(
-    running: list[_Running],
-    blamed: _Running,
-    isolation: str,
-    started_s: float,
-    how: Outcome,
-    exit_code: int | None,
-    flags: tuple[Message, ...] = (),
-) -> Ending:
-    """Return how a run has ended; of several programs each line says whose it is."""
-    ending = ended(
-        "virtual", blamed.submission, blamed.student, isolation, started_s, how, exit_code, flags
-    )
-    if len(running) == 1:
-        return ending
-    texts = [each.submission.with_original_paths(each.student.output()) for each in running]
-    lines = [
-        f"[{each.name}] {line}"
-        for each, text in zip(running, texts, strict=True)
-        for line in text.splitlines()
-    ]
-    return ending._replace(output="".join(f"{line}\n" for line in lines))
+def _has_failed(ended: dict[str, Any], exit_code: int | None) -> bool:
+    return bool(exit_code) or ended["silence"] not in ("", "gone")
 
 
 def command(
@@ -258,17 +228,19 @@ def command(
     page: int,
     arguments: Sequence[str],
     number: int = 0,
+    start_ns: int = 0,
 ) -> list[str]:
     """Return the command of a program's process.
 
     Args:
         number: of a program among several, from 1; 0 for one alone.
+        start_ns: when it starts [ns].
     """
     own = submission.interfaces
     known = json.dumps(
         [
             *(introduction.compares_stamps, own.texts, list(own.unlike)),
-            *(plan.cast is not None, number, arguments),
+            *(plan.cast is not None, number, start_ns, arguments),
         ]
     )
     words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]

@@ -16,7 +16,7 @@ from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.set_ups import ConsoleScript, PackageFolder
-from grader.submission.start import EntryPoint
+from grader.submission.start import EntryPoint, Program
 
 
 def shortcomings(
@@ -102,7 +102,8 @@ def _of_setup(
         return
     top, _, _ = script.module.partition(".")
     root = next((r for r in package.roots(top) if (r / top).is_dir()), package.folder.resolve())
-    loaded = read_imports(root, EntryPoint(script.module, script.function)).files
+    entry = EntryPoint(script.module, script.function)
+    loaded = read_imports(root, [Program(script.name, "", script.name, entry, root)]).files
     folders = [file.parent.relative_to(root) for file in loaded]
     parents = dict.fromkeys(
         (script.module.rpartition(".")[0], *(".".join(f.parts) for f in folders))

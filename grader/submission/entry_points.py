@@ -59,11 +59,17 @@ class Packages:
             raise self._several(names) if len(set(names)) > 1 else self._twice(every)
         return every[0] if every else None
 
-    def others(self, chosen: ConsoleScript) -> list[str]:
-        """The names of the scripts that start something else than the chosen one."""
+    def together(self, names: Sequence[str]) -> list[Choice]:
+        """Return the scripts of these names; none unless each is there once."""
+        every = [(package, script) for package in self.readable for script in package.scripts]
+        found = [[choice for choice in every if choice[1].name == name] for name in names]
+        return [each[0] for each in found] if all(len(each) == 1 for each in found) else []
+
+    def others(self, started: Sequence[ConsoleScript]) -> list[str]:
+        """The names of the scripts that start something else than those that are started."""
         every = [script for package in self.readable for script in package.scripts]
-        target = (chosen.module, chosen.function)
-        return [each.name for each in every if (each.module, each.function) != target]
+        targets = {(each.module, each.function) for each in started}
+        return [each.name for each in every if (each.module, each.function) not in targets]
 
     def holding(self, file: Path) -> PackageFolder | None:
         """The package with a setup.py in whose folder a file lies."""

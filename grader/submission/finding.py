@@ -6,10 +6,10 @@ The rules, in order:
 
 0. An archive is unpacked first; so is the only one in a folder that holds no source beside it.
 1. A `.py` file is itself what to start.
-2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml, by
-   their inspection): the one that is asked for; else those that a launch file of the package
-   starts, if it plainly starts several of its programs; else the usual one (`turtle_controller`),
-   else the only one.
+2. In a folder, console scripts of packages (setup.py, setup.cfg, pyproject.toml, by their
+   inspection): the one that is asked for, or those of the launch file that is; else all that the
+   exercise names, where they are there; else those of the only launch file that starts several;
+   else the usual one (`turtle_controller`), else the only one.
 3. Else a Python file that starts itself or has a function `main`: the one that is asked for, else
    the usual one, else `main.py`, else the only one. So in a package whose setup.py
    names no console script.
@@ -20,6 +20,7 @@ What these do not settle is a SubmissionError that lists the candidates.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from sys import stdlib_module_names
@@ -29,7 +30,6 @@ from grader.errors import SubmissionError, UsageError
 from grader.message import Message, joined, msg
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
-    Choice,
     Packages,
     example,
     find_module,
@@ -39,7 +39,6 @@ from grader.submission.entry_points import (
 )
 from grader.submission.folder import (
     HAND_IN,
-    USUAL_NAME,
     SubmissionFolder,
     entries_of,
     files_below,
@@ -51,13 +50,18 @@ from grader.submission.folder import (
     top_of,
 )
 from grader.submission.interfaces import find_interfaces
-from grader.submission.launching import find_launched, is_launch_file
+from grader.submission.launching import (
+    LaunchAsked,
+    StartedScript,
+    find_launched,
+    is_launch_file,
+)
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
 from grader.submission.python_source import read_source
 from grader.submission.refusals import CPP, advice, missing, no_python, readable
 from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, PackageFolder
-from grader.submission.start import EntryPoint, Script, Submission
+from grader.submission.start import EntryPoint, Launch, Program, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -68,7 +72,8 @@ def find(
     path: Path,
     executable: str | None,
     scratch: Path,
-    usual: str = USUAL_NAME,
+    programs: Sequence[str] = (),
+    launch: LaunchAsked | None = None,
 ) -> Submission:
     """Find what to start.
 
@@ -76,7 +81,8 @@ def find(
         executable: chooses among the console scripts or Python files of a folder or zip; a single
             .py file leaves no choice.
         scratch: an empty folder, for what has to be unpacked or mended.
-        usual: is started where there are several and none is asked for.
+        programs: the exercise's; see the rules.
+        launch: the launch file that is asked for.
 
     Raises:
         NotInspected: it is a package; `find_inspected` goes on.
@@ -85,7 +91,14 @@ def find(
         OSError: something is wrong with the machine.
     """
     with readable(path):
-        return _find(path, executable, scratch, usual)
+        found = _find(path, executable, scratch, tuple(programs))
+    if launch is not None:
+        raise SubmissionError(
+            "{name} is no package with launch files, and {file} was asked for",
+            name=found.name,
+            file=shown(launch.file),
+        )
+    return found
 
 
 def find_inspected(
@@ -94,23 +107,27 @@ def find_inspected(
     name: str,
     executable: str | None,
     scratch: Path,
-    usual: str,
+    programs: Sequence[str] = (),
+    launch: LaunchAsked | None = None,
 ) -> Submission:
     """Find what to start of a package that was inspected; see `find`."""
     with readable(asked.base):
-        submitted = SubmissionFolder(shown(name), asked.base, usual)
-        found = _in_folder(submitted, executable, Unpacking(scratch), inspection)
+        submitted = SubmissionFolder(shown(name), asked.base, tuple(programs))
+        file = launch.file if launch else ""
+        found = _in_folder(submitted, executable, Unpacking(scratch), inspection, file)
     for archive in asked.inside:
         found = _with_archive(found, archive)
     return found
 
 
-def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Submission:
+def _find(
+    path: Path, executable: str | None, scratch: Path, programs: tuple[str, ...]
+) -> Submission:
     name = shown(path.name or path.resolve().name)
     if not path.exists():
         raise missing(path)
     if path.is_dir():
-        submitted = SubmissionFolder(name, path.resolve(), usual)
+        submitted = SubmissionFolder(name, path.resolve(), programs)
         return _in_folder(submitted, executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
@@ -132,9 +149,9 @@ def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Subm
                 name=name,
             )
         folder = path.parent.resolve()
-        return _from_file(SubmissionFolder(name, folder, usual), folder / path.name)
+        return _from_file(SubmissionFolder(name, folder, programs), folder / path.name)
     unpacking = Unpacking(scratch)
-    submitted = SubmissionFolder(name, unpacking.unpack(path), usual)
+    submitted = SubmissionFolder(name, unpacking.unpack(path), programs)
     return _in_folder(submitted, executable, unpacking)
 
 
@@ -143,6 +160,7 @@ def _in_folder(
     executable: str | None,
     unpacking: Unpacking,
     inspection: Inspection | None = None,
+    launch: str = "",
 ) -> Submission:
     top = top_of(submitted.base)
     if all(is_junk(entry.name) for entry in entries_of(top)):
@@ -155,7 +173,7 @@ def _in_folder(
         return _in_archive(submitted, archives, executable, unpacking)
     if inspection is None and (folders := _set_ups(submitted, files)):
         raise NotInspected(submitted.base, tuple(folders))
-    found = _among(submitted, files, executable, unpacking, inspection)
+    found = _among(submitted, files, executable, unpacking, inspection, launch)
     interfaces, notes = find_interfaces(submitted, files)
     return replace(found, interfaces=interfaces, notes=(*found.notes, *notes))
 
@@ -166,15 +184,21 @@ def _among(
     executable: str | None,
     unpacking: Unpacking,
     inspection: Inspection | None,
+    launch: str,
 ) -> Submission:
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
-    if inspection and executable is None:
-        launched = find_launched(submitted, packages, inspection)
+    together = () if executable or launch else packages.together(submitted.programs)
+    if len(together) > 1:
+        started = [StartedScript.alone(*choice) for choice in together]
+        return _from_scripts(submitted, packages, started, unpacking.scratch)
+    if inspection and executable is None and not together:
+        launched = find_launched(submitted, packages, inspection, launch)
         if launched is not None:
-            found = _from_script(submitted, packages, launched.first, unpacking.scratch)
-            return launched.start(submitted, found)
+            found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
+            return replace(found, found=launched.found, notes=(*launched.notes, *found.notes))
     if choice := packages.choose(executable):
-        return _from_script(submitted, packages, choice, unpacking.scratch)
+        started = [StartedScript.alone(*choice)]
+        return _from_scripts(submitted, packages, started, unpacking.scratch)
     candidates = [file for file in files if may_be_node(file)]
     if not candidates:
         raise no_python(submitted, files)
@@ -231,35 +255,61 @@ def _set_ups(submitted: SubmissionFolder, files: list[Path]) -> list[str]:
     return [str(folder.relative_to(submitted.base)) for folder in found][:MOST]
 
 
-def _from_script(
-    submitted: SubmissionFolder, packages: Packages, choice: Choice, scratch: Path
+def _from_scripts(
+    submitted: SubmissionFolder,
+    packages: Packages,
+    started: Sequence[StartedScript],
+    scratch: Path,
 ) -> Submission:
-    package, script = choice
-    module = find_module(submitted, package, script)
-    start = EntryPoint(script.module, script.function)
+    """Start console scripts; one by itself is no launch."""
+    modules = [find_module(submitted, each.package, each.script) for each in started]
+    base, notes, added = submitted.base, list[Message](), dict[Path, None]()
+    if any(module.bare for module in modules):
+        # without its __init__.py, Python prefers any installed package of the same name
+        base = scratch / "with_init"
+        notes += copy_folder(submitted.base, base)  # all of it: there may be packages beside
+
+    def placed(path: Path) -> Path:
+        return base / path.relative_to(submitted.base)
+
+    programs = []
+    for each, module in zip(started, modules, strict=True):
+        root = placed(module.root)
+        for folder in module.bare:
+            (root / folder / "__init__.py").touch()
+            added[placed(module.root) / folder / "__init__.py"] = None
+        entry = EntryPoint(each.script.module, each.script.function)
+        programs.append(
+            Program(
+                *(each.name, each.package.name, each.script.name, entry, root),
+                *(each.arguments, each.delay_s),
+            )
+        )
+    first, script = programs[0], started[0].script
     found = msg(
         "console script {script} in {file}",
         script=shown(script.name),
         file=submitted.called(script.file),
     )
-    others = not_started("console script", packages.others(script))
-    notes = (*shortcomings(submitted, package, script), *others)
-    folder = package.folder
-    if not module.bare:
-        return Submission(submitted.name, module.root, start, found, notes=notes, package=folder)
-    # without its __init__.py, Python prefers any installed package of the same name
-    mended = scratch / "with_init"
-    left_out = copy_folder(submitted.base, mended)  # all of it: there may be packages beside
-    root = mended / module.root.relative_to(submitted.base)
-    added = tuple(each / "__init__.py" for each in module.bare)
-    for each in added:
-        (root / each).touch()
-    found = msg(
-        "{found}, with the missing {missing} added", found=found, missing=listed(map(str, added))
+    if len(started) > 1:
+        names = listed(each.script.name for each in started)
+        found = msg("the console scripts {names}", names=names)
+    elif added:
+        missing = listed(str(each.relative_to(first.root)) for each in added)
+        found = msg("{found}, with the missing {missing} added", found=found, missing=missing)
+    short = [*shortcomings(submitted, started[0].package, script)]
+    others = packages.others([each.script for each in started])
+    roots = {each.root for each in programs}
+    root = first.root if len(roots) == 1 else base
+    is_plain = len(programs) == 1 and not first.arguments and not first.delay_s
+    return Submission(
+        *(submitted.name, root, first.entry if is_plain else Launch(tuple(programs)), found),
+        notes=(*short, *not_started("console script", others), *notes),
+        added=tuple(each.relative_to(root) for each in added),
+        package=placed(started[0].package.folder),
+        of_package=first.package,
+        executable=first.executable,
     )
-    folder = mended / folder.relative_to(submitted.base)
-    notes = (*notes, *left_out)
-    return Submission(submitted.name, root, start, found, notes=notes, added=added, package=folder)
 
 
 def _without_script(submitted: SubmissionFolder, package: PackageFolder, file: Path) -> Submission:
@@ -274,7 +324,9 @@ def _without_script(submitted: SubmissionFolder, package: PackageFolder, file: P
     start = EntryPoint(".".join(inside), "main")
     found = msg("function main of {file}", file=submitted.called(file))
     folder = package.folder
-    return Submission(submitted.name, folder, start, found, notes=short, package=folder)
+    return Submission(
+        *(submitted.name, folder, start, found), notes=short, package=folder, executable=file.name
+    )
 
 
 def _unbuilt(submitted: SubmissionFolder, file: Path) -> list[Message]:
@@ -293,9 +345,8 @@ def _from_file(submitted: SubmissionFolder, file: Path) -> Submission:
     called = submitted.called(file)
     is_imported = source.parses and not source.is_refused and source.has_main
     if not is_imported or source.has_guard or source.calls_main:
-        return Submission(
-            submitted.name, file.parent, Script(file), msg("file {file}", file=called)
-        )
+        found = msg("file {file}", file=called)
+        return Submission(submitted.name, file.parent, Script(file), found, executable=file.name)
     # one called like a module of Python may find that loaded already, instead of itself
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
     start = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
@@ -305,7 +356,9 @@ def _from_file(submitted: SubmissionFolder, file: Path) -> Submission:
         file=called,
     )
     found = msg("function main of {file}", file=called)
-    return Submission(submitted.name, file.parent, start, found, notes=(note,))
+    return Submission(
+        submitted.name, file.parent, start, found, notes=(note,), executable=file.name
+    )
 
 
 def _is_source(file: Path) -> bool:

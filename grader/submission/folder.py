@@ -51,7 +51,12 @@ class SubmissionFolder:
 
     name: str  # "alice.zip"
     base: Path  # absolute; messages name paths relative to it
-    usual: str = USUAL_NAME  # of what is started, where there are several
+    programs: tuple[str, ...] = ()  # those of the exercise
+
+    @property
+    def usual(self) -> str:
+        """The name of what is started, where there are several."""
+        return self.programs[0] if self.programs else USUAL_NAME
 
     def called(self, path: Path) -> str:
         """Name a path of the submission in a message."""

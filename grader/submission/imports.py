@@ -4,56 +4,54 @@ from __future__ import annotations
 
 import ast
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from grader.submission.folder import read_bounded, shown
 from grader.submission.python_source import parse
-from grader.submission.start import EntryPoint, Imports, Launch, Script
+from grader.submission.start import Imports, Program, Script
 
 #: What runs together with the statement that it stands in, once and in any case.
 _ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)
 _BODIES: Final = (ast.stmt, ast.ExceptHandler, ast.match_case)
 
 
-def read_imports(
-    root: Path, start: EntryPoint | Script | Launch, only: Path | None = None
-) -> Imports:
+def read_imports(root: Path, programs: Iterable[Program], only: Path | None = None) -> Imports:
     """Read what is started, and what of the submission that imports in turn.
 
     A file that cannot be read or parsed is skipped: the run shows what is wrong with it. So is a
     name in a string that is given to importlib.
 
     Args:
+        root: of the submission.
         only: the one file that is the submission, if it is one: its neighbours are no part of it.
     """
 
-    def files(module: str) -> list[tuple[Path, str]]:
-        return [each for each in _files(root, module) if only is None or each[0] == only]
+    def files(module: str, base: Path) -> list[tuple[Path, str, Path]]:
+        found = ((*each, base) for each in _files(base, module))
+        return [each for each in found if only is None or each[0] == only]
 
     found = Imports()
-    pending: deque[tuple[Path, str, bool]] = deque()  # file, its package, whether surely loaded
-    if isinstance(start, Script):
-        pending.append((start.path, "", True))
-    else:
-        entries = (
-            [start] if isinstance(start, EntryPoint) else [each.entry for each in start.programs]
-        )
-        pending.extend((*file, True) for entry in entries for file in files(entry.module))
+    pending: deque[tuple[Path, str, Path, bool]] = deque()  # file, package, root, surely loaded
+    for each in programs:
+        if isinstance(each.entry, Script):
+            pending.append((each.entry.path, "", each.root, True))
+        else:
+            pending.extend((*file, True) for file in files(each.entry.module, each.root))
     seen: set[tuple[Path, bool]] = set()
     while pending:
-        file, package, is_loaded = pending.popleft()
+        file, package, base, is_loaded = pending.popleft()
         if (file, True) in seen or (file, is_loaded) in seen:
             continue
         seen.add((file, is_loaded))
         for node, always in _statements(file):
             surely = is_loaded and always
             for module in _modules(node, package):
-                pending.extend((*loaded, surely) for loaded in files(module))
+                pending.extend((*loaded, surely) for loaded in files(module, base))
                 top = module.partition(".")[0]
-                if not files(top):
+                if not files(top, base):
                     where = f"{file.relative_to(root)}, line {node.lineno}"
                     names = found.surely if surely else found.perhaps
                     names.setdefault(top, shown(where))

@@ -1,25 +1,23 @@
-"""Finds a launch file that starts several nodes of a package, each in a process."""
+"""Finds the launch file that starts several programs of a submission, each in a process."""
 
 from __future__ import annotations
 
 import json
 import re
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from grader.errors import SubmissionError
-from grader.message import msg
-from grader.submission.building import shortcomings
-from grader.submission.entry_points import Packages, find_module, not_started
-from grader.submission.folder import SubmissionFolder, listed
+from grader.message import Message, msg
+from grader.submission.entry_points import Packages
+from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.set_ups import ConsoleScript, PackageFolder
-from grader.submission.start import EntryPoint, Launch, Program, Submission
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.inspection import trace
     from grader.inspection.answer import Inspection
-    from grader.inspection.trace import LaunchedNode
+    from grader.inspection.trace import LaunchedNode, LaunchFile
 
 _ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
@@ -31,45 +29,58 @@ _NAME: Final = re.compile(r"[A-Za-z_~/{}][\w~/{}.]*")
 
 
 @dataclass(frozen=True)
-class Launched:
-    """A launch file that starts several programs of the package that it lies in."""
+class LaunchAsked:
+    """A launch file that is asked for.
 
-    launch: trace.LaunchFile
+    Attributes:
+        file: its path in the submission, or its name alone.
+        given: values of its arguments.
+    """
+
+    file: str
+    given: Mapping[str, str] = field(default_factory=dict)
+
+
+class StartedScript(NamedTuple):
+    """A console script that is started.
+
+    Attributes:
+        name: as `ros2 launch` prints it.
+        arguments: of ROS, and its own.
+        delay_s: how long after the others [s].
+    """
+
     package: PackageFolder
-    programs: tuple[tuple[ConsoleScript, tuple[str, ...]], ...]  # with their arguments
-    others: tuple[LaunchedNode, ...]  # of other packages, but for the simulator
+    script: ConsoleScript
+    name: str
+    arguments: tuple[str, ...] = ()
+    delay_s: float = 0.0
+
+    @classmethod
+    def alone(cls, package: PackageFolder, script: ConsoleScript) -> StartedScript:
+        """Return one that is started by itself."""
+        return cls(package, script, f"{script.name}-1")
+
+
+@dataclass(frozen=True)
+class Launched:
+    """What a launch file starts.
+
+    Attributes:
+        file: its name.
+        scripts: the submission's.
+        notes: what is left out, and what is not followed.
+    """
+
+    file: str
+    scripts: tuple[StartedScript, ...]
+    notes: tuple[Message, ...]
 
     @property
-    def first(self) -> tuple[PackageFolder, ConsoleScript]:
-        """The program that it starts first."""
-        return self.package, self.programs[0][0]
-
-    def start(self, submitted: SubmissionFolder, found: Submission) -> Submission:
-        """Make of a submission that starts the first program one that starts all of them."""
-        called = submitted.called(self.package.folder / self.launch.file)
-        programs = tuple(
-            Program(script.name, EntryPoint(script.module, script.function), arguments)
-            for script, arguments in self.programs
-        )
-        started = {program.name for program in programs}
-        left = [script.name for script in self.package.scripts if script.name not in started]
-        notes = [*shortcomings(submitted, *self.first), *not_started("console script", left)]
-        if self.others:
-            names = listed(f"{node.package} {node.executable}" for node in self.others)
-            notes.append(
-                msg(
-                    "{file} starts programs of other packages, and these were not: {names}",
-                    file=called,
-                    names=names,
-                )
-            )
-        names = listed(program.name for program in programs)
-        return replace(
-            found,
-            start=Launch(programs),
-            found=msg("{file}, which starts {names}", file=called, names=names),
-            notes=tuple(notes),
-        )
+    def found(self) -> Message:
+        """A sentence for the user."""
+        names = listed(each.script.name for each in self.scripts)
+        return msg("{file}, which starts {names}", file=shown(self.file), names=names)
 
 
 def is_launch_file(file: Path) -> bool:
@@ -78,75 +89,138 @@ def is_launch_file(file: Path) -> bool:
 
 
 def find_launched(
-    submitted: SubmissionFolder, packages: Packages, inspection: Inspection
+    submitted: SubmissionFolder, packages: Packages, inspection: Inspection, asked: str = ""
 ) -> Launched | None:
-    """Find the launch file that starts several programs; None if there is none, or many.
+    """Find the launch file that is asked for, or the one that starts several programs.
 
     Raises:
-        SubmissionError: it starts more than `MOST_PROGRAMS`.
+        SubmissionError: there is no such file, or it starts nothing, or more than `MOST_PROGRAMS`;
+            or none is asked for and several start several.
     """
-    folder = submitted.base / inspection.package
-    package = next((each for each in packages.readable if each.folder == folder), None)
-    setup = inspection.trace.setup
-    if package is None or not package.scripts or setup is None:
-        return None
-    names = {setup.name, setup.told}
-    plain = [each for each in inspection.trace.launches if each.file in inspection.plain]
-    found = [launched for launch in plain if (launched := _launched(launch, package, names))]
-    if len({launched.programs for launched in found}) != 1:
-        return None
-    if len(found[0].programs) > MOST_PROGRAMS:
+    launches = inspection.trace.launches
+    if asked:
+        found = _launched(submitted, packages, inspection, _asked(submitted, launches, asked))
+        if not found.scripts:
+            raise SubmissionError(
+                "{file} starts no program of {name}", file=shown(found.file), name=submitted.name
+            )
+    else:
+        included = {file for order in inspection.orders.values() for file in order.included}
+        every = [
+            _launched(submitted, packages, inspection, each)
+            for each in launches
+            if each.file in inspection.orders and each.file not in included
+        ]
+        several = {each.scripts: each for each in reversed(every) if len(each.scripts) > 1}
+        if len(several) > 1:
+            commands = [f"--launch {shown(each.file)}" for each in reversed(several.values())]
+            raise SubmissionError(
+                "{name} has several launch files that start several programs: choose one with "
+                "{commands}",
+                name=submitted.name,
+                commands=listed(commands),
+            )
+        if not several:
+            return None
+        (found,) = several.values()
+    if len(found.scripts) > MOST_PROGRAMS:
         raise SubmissionError(
             "{file} starts {number} programs; a run may have {most}",
-            file=submitted.called(package.folder / found[0].launch.file),
-            number=len(found[0].programs),
+            file=shown(found.file),
+            number=len(found.scripts),
             most=MOST_PROGRAMS,
         )
-    scripts = (script for script, _ in found[0].programs)
-    try:
-        modules = {find_module(submitted, package, script) for script in scripts}
-    except SubmissionError:  # the one to start alone may be there
-        return None
-    return found[0] if len(modules) == 1 else None  # else they lie in several places
+    return found
 
 
-def _launched(launch: trace.LaunchFile, package: PackageFolder, names: set[str]) -> Launched | None:
-    scripts = {script.name: script for script in package.scripts}
-    nodes = [node for node in launch.nodes if node.package in names]
-    if len(nodes) < 2 or launch.problem or launch.skipped:
-        return None
-    programs = []
-    for node in nodes:
-        arguments = None if node.condition else _arguments(node)
-        if node.executable not in scripts or arguments is None:
-            return None
-        programs.append((scripts[node.executable], arguments))
-    others = [node for node in launch.nodes if node.package not in names]
-    return Launched(
-        launch,
-        package,
-        tuple(programs),
-        tuple(node for node in others if (node.package, node.executable) != _SIMULATOR),
-    )
+def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: str) -> LaunchFile:
+    """Return the launch file of a path or a name.
+
+    Raises:
+        SubmissionError: there is none, or several are; or it could not be evaluated.
+    """
+    named = [each for each in launches if f"/{each.file}".endswith(f"/{asked.removeprefix('./')}")]
+    if len(named) != 1:
+        text = msg("{name} has no launch file {file}; it has: {names}")
+        if named:
+            text = msg("{name} has several launch files {file}: {names}. Give its path.")
+        names = listed(each.file for each in named or launches) or msg("none")
+        raise SubmissionError(text.given(name=submitted.name, file=shown(asked), names=names))
+    if problem := named[0].problem:
+        from grader.inspection.error_texts import described
+
+        raise SubmissionError(
+            "{file} cannot be launched: {why}", file=shown(named[0].file), why=described(problem)
+        )
+    return named[0]
 
 
-def _arguments(node: LaunchedNode) -> tuple[str, ...] | None:
-    """The arguments that `ros2 launch` gives a program; None where they are not all known."""
+def _launched(
+    submitted: SubmissionFolder, packages: Packages, inspection: Inspection, launch: LaunchFile
+) -> Launched:
+    """Return what a launch file starts of a submission's programs."""
+    own = {each.name: each for each in packages.readable}
+    setup = inspection.trace.setup
+    folder = submitted.base / inspection.package
+    judged = next((each for each in packages.readable if each.folder == folder), None)
+    if setup is not None and judged is not None:  # by both of its names
+        own |= {setup.name: judged, setup.told: judged}
+    order = inspection.orders[launch.file]
+    scripts, others, later, notes = list[StartedScript](), list[str](), list[str](), list[Message]()
+    for number, (node, delay_s) in enumerate(zip(launch.nodes, order.delays_s, strict=False), 1):
+        package = own.get(node.package)
+        named = {} if package is None else {each.name: each for each in package.scripts}
+        if node.later:
+            later.append(node.executable)
+        elif package is not None and node.executable in named:
+            words, lacking = _arguments(node)
+            notes += _not_given(launch.file, node, lacking)
+            name = f"{node.executable}-{number}"
+            script = StartedScript(package, named[node.executable], name, words, delay_s)
+            scripts.append(script)
+        elif (node.package, node.executable) != _SIMULATOR:
+            others.append(f"{node.package} {node.executable}")
+    file = shown(launch.file)
+    if others := [*others, *launch.processes]:
+        text = msg("{file} starts programs of other packages, and these were not: {names}")
+        notes.append(text.given(file=file, names=listed(others)))
+    if later:
+        text = msg("{file} starts programs after an event, and these were not: {names}")
+        notes.append(text.given(file=file, names=listed(later)))
+    if order.ignored:
+        text = msg("of {file} was not followed: {names}")
+        notes.append(text.given(file=file, names=listed(order.ignored)))
+    return Launched(launch.file, tuple(scripts), tuple(notes))
+
+
+def _arguments(node: LaunchedNode) -> tuple[tuple[str, ...], list[str]]:
+    """The arguments that `ros2 launch` gives a program; and what cannot be given."""
     space = node.namespace
     space = space if space.startswith("/") or not space else f"/{space}"
     rules = [f"{old}:={new}" for old, new in (("__node", node.name), ("__ns", space)) if new]
     rules += node.remappings
-    names = [part for rule in rules for part in rule.split(":=")]
-    names += [each.name for each in node.parameters]
-    is_complete = all(map(_NAME.fullmatch, names)) and all(
-        each.text < 0 for each in node.parameters
-    )
-    if not is_complete or any("\0" in word for word in node.arguments):
-        return None
-    words = [word for rule in rules for word in ("-r", rule)]
-    for each in node.parameters:
-        words += ["-p", f"{each.name}:={_yaml(each.value)}"]
-    return (*node.arguments, *(["--ros-args", *words] if words else []))
+    given = [("-r", rule, all(map(_NAME.fullmatch, rule.split(":=")))) for rule in rules]
+    given += [
+        (
+            *("-p", f"{each.name}:={_yaml(each.value)}"),
+            each.text < 0 and _NAME.fullmatch(each.name) is not None,
+        )
+        for each in node.parameters
+    ]
+    words = [word for option, rule, fits in given if fits for word in (option, rule)]
+    plain = [word for word in node.arguments if "\0" not in word]
+    lacking = [rule for _, rule, fits in given if not fits]
+    return (*plain, *(["--ros-args", *words] if words else [])), lacking
+
+
+def _not_given(file: str, node: LaunchedNode, lacking: Sequence[str]) -> Iterator[Message]:
+    if lacking:
+        yield msg(
+            "{program} of {file} was started without {names}",
+            program=shown(node.executable),
+            file=shown(file),
+            names=listed(lacking),
+        )
 
 
 def _yaml(value: str) -> str:

@@ -11,7 +11,7 @@ import mmap
 import os
 import signal
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
@@ -25,9 +25,10 @@ from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
 from grader.submission import folder, python_source, unpacking, whole
 from grader.submission.finding import find, find_inspected, may_be_node
-from grader.submission.folder import USUAL_NAME, is_source, shown
+from grader.submission.folder import is_source, shown
 from grader.submission.imports import read_imports
 from grader.submission.interfaces import completed, undeclared
+from grader.submission.launching import LaunchAsked
 from grader.submission.lint import lint
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
@@ -146,7 +147,8 @@ def read(
     scratch: Path,
     *,
     is_started: bool = True,
-    usual: str = USUAL_NAME,
+    programs: Sequence[str] = (),
+    launch: LaunchAsked | None = None,
     again: tuple[NotInspected, Inspection] | None = None,
     interfaces: Mapping[str, str] = MappingProxyType({}),
 ) -> Submission:
@@ -168,9 +170,9 @@ def read(
         if not is_started:
             return whole.find(path, executable, scratch)
         if again is None:
-            started = find(path, executable, scratch, usual)
+            started = find(path, executable, scratch, programs, launch)
         else:
-            started = find_inspected(*again, name, executable, scratch, usual)
+            started = find_inspected(*again, name, executable, scratch, programs, launch)
         return _with_its_source(started, path, interfaces)
 
     with mmap.mmap(-1, mmap.PAGESIZE) as place:  # shared with the copy
@@ -296,7 +298,7 @@ def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -
     """Add to a submission what its source shows: imports, interfaces, faults, lint findings."""
     only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
     assert not isinstance(found.start, Whole)
-    imports = read_imports(found.root, found.start, only)
+    imports = read_imports(found.root, found.programs, only)
     refused = python_source.byte_faults(imports.files, found.root)
     notes, shows = [*refused, *found.notes], lint(found.root, imports.files)
     defined = completed(found.interfaces, theirs)

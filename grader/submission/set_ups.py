@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Final
 from grader.errors import SubmissionError
 from grader.message import NOTHING, Message, msg
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
+from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.manifest import read_manifest
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.inspection.answer import SetUp, SetUpFacts
@@ -62,6 +64,14 @@ class PackageFolder:
     folder: Path
     scripts: tuple[ConsoleScript, ...] = ()
     set_up: SetUp | None = None
+
+    @property
+    def name(self) -> str:
+        """That of the package: by its package.xml, else its set-up, else its folder."""
+        file = self.folder / MANIFEST
+        manifest = read_manifest(file) if file.is_file() else None
+        told = self.declared.name if self.declared else ""
+        return (manifest.name if manifest else "") or told or self.folder.name
 
     @property
     def declared(self) -> SetUpFacts | None:

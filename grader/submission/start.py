@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from grader.message import Message
 from grader.recording.observations import LintFinding
@@ -35,16 +36,30 @@ class Script:
 
 @dataclass(frozen=True)
 class Program:
-    """One of several that are started."""
+    """A program that is started, in a process of its own.
 
-    name: str  # of the console script
-    entry: EntryPoint
-    arguments: tuple[str, ...]  # of ROS: "--ros-args", "-r", "__ns:=/left"
+    Attributes:
+        name: as `ros2 launch` prints it, 'talker-1'; of a script that of its file.
+        package: in which it is; '' for a script.
+        executable: its console script, or its file.
+        entry: what runs.
+        root: comes first on its sys.path, and is its working directory; absolute.
+        arguments: "--ros-args", "-r", "__ns:=/left".
+        delay_s: how long after the others it is started [s].
+    """
+
+    name: str
+    package: str
+    executable: str
+    entry: EntryPoint | Script
+    root: Path
+    arguments: tuple[str, ...] = ()
+    delay_s: float = 0.0
 
 
 @dataclass(frozen=True)
 class Launch:
-    """Start several programs of a package, each in a process of its own, as a launch file does."""
+    """Start programs as a launch file does."""
 
     programs: Annotated[tuple[Program, ...], not_empty]
 
@@ -98,6 +113,9 @@ class Submission:
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none
     package: Path | None = field(default=None, compare=False)
+    #: the package and the console script of its program; '' and the file of a script
+    of_package: str = field(default="", compare=False)
+    executable: str = field(default="", compare=False)
     #: a trace of the scene package, where its whole package was inspected
     seen: object = field(default=None, compare=False, metadata=UNSTORED)
     #: the processor time that the inspection took [s]
@@ -115,20 +133,40 @@ class Submission:
         """The read-only folder of its files, as its runs find it."""
         return self.copy.folder if self.copy else self.root
 
+    @property
+    def programs(self) -> tuple[Program, ...]:
+        """What is started, in this order."""
+        if isinstance(self.start, Launch):
+            return self.start.programs
+        assert not isinstance(self.start, Whole)
+        name = f"{self.executable}-1" if self.of_package else self.executable
+        return (Program(name, self.of_package, self.executable, self.start, self.root),)
+
+    def alone(self, program: Program) -> Submission:
+        """Return the submission with one of its programs."""
+        return replace(self, start=program.entry, root=program.root)
+
     def moved(self, folder: Path) -> Submission:
         """Return the submission as one run finds it, copied to another folder."""
-        before = self.folder
-        if folder == before:
+        if folder == self.folder:
             return self
+        moved = self.with_paths(lambda path: folder / path.relative_to(self.folder))
+        return replace(moved, copy=self.copy and self.copy.moved(folder))
 
-        def there(path: Path) -> Path:
-            return folder / path.relative_to(before)
+    def with_paths(self, there: Callable[[Path], Path]) -> Submission:
+        """Return the submission with each path of its files replaced."""
 
-        start = self.start
-        if isinstance(start, Script):
-            start = replace(start, path=there(start.path))
-        package, copy = self.package and there(self.package), self.copy and self.copy.moved(folder)
-        return replace(self, root=there(self.root), start=start, package=package, copy=copy)
+        def placed(start: Any) -> Any:
+            if isinstance(start, Script):
+                return replace(start, path=there(start.path))
+            if isinstance(start, Launch):
+                return Launch(tuple(map(placed, start.programs)))
+            if isinstance(start, Program):
+                return replace(start, entry=placed(start.entry), root=there(start.root))
+            return start
+
+        package = self.package and there(self.package)
+        return replace(self, root=there(self.root), start=placed(self.start), package=package)
 
     def with_original_paths(self, text: str) -> str:
         """Replace the copy's paths in a run's output by the original ones."""

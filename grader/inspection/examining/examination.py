@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from grader import strict_json
 from grader.inspection import trace
+from grader.inspection.answer import LaunchOrder
 from grader.inspection.examining import launches, paths
 from grader.inspection.examining.launch_record import Evaluated
 from grader.inspection.examining.layout import Installed, Workspace
@@ -51,15 +53,19 @@ class Examination:
         workspace: where it is laid out.
         texts: long texts, descriptions above all, which a trace names by their numbers.
         evaluated: each launch file that came to its end, and all that was recorded of it.
-        plain: launch files in which there is nothing but nodes.
+        orders: of the launch files that came to their end.
         obstacle: why nothing is evaluated any more, if anything.
     """
 
-    def __init__(self, workspace: Workspace, scratch: Path) -> None:
+    def __init__(
+        self, workspace: Workspace, scratch: Path, given: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
+        """`given`: values of launch arguments."""
         self.workspace = workspace
+        self._given = given
         self.texts: list[str] = []
         self.evaluated: list[tuple[LaunchFile, Evaluated]] = []
-        self.plain: list[str] = []
+        self.orders: dict[str, LaunchOrder] = {}
         self.obstacle = NOTHING
         self._scratch = scratch
         self._files: dict[str, tuple[Installed, str]] = {}
@@ -72,7 +78,7 @@ class Examination:
             is_whole: whether more is examined than what launch files would start.
         """
         workspace = self.workspace
-        self._files = _launch_files(workspace)
+        self._files = _launch_files(workspace, with_beside=not is_whole)
         self._miss("a setup.py")
         evaluated = [self._launch(file) for file in self._files]
         setup = self.shown(self._setup())
@@ -138,8 +144,9 @@ class Examination:
         except Ended as ended:
             return _ended(file, self.shown(ended.problem))
         self.evaluated.append((launch, found))
-        if not found.others:
-            self.plain.append(file)
+        named = {f"{of.name}/{own}": name for name, (of, own) in self._files.items()}
+        included = (named[each] for each in found.order.included if each in named)
+        self.orders[file] = replace(found.order, included=tuple(included))
         return launch
 
     def _evaluate(self, file: str) -> tuple[LaunchFile, Evaluated]:
@@ -147,7 +154,8 @@ class Examination:
         if self.obstacle:
             raise Ended.by_limit(msg("cannot be evaluated: {why}", why=self.obstacle))
         try:
-            answer = self.step(partial(launches.evaluate, self.workspace, *self._files[file]))
+            evaluate = partial(launches.evaluate, self.workspace, *self._files[file], self._given)
+            answer = self.step(evaluate)
         finally:
             if gone := self._miss(file):
                 raise Ended.by_limit(msg("takes away {file}", file=gone))
@@ -212,7 +220,8 @@ class Examination:
                 continue
             again: list[str] = []
             with suppress(Ended):
-                evaluate = partial(launches.evaluate, self.workspace, *self._files[launch.file])
+                files = self._files[launch.file]
+                evaluate = partial(launches.evaluate, self.workspace, *files, self._given)
                 again = attempt(partial(_lacking_files, self.step(evaluate)))
             known = {each.name for each in launch.lacking}
             other = next((name for name in again if name not in known), "")
@@ -220,8 +229,12 @@ class Examination:
                 found[number] = replace(launch, moved=other[:1000])
 
 
-def _launch_files(workspace: Workspace) -> dict[str, tuple[Installed, str]]:
-    """By the names of a trace: the launch files; those of the packages beside if it has none."""
+def _launch_files(workspace: Workspace, *, with_beside: bool) -> dict[str, tuple[Installed, str]]:
+    """By the names of a trace: the launch files.
+
+    Args:
+        with_beside: those of the packages beside as well, and not only if it has none.
+    """
     judged = workspace.judged
     own = {file: (judged, file) for file in judged.package.launch_files}
     beside = {
@@ -230,7 +243,8 @@ def _launch_files(workspace: Workspace) -> dict[str, tuple[Installed, str]]:
         if each is not judged
         for file in each.package.launch_files
     }
-    return dict(list((own or beside).items())[:_MOST_LAUNCHES])
+    found = {**own, **beside} if with_beside else own or beside
+    return dict(list(found.items())[:_MOST_LAUNCHES])
 
 
 def _lacking_files(answer: Any) -> list[str]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
+from grader.inspection.answer import LaunchOrder
 from grader.inspection.examining import commands, external, known, paths
 from grader.inspection.examining.layout import Workspace
 from grader.inspection.examining.steps import LIMITS, NotKnown, end_of, it
@@ -29,6 +30,14 @@ LONG: Final = 300
 _MOST: Final = 200
 #: So much of what a program says is kept, from its end.
 _LONGEST_SAID: Final = 1000
+#: Actions that decide what is started, and are followed.
+FOLLOWED: Final = (
+    *("DeclareLaunchArgument", "GroupAction", "IncludeLaunchDescription", "LaunchDescription"),
+    *("LogInfo", "Node", "OpaqueFunction", "PushROSNamespace", "PushRosNamespace"),
+    *("ROSTimer", "ResetLaunchConfigurations", "SetLaunchConfiguration", "SetParameter"),
+    *("SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime", "TimerAction"),
+    "UnsetLaunchConfiguration",
+)
 _FILE_OPTIONS: Final = ("-d", "--display-config", "-file", "--file")
 #: How the names of files end that a node may be told to read.
 SUFFIXES: Final = (
@@ -48,7 +57,7 @@ class Evaluated:
         refused: what xacro said where it made nothing.
         borrowed: packages that are not there, with files of the submission's.
         missing: packages that were asked for, and are not there.
-        others: kinds of actions, but for nodes.
+        order: of its nodes.
     """
 
     launch: LaunchFile
@@ -57,7 +66,7 @@ class Evaluated:
     refused: tuple[str, ...]
     borrowed: tuple[str, ...]
     missing: tuple[str, ...]
-    others: tuple[str, ...]
+    order: LaunchOrder
 
 
 class LaunchRecord:
@@ -75,7 +84,9 @@ class LaunchRecord:
         self._refused: list[str] = []
         self._borrowed: list[str] = []
         self._skipped: list[Skipped] = []
-        self._others: list[str] = []
+        self._delays_s: list[float] = []
+        self._included: list[str] = []
+        self._ignored: list[str] = []
         self._texts: list[str] = []
         self._depth = 0
         #: descriptions that were read, in their order
@@ -105,7 +116,7 @@ class LaunchRecord:
             tuple(self._refused),
             tuple(self._borrowed),
             tuple(missing),
-            tuple(self._others),
+            LaunchOrder(tuple(self._delays_s), tuple(self._included), tuple(self._ignored)),
         )
 
     # Called by the doubles ----------------------------------------------------------------------
@@ -116,10 +127,10 @@ class LaunchRecord:
         parameters = tuple(self._parameter(each) for each in given)
         self._look_for_paths(node["arguments"])
         words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
-        _add(
-            self._nodes,
-            LaunchedNode(**{**self._from_where(node), **words, "parameters": parameters}),
-        )
+        if len(self._nodes) < _MOST:
+            made = {**self._from_where(node), **words, "parameters": parameters}
+            self._nodes.append(LaunchedNode(**made))
+            self._delays_s.append(self.context.delay_s)
 
     def skipped(self, node: dict[str, Any]) -> None:
         """A node that would start on a condition that is not met."""
@@ -140,8 +151,12 @@ class LaunchRecord:
 
     def visited(self, kind: str) -> None:
         """An action of whatever kind."""
-        if kind not in ("LaunchDescription", "Node"):
-            _add(self._others, kind[:LONG])
+        if kind not in FOLLOWED:
+            self.ignored(kind)
+
+    def ignored(self, what: str) -> None:
+        """An action or an option that changes what is started, and is not followed."""
+        _add(self._ignored, what[:LONG])
 
     def process(self, words: list[str]) -> None:
         """Another program that would start; a node, where it is plainly one."""
@@ -220,6 +235,9 @@ class LaunchRecord:
         if self._depth > 20:
             raise RecursionError("launch files that include each other")
         self.context.launch_configurations.update(arguments)
+        for each in self._place.all:
+            if own := each.own(path, self._place.prefix):
+                _add(self._included, f"{each.name}/{own}"[:LONG])
         self.run(path)
         self._depth -= 1
         return True

@@ -10,6 +10,7 @@ import builtins
 import io
 import os
 import sys
+from collections.abc import Mapping
 from typing import Any, Final
 
 from grader import strict_json
@@ -25,14 +26,19 @@ DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_in
 _MOST: Final = 200
 
 
-def evaluate(place: Workspace, of: Installed, file: str) -> Any:
-    """In a copy of the process: a launch file of a package, as `Evaluated` in JSON."""
+def evaluate(place: Workspace, of: Installed, file: str, given: Mapping[str, str]) -> Any:
+    """In a copy of the process: a launch file of a package, as `Evaluated` in JSON.
+
+    Args:
+        given: values of its arguments.
+    """
     prepare(place)
     from launch import LaunchContext
 
     record = LaunchRecord(place)
     record.context = LaunchContext()
     record.context.record = record
+    record.context.launch_configurations.update(given)
     watch_files(record, place)
     installed = {source: path for path, source in of.files.items()}
     if file in installed:

@@ -14,10 +14,11 @@ import json
 import sys
 import tempfile
 import traceback
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from pkgutil import resolve_name
+from types import MappingProxyType
 
 ROOT = Path(__file__).resolve().parents[3]
 if __name__ == "__main__":
@@ -25,7 +26,7 @@ if __name__ == "__main__":
 
 from grader import linux  # noqa: E402
 from grader.inspection import trace  # noqa: E402
-from grader.inspection.answer import Inspection, SetUp  # noqa: E402
+from grader.inspection.answer import Inspection, LaunchOrder, SetUp  # noqa: E402
 from grader.inspection.examining import layout, leftovers, packages, setup_call  # noqa: E402
 from grader.inspection.examining.examination import Examination  # noqa: E402
 from grader.inspection.examining.layout import Workspace  # noqa: E402
@@ -64,6 +65,7 @@ def inspect(
     package: str = "",
     folder: str = "",
     inspectors: Sequence[str] | None = (),
+    given: Mapping[str, str] = MappingProxyType({}),
 ) -> Inspection:
     """Return what set-ups name to be started, and what there is of one package.
 
@@ -75,6 +77,7 @@ def inspect(
             the one that describes a robot.
         inspectors: where the inspectors are that examine it besides; None where only what launch
             files would start is asked for.
+        given: values of launch arguments.
     """
     root = root.resolve()
     evaluated = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in set_ups)
@@ -87,10 +90,12 @@ def inspect(
     best = max(evaluated, key=worth).folder if evaluated else ""
     judged = root / best if evaluated else Path(folder).resolve() if folder else None
     try:
-        found, plain = attempt(lambda: _examine(root, package, scratch, judged, known, inspectors))
+        found, orders = attempt(
+            lambda: _examine(root, package, scratch, judged, known, inspectors, given)
+        )
     except Ended as ended:  # nothing that a step was made of: so much can be said
-        found, plain = PackageTrace(setup=layout.nothing("", ended.problem)), ()
-    return Inspection(evaluated, best, found, plain)
+        found, orders = PackageTrace(setup=layout.nothing("", ended.problem)), {}
+    return Inspection(evaluated, best, found, orders)
 
 
 def _examine(
@@ -100,8 +105,9 @@ def _examine(
     folder: Path | None,
     known: layout.Known,
     inspectors: Sequence[str] | None,
-) -> tuple[PackageTrace, tuple[str, ...]]:
-    """What was found, and launch files in which there is nothing but nodes.
+    given: Mapping[str, str],
+) -> tuple[PackageTrace, Mapping[str, LaunchOrder]]:
+    """What was found, and the orders of launch files.
 
     Args:
         known: set-ups that were evaluated already.
@@ -111,7 +117,7 @@ def _examine(
     found = packages.find(root)
     one = packages.judged(found, asked, folder)
     if one is None:
-        return PackageTrace(), ()
+        return PackageTrace(), {}
     with suppress(ImportError):  # once, and not by each copy that runs it
         import xacro  # noqa: F401
     prefix = scratch / "prefix"
@@ -122,10 +128,10 @@ def _examine(
     laid = {id(each): layout.lay_out(each, root, prefix, known) for each in found}
     judged, everything = laid[id(one)], tuple(laid.values())
     place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
-    examination = Examination(place, scratch)
+    examination = Examination(place, scratch, given)
     examine = [resolve_name(place).examine for place in inspectors or ()]
     of_package = examination.trace(examine, is_whole=inspectors is not None)
-    return of_package, tuple(examination.plain)
+    return of_package, examination.orders
 
 
 if __name__ == "__main__":

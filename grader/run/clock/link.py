@@ -211,6 +211,11 @@ class SimulatorLink(EndpointRegistry):
 
     # Time -------------------------------------------------------------------------------------
 
+    def start_at(self, now_ns: int) -> None:
+        """Begin later than the run; nothing has happened here before."""
+        self._move_to(now_ns)
+        self._scheduler.set_now(now_ns)
+
     @guarded
     def advance(self, deadline_ns: int) -> None:
         """Move time to the next event: our deadline, or something from the simulator."""

@@ -4,8 +4,8 @@
 
 The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to a program's
 process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
-each program; PIDS a JSON list of their processes, CORE the processor core that all are to share
-(-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
+each program; PIDS a JSON list of their processes, each with when it is started [ns]; CORE the
+processor core that all are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
 
 One program runs at a time, in the order in which they were started, until it asks for time
 (`grader.run.lockstep.protocol`). What it has sent goes on its way then, and who gets something, or
@@ -82,6 +82,7 @@ class LinkedProgram:
     Attributes:
         number: from 1, in the order in which they were started.
         request: its last one.
+        start_ns: when it is started; before that it is new.
         since_ns: when its last turn began; until_ns: before this it could pass time alone.
         inbox, news: what it gets at its next turn.
         waiting_bytes: of the former.
@@ -92,7 +93,9 @@ class LinkedProgram:
 
     number: int
     link: StudentLink
-    request: Advance = field(default_factory=lambda: Advance(0, False, 0, 0))
+    start_ns: int = 0
+    is_new: bool = True
+    request: Advance = field(init=False)
     since_ns: int = 0
     until_ns: int = 0
     inbox: Parcels = field(default_factory=list)
@@ -101,6 +104,13 @@ class LinkedProgram:
     is_awake: bool = False
     is_gone: bool = False
     vain: int = 0
+
+    def __post_init__(self) -> None:
+        self.request = Advance(self.start_ns, False, 0, 0)
+
+    def is_due(self, now_ns: int) -> bool:
+        """Whether it can run at this moment."""
+        return self.request.target_ns <= now_ns or (self.is_awake and not self.is_new)
 
     def has(self, number: int) -> bool:
         """Whether it has the endpoint of a number."""
@@ -112,7 +122,7 @@ class Hub:
 
     def __init__(
         self,
-        links: Sequence[StudentLink],
+        links: Sequence[tuple[StudentLink, int]],
         plan: Plan,
         share_core: Callable[[], None],
         on_met: Callable[[], None],
@@ -121,17 +131,23 @@ class Hub:
         """Set up the scene.
 
         Args:
+            links: those of the programs, each with when it is started [ns].
             share_core: called once, when a program first asks for time.
             on_met: called once, at the first packet of a program.
         """
-        self._members = [LinkedProgram(number, link) for number, link in enumerate(links, 1)]
+        #: the number of the program that was heard last
+        self.heard_last = 1
+        self._members = [
+            LinkedProgram(number, link, start_ns)
+            for number, (link, start_ns) in enumerate(links, 1)
+        ]
         self._on_met = on_met
         self._share_core = share_core
         #: the time that all programs have reached, and that of the scene, whole ticks
         self._time_ns = self.now_ns = 0
         self._clocks = rclpy_clocks.install(lambda: self.now_ns, lambda: None)
         waitsets.install(waitsets.Waiter(self._clocks.attach))
-        self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, links[0].flag)
+        self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, links[0][0].flag)
         endpoints.install(self._registry)
         actions.install()
         if plan.definitions or plan.own_definitions:
@@ -161,12 +177,12 @@ class Hub:
         """Give turns to the end of the run; return how it ended."""
         self._registry.pop_table()
         for member in self._members:
-            member.link.introduce(self._introduction())
-            self._hear(member)
+            if not member.start_ns:
+                self._start(member)
         self._mark("connected")
         self._share_core()
         while not self._reason and (alive := self._alive()):
-            due = [m for m in alive if m.is_awake or m.request.target_ns <= self._time_ns]
+            due = [member for member in alive if member.is_due(self._time_ns)]
             if due:
                 for member in due:
                     if not self._reason:
@@ -200,6 +216,12 @@ class Hub:
             "flags": [f.serialise() for f in (*flags, *self._simulation.flags, *more)],
             "marks": self._marks,
         }
+
+    def _start(self, member: LinkedProgram) -> None:
+        """Let a program run for the first time."""
+        member.is_new, member.news, member.is_awake = False, [], False
+        member.link.introduce(self._introduction())
+        self._hear(member)
 
     def _alive(self) -> list[LinkedProgram]:
         return [member for member in self._members if not member.is_gone]
@@ -247,8 +269,11 @@ class Hub:
         """
         tick = self._tick
         self._distribute()
+        if member.is_new:
+            self._start(member)
+            return
         others = [each for each in self._alive() if each is not member]
-        is_alone = is_alone and not any(each.is_awake for each in others)
+        is_alone = is_alone and not any(each.is_due(self._time_ns) for each in others)
         until_ns = min((each.request.target_ns for each in others), default=NEVER)
         member.since_ns = self._time_ns
         member.until_ns = until_ns if is_alone else self._time_ns
@@ -275,6 +300,7 @@ class Hub:
 
     def _hear(self, member: LinkedProgram) -> None:
         """Handle what a program says, until it asks for time or says nothing more."""
+        self.heard_last = member.number
         while (packet := member.link.receive()) is not None:
             if "met" not in self._marks:
                 self._mark("met")
@@ -417,12 +443,12 @@ def main(argv: list[str]) -> int:
     protect_process()
     control = socket.socket(fileno=int(argv[0]))
     *ends, pids, core, patience, shown = argv[3:]
-    students = json.loads(pids)
-    limits = Patience(**json.loads(patience))
-    links = [
-        StudentLink(socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
-        for link, page, pid in zip(ends[::2], ends[1::2], students, strict=True)
-    ]
+    starts, limits = json.loads(pids), Patience(**json.loads(patience))
+    students = [pid for pid, _ in starts]
+    links = []
+    for link, page, (pid, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
+        its = (socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
+        links.append((StudentLink(*its), start_ns))
 
     def share_core() -> None:
         # for all, from here: a submission's process may not choose its cores
@@ -437,7 +463,8 @@ def main(argv: list[str]) -> int:
         hub.save(Path(argv[1]))
         send_message(control, "done", **ending)
     except Refused as refusal:
-        send_message(control, "refused", reason=refusal.why.serialise())
+        why = refusal.why.serialise()
+        send_message(control, "refused", reason=why, program=hub.heard_last - 1)
     except SceneFailure as failure:
         send_message(control, "failed", reason=failure.message.serialise())
     return 0

@@ -1,14 +1,11 @@
-"""Starts a submission in real time: its program, or several programs of it.
+"""Starts a program of a submission in real time.
 
     python main.py INTRODUCTION EVIDENCE ROOT module:function
     python main.py INTRODUCTION EVIDENCE ROOT path/to/script.py [function]
-    python main.py INTRODUCTION EVIDENCE ROOT PROGRAMS
 
 INTRODUCTION is a JSON list of three lists: topics and services that have to be connected when the
 submission gets them, see `Introduced`; and the program's arguments. EVIDENCE is the page of its
-account, -1 for none. PROGRAMS is a JSON list of [name, module:function, arguments], as a launch
-file starts them: each becomes a process of its own, without an account, which several must not
-write.
+account, -1 for none.
 
 Started by path, not with -m, and of the grader it imports only what loads and observes a program,
 so that the submission finds the interpreter as on a student's machine. ROOT comes first on the
@@ -24,12 +21,9 @@ if __name__ == "__main__":
 import atexit
 import functools
 import json
-import os
-import signal
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable
 from typing import Any
 
 from grader.run.observe import hooks
@@ -38,26 +32,13 @@ from grader.run.student import loading
 
 
 def main() -> None:
-    """Start one program, or several, and leave with the exit code."""
+    """Start a program, and leave with its exit code."""
     _, introduction, page, root, target, *more = sys.argv
-    if target.startswith("["):
-        sys.exit(start_all(introduction, root, json.loads(target)))
     sys.exit(start(introduction, int(page), root, target, more[0] if more else None))
 
 
-def start(
-    introduction: str,
-    page: int,
-    root: str,
-    target: str,
-    function: str | None,
-    words: Sequence[str] = (),
-) -> int:
-    """Run a program to its end; return its exit code.
-
-    Args:
-        words: its arguments.
-    """
+def start(introduction: str, page: int, root: str, target: str, function: str | None) -> int:
+    """Run a program to its end; return its exit code."""
     now_s, started_s = time.monotonic, time.monotonic()
     witness = Witness(page, root, lambda: now_s() - started_s, hooks.is_met)
     hooks.install_in_threads(witness)
@@ -72,7 +53,7 @@ def start(
         if code is not None:
             witness.ending.returned(code)
 
-    loading.hide_the_grader(root, target, words or arguments)
+    loading.hide_the_grader(root, target, arguments)
     sys.meta_path.insert(
         0,
         loading.AfterImport(
@@ -88,48 +69,6 @@ def start(
     )
     witness.lines.install()
     code = loading.call(root, target, function, witness.ending.raised)
-    return code
-
-
-# Several programs -----------------------------------------------------------------------------
-
-
-def start_all(introduction: str, root: str, programs: Sequence[tuple[str, str, list[str]]]) -> int:
-    """Start several programs and wait for all; return the exit code of the first that failed."""
-    names = {}
-    for name, target, words in programs:
-        pid = os.fork()
-        if pid == 0:
-            sys.exit(start(introduction, -1, root, target, None, words))
-        names[pid] = name
-    _ignore_questions()
-    try:
-        code = _wait(names)
-    except KeyboardInterrupt:
-        code = 130
-    if code < 0:
-        signal.signal(-code, signal.SIG_DFL)
-        os.kill(os.getpid(), -code)
-    return code
-
-
-def _ignore_questions() -> None:
-    """Ignore the signals that ask a program for a dump: this process is none."""
-    for number in (signal.SIGUSR1, signal.SIGUSR2, *range(signal.SIGRTMIN, signal.SIGRTMAX + 1)):
-        with suppress(OSError, ValueError):
-            signal.signal(number, signal.SIG_IGN)
-
-
-def _wait(names: dict[int, str]) -> int:
-    """Wait until all have ended; return the exit code of the first that failed, else 0."""
-    code = 0
-    while names:
-        pid, status = os.wait()
-        name = names.pop(pid, None)
-        ended = os.waitstatus_to_exitcode(status)
-        if name is not None and ended:
-            print(f"{name} has ended with exit code {ended}", file=sys.stderr, flush=True)
-            code = code or ended
     return code
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from grader.message import msg, plain_text
 from grader.recording import reading, saving
-from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
+from grader.recording.recording import ProgramRun, PublishedTopic, Recording, Recordings, Run
 from grader.recording.subject import Start
 from grader.run.finish import Ending, record
 from grader.run.handover import Plan
@@ -79,7 +79,9 @@ def test_every_kind_of_input_survives_in_its_order(tmp_path):
 
 def test_the_facts_about_a_run_survive(recorded, tmp_path):
     ticks, simulated_s = recorded.run.ticks, recorded.run.simulated_s
-    told = ("ROS domain 77", (plain_text("odd"), msg("ü {at}", at=1.5)), 42, "i", "late")
+    programs = (ProgramRun("a-1", "b", "a", "killed", -9, "ü\n"),)
+    flags = (plain_text("odd"), msg("ü {at}", at=1.5))
+    told = ("ROS domain 77", flags, 42, "i", "late", programs)
     run = Run("virtual", "crashed", -11, ticks, simulated_s, 1.5, recorded.run.trace_sha256, *told)
     changed = replace(
         recorded,

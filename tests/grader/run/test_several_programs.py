@@ -8,7 +8,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.recording.recording import Recording
-from grader.run import virtual_time
+from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
@@ -199,6 +199,79 @@ def test_who_computes_without_end_stalls_alone_and_the_first_that_failed_is_to_b
     assert "[raises-1] ValueError: no more" in recording.output
     times_s = [event.tick * 0.016 for event in recording.trace.of_kind(CmdVel)]
     assert times_s[-1] > 5.5, times_s  # who drives goes on to the end
+
+
+STAMPS = """
+import time
+
+def main():
+    for _ in range(3):
+        print(round(time.time() % 1000, 3), flush=True)
+        time.sleep(0.5)
+"""
+LATER = """
+from launch import LaunchDescription
+from launch.actions import TimerAction
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    node = Node(package="company", executable="stamps")
+    return LaunchDescription([TimerAction(period=1.25, actions=[node]), node, *OTHERS])
+""".replace("*OTHERS", 'Node(package="company", executable="drives")')
+
+
+def test_what_is_to_start_later_runs_from_then_on_and_what_came_before_is_known(
+    tmp_path: Path,
+) -> None:
+    folder = package(tmp_path, stamps=STAMPS, drives=DRIVES)
+    (folder / "launch/all.launch.py").write_text(LATER)
+    recording, again = recorded(folder), recorded(folder)
+    begin = float(said(recording, "stamps-2")[0])
+    late = [float(line) - begin for line in said(recording, "stamps-1")]
+    assert late == pytest.approx([1.25, 1.75, 2.25], abs=1e-3)
+    assert recording.run.trace_sha256 == again.run.trace_sha256
+    assert recording.output == again.output
+
+
+@pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
+def test_each_program_is_in_the_result_with_how_it_has_ended(tmp_path: Path, clock: str) -> None:
+    folder = package(tmp_path, raises=RAISES, stamps=STAMPS, drives=DRIVES)
+    with open_submission(folder) as submission:
+        run = {"virtual": virtual_time.run, "real": real_time.run}[clock](submission, PLAN).run
+    ends = [(each.name, each.exit_code) for each in run.programs]
+    assert ends == [("raises-1", 1), ("stamps-2", 0), ("drives-3", None)]
+    assert (run.outcome, run.programs[0].outcome) == ("crashed", "crashed")
+    assert {(each.package, each.executable) for each in run.programs} == {
+        ("company", "raises"), ("company", "stamps"), ("company", "drives")
+    }  # fmt: skip
+    assert run.programs[0].output.endswith("ValueError: no more\n")
+    assert len(run.programs[1].output.splitlines()) == 3
+
+
+STARTS_A_PROCESS = """
+import subprocess
+
+def main():
+    subprocess.run(["true"])
+"""
+
+
+@pytest.mark.more
+def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_path: Path) -> None:
+    folder = package(tmp_path, drives=DRIVES, starts=STARTS_A_PROCESS)
+    with open_submission(folder) as submission:
+        run = virtual_time.run(submission, PLAN).run
+    assert run.time == "real"
+    flag = "graded in real time, because the submission starts another program (true) (starts-2)"
+    assert str(run.flags[0]) == flag
+    assert [each.name for each in run.programs] == ["drives-1", "starts-2"]
+
+
+def test_a_program_alone_is_in_the_result_too() -> None:
+    with open_submission(SUBMISSIONS / "quick_spiral.py") as submission:
+        (program,) = virtual_time.run(submission, PLAN).run.programs
+    told = (program.name, program.package, program.executable)
+    assert told == ("quick_spiral.py", "", "quick_spiral.py")
 
 
 def test_a_ninth_program_is_refused(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.submission.imports import read_imports
-from grader.submission.start import EntryPoint, Imports, Script
+from grader.submission.start import EntryPoint, Imports, Program, Script
 from tests.files import lay
 
 FALLBACK = """
@@ -20,11 +20,15 @@ except ImportError:
 
 def of_file(folder: Path, text: str) -> Imports:
     lay(folder, {"node.py": text})
-    return read_imports(folder, Script(folder / "node.py"))
+    return of_entry(folder, Script(folder / "node.py"))
 
 
 def of_module(folder: Path, module: str) -> Imports:
-    return read_imports(folder, EntryPoint(module, "main"))
+    return of_entry(folder, EntryPoint(module, "main"))
+
+
+def of_entry(folder: Path, entry: EntryPoint | Script) -> Imports:
+    return read_imports(folder, [Program("node-1", "", "node", entry, folder)])
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.run.opening import open_submission
+from grader.submission.launching import LaunchAsked
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 from tests.files import lay
 from tests.grader.submission.test_building import PACKAGE
@@ -29,9 +30,22 @@ TWO = PACKAGE | {
 }
 
 
-def opened(path: Path, executable: str | None = None) -> Submission:
-    with open_submission(path, executable) as submission:
+def opened(
+    path: Path,
+    executable: str | None = None,
+    launch: LaunchAsked | None = None,
+    programs: tuple[str, ...] = (),
+) -> Submission:
+    with open_submission(path, executable, launch, programs=programs) as submission:
         return submission
+
+
+def names(submission: Submission) -> list[str]:
+    return [program.name for program in submission.programs]
+
+
+def notes(submission: Submission) -> list[str]:
+    return [str(note) for note in submission.notes]
 
 
 @pytest.mark.parametrize(
@@ -74,32 +88,83 @@ def test_what_a_node_is_given_becomes_the_arguments_of_ros(
 def test_however_a_launch_file_is_written_what_counts_is_what_it_starts(
     tmp_path: Path, body: str
 ) -> None:
-    start = opened(lay(tmp_path, TWO | {"launch/a.launch.py": HEAD + body})).start
-    assert isinstance(start, Launch)
-    assert [program.name for program in start.programs] == ["turtle_controller", "pen_node"]
+    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": HEAD + body}))
+    assert names(submission) == ["turtle_controller-1", "pen_node-2"]
+
+
+THIRD = "Node(package='spiral', executable='pen_node'{})"
+EVENT = "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))"
 
 
 @pytest.mark.parametrize(
-    "more",
+    ("more", "third", "note"),
     [
-        "DeclareLaunchArgument('a', default_value='b')",
-        "ExecuteProcess(cmd=['ls'])",
-        "Node(package='spiral', executable='pen_node', name='a b')",
-        "Node(package='spiral', executable='pen_node', condition=IfCondition('true'))",
-        "TimerAction(period=1.0, actions=[Node(package='spiral', executable='pen_node')])",
+        ("DeclareLaunchArgument('a', default_value='b')", "", ""),
+        (THIRD.format(""), "pen_node-3", ""),
+        (THIRD.format(", condition=IfCondition('true')"), "pen_node-3", ""),
+        (THIRD.format(", condition=IfCondition('false')"), "", ""),
+        (
+            THIRD.format(", name='a b'"),
+            "pen_node-3",
+            "pen_node of launch/a.launch.py was started without __node:=a b",
+        ),
+        (
+            "ExecuteProcess(cmd=['ls', '-l'])",
+            "",
+            "launch/a.launch.py starts programs of other packages, and these were not: ls -l",
+        ),
+        (
+            EVENT.format(THIRD.format("")),
+            "",
+            "launch/a.launch.py starts programs after an event, and these were not: pen_node",
+        ),
+        (
+            THIRD.format(", respawn=True, additional_env={'A': 'b'}"),
+            "pen_node-3",
+            "of launch/a.launch.py was not followed: respawn of pen_node, additional_env of pen_",
+        ),
     ],
 )
-def test_a_launch_file_that_does_more_than_start_nodes_settles_nothing(
-    tmp_path: Path, more: str
+def test_what_a_launch_file_does_besides_is_followed_or_named(
+    tmp_path: Path, more: str, third: str, note: str
 ) -> None:
     head = "from launch.actions import *\nfrom launch.conditions import IfCondition\n"
+    head += "from launch.event_handlers import OnShutdown\n"
     text = head + LIST.format(f"{DRIVE}, {PENS}, {more}")
     submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
-    assert submission.start == EntryPoint("spiral.node", "main")
-    assert str(submission.notes[-1]) == (
-        "launch/a.launch.py was evaluated and not run: turtle_controller was started by itself, "
-        "without pen_node"
+    assert names(submission) == ["turtle_controller-1", "pen_node-2", *([third] if third else [])]
+    assert any(each.startswith(note) for each in notes(submission)) or not note
+
+
+def test_what_a_timer_starts_is_started_later(tmp_path: Path) -> None:
+    timer = "TimerAction(period={}, actions=[{}])"
+    inner = timer.format("1.5", PENS)
+    text = f"from launch.actions import *\n{LIST.format(timer.format(1, f'{DRIVE}, {inner}'))}"
+    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
+    assert [program.delay_s for program in submission.programs] == [1.0, 2.5]
+
+
+def test_what_is_set_for_all_nodes_of_a_group_is_given_to_each(tmp_path: Path) -> None:
+    given = "PushRosNamespace('left'), SetParameter('rate', 2), SetRemap('a', 'b')"
+    text = f"from launch.actions import *\nfrom launch_ros.actions import *\n{LIST}".format(
+        f"GroupAction([{given}, {DRIVE}]), {PENS}"
     )
+    first, second = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text})).programs
+    words = ("--ros-args", "-r", "__ns:=/left", "-r", "a:=b", "-p", "rate:=2")
+    assert (first.arguments, second.arguments) == (words, ())
+
+
+INCLUDES = HEAD.replace("import launch_ros", "from launch.actions import *\nimport launch_ros") + (
+    "    part = __file__.replace('all', 'part')\n"
+    f"    return LaunchDescription([IncludeLaunchDescription(part), {DRIVE}])\n"
+)
+
+
+def test_a_launch_file_that_another_includes_is_none_to_choose(tmp_path: Path) -> None:
+    part = LIST.format(f"{PENS}, {PENS}")
+    files = {"launch/all.launch.py": INCLUDES, "launch/part.launch.py": part}
+    submission = opened(lay(tmp_path, TWO | files))
+    assert names(submission) == ["pen_node-1", "pen_node-2", "turtle_controller-3"]
 
 
 def test_a_launch_file_in_xml_is_evaluated_too(tmp_path: Path) -> None:
@@ -115,10 +180,14 @@ def test_a_launch_file_in_xml_is_evaluated_too(tmp_path: Path) -> None:
 
 def test_several_nodes_of_a_launch_file_are_started(tmp_path: Path) -> None:
     submission = opened(lay(tmp_path, TWO | {"launch/both.launch.py": BOTH}))
+    root = submission.root
     assert submission.start == Launch(
         (
-            Program("turtle_controller", EntryPoint("spiral.node", "main"), ()),
-            Program("pen_node", EntryPoint("spiral.pens", "main"), ()),
+            Program(
+                *("turtle_controller-1", "spiral", "turtle_controller"),
+                *(EntryPoint("spiral.node", "main"), root),
+            ),
+            Program("pen_node-2", "spiral", "pen_node", EntryPoint("spiral.pens", "main"), root),
         )
     )
     assert (
@@ -133,9 +202,7 @@ def test_it_settles_what_to_start_where_no_script_has_the_usual_name(tmp_path: P
         name: text.replace("turtle_controller", "drive")
         for name, text in (TWO | {"launch/both.launch.py": BOTH}).items()
     }
-    start = opened(lay(tmp_path, files)).start
-    assert isinstance(start, Launch)
-    assert [program.name for program in start.programs] == ["drive", "pen_node"]
+    assert names(opened(lay(tmp_path, files))) == ["drive-1", "pen_node-2"]
 
 
 def test_who_asks_for_one_program_gets_that_alone(tmp_path: Path) -> None:
@@ -189,10 +256,67 @@ def test_what_ros2_launch_would_not_find_is_told(tmp_path: Path) -> None:
     assert any("starts turtle_controller.py, which setup.py" in str(remark) for remark in remarks)
 
 
-def test_two_launch_files_that_differ_settle_nothing(tmp_path: Path) -> None:
-    other = LIST.format(f"{PENS}, {DRIVE}")
-    lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": other})
-    assert opened(tmp_path).start == EntryPoint("spiral.node", "main")
+OTHER = LIST.format(f"{PENS}, {DRIVE}")
+
+
+def test_of_two_launch_files_one_has_to_be_chosen(tmp_path: Path) -> None:
+    lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER})
+    with pytest.raises(SubmissionError) as caught:
+        opened(tmp_path)
+    said = "choose one with --launch launch/a.launch.py, --launch launch/b.launch.py"
+    assert said in str(caught.value)
+    for file in ("b.launch.py", "launch/b.launch.py", "./launch/b.launch.py"):
+        chosen = opened(tmp_path, launch=LaunchAsked(file))
+        assert names(chosen) == ["pen_node-1", "turtle_controller-2"]
+
+
+def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_arguments(
+    tmp_path: Path,
+) -> None:
+    node = "Node(package='spiral', executable=LaunchConfiguration('which'), name='n')"
+    head = "from launch.actions import *\nfrom launch.substitutions import *\n"
+    text = head + LIST.format(f"DeclareLaunchArgument('which'), {node}")
+    lay(tmp_path, TWO | {"launch/a.launch.py": text})
+    asked = LaunchAsked("a.launch.py", {"which": "pen_node"})
+    assert names(opened(tmp_path, launch=asked)) == ["pen_node-1"]
+    assert opened(tmp_path, launch=asked).programs[0].arguments[-1] == "__node:=n"
+    with pytest.raises(SubmissionError, match="was not provided"):
+        opened(tmp_path, launch=LaunchAsked("a.launch.py"))
+
+
+def test_a_launch_file_that_is_asked_for_and_not_there_is_told(tmp_path: Path) -> None:
+    lay(tmp_path, TWO | {"launch/a.launch.py": BOTH})
+    with pytest.raises(SubmissionError, match=r"no launch file c.launch.py; it has: launch/a"):
+        opened(tmp_path, launch=LaunchAsked("c.launch.py"))
+    with pytest.raises(SubmissionError, match="no package with launch files"):
+        opened(tmp_path / "spiral/node.py", launch=LaunchAsked("a.launch.py"))
+
+
+def test_the_programs_of_an_exercise_are_started_where_they_are_there(tmp_path: Path) -> None:
+    lay(tmp_path, TWO | {"launch/a.launch.py": BOTH})
+    both = opened(tmp_path, programs=("pen_node", "turtle_controller"))
+    assert names(both) == ["pen_node-1", "turtle_controller-1"]
+    assert names(opened(tmp_path, programs=("pen_node",))) == ["pen_node-1"]
+    others = opened(tmp_path, programs=("talker", "listener"))
+    assert names(others) == ["turtle_controller-1", "pen_node-2"]  # by the launch file
+
+
+def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path: Path) -> None:
+    other = {
+        name.replace("spiral", "pens"): text.replace("spiral", "pens")
+        for name, text in PACKAGE.items()
+    }
+    other["setup.py"] = other["setup.py"].replace("turtle_controller", "pen_node")
+    for folder, files in (("spiral", PACKAGE), ("pens", other)):
+        lay(tmp_path / "src" / folder, files)
+    launch = LIST.format(f"{DRIVE}, {PENS.replace('spiral', 'pens')}")
+    bringup = {"package.xml": PACKAGE["package.xml"].replace("spiral", "bringup")}
+    bringup |= {"CMakeLists.txt": "project(bringup)\n", "launch/all.launch.py": launch}
+    lay(tmp_path / "src/bringup", bringup)
+    submission = opened(tmp_path)
+    assert names(submission) == ["turtle_controller-1", "pen_node-2"]
+    assert [each.package for each in submission.programs] == ["spiral", "pens"]
+    assert [each.root.name for each in submission.programs] == ["spiral", "pens"]
 
 
 def test_a_launch_file_from_somewhere_else_is_not_read(tmp_path: Path) -> None:

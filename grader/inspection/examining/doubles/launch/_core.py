@@ -71,6 +71,7 @@ class LaunchContext:
         self.locals_: dict[str, Any] = {}
         self.record = Record()
         self.is_later = False
+        self.delay_s = 0.0
         self.depth = 0
 
     @property

@@ -25,6 +25,9 @@ from launch._core import (
 from grader.inspection.examining.steps import not_known
 from grader.message import msg
 
+#: Nothing starts later [s].
+_LONGEST_S = 1e6
+
 
 class DeclareLaunchArgument(Action):
     def __init__(
@@ -133,10 +136,17 @@ class TimerAction(Action):
         self, *, period: Any, actions: Iterable[Any], cancel_on_shutdown: Any = True, **kwargs: Any
     ) -> None:
         super().__init__(**kwargs)
+        self.period = period
         self.actions = list(actions)
 
-    def execute(self, context: LaunchContext) -> list[Any]:
-        return self.actions
+    def execute(self, context: LaunchContext) -> None:
+        given = self.period
+        seconds = float(given if isinstance(given, int | float) else text_of(context, given))
+        if not 0 <= seconds <= _LONGEST_S:
+            raise ValueError(f"a period of {seconds} s")
+        before, context.delay_s = context.delay_s, context.delay_s + seconds
+        walk(self.actions, context)
+        context.delay_s = before
 
 
 class OpaqueFunction(Action):
@@ -201,6 +211,8 @@ class ExecuteLocal(Action):
             normalize_to_list_of_substitutions(output)
         self.process_description = process_description
         self._on_exit = on_exit
+        #: options that are not followed
+        self.ignored = ["respawn"] if respawn else []
 
     def execute(self, context: LaunchContext) -> None:
         words = [text_of(context, word) for word in self.process_description.cmd]
@@ -229,6 +241,8 @@ class ExecuteProcess(ExecuteLocal):
             ),
             **kwargs,
         )
+        given = {"prefix": prefix, "cwd": cwd, "env": env, "additional_env": additional_env}
+        self.ignored += [name for name, value in given.items() if value]
 
     @property
     def cmd(self) -> list[Any]:

@@ -29,7 +29,7 @@ from launch_ros.parameter_descriptions import (
 
 #: What evaluates launch files.
 _OURS = str(Path(__file__).resolve().parents[2])
-_NAMESPACE, _PARAMETERS = "ros_namespace", "global_params"
+_NAMESPACE, _PARAMETERS, _REMAPPINGS = "ros_namespace", "global_params", "ros_remaps"
 
 
 class Node(ExecuteProcess):
@@ -81,12 +81,15 @@ class Node(ExecuteProcess):
                 "arguments": [text_of(context, each) for each in self._arguments],
                 "parameters": self._evaluated(context),
                 "remappings": [
-                    f"{text_of(context, a)}:={text_of(context, b)}" for a, b in self._remappings
+                    f"{text_of(context, a)}:={text_of(context, b)}"
+                    for a, b in (*context.locals_.get(_REMAPPINGS, ()), *self._remappings)
                 ],
                 "later": context.is_later,
                 **self._told(),
             }
         )
+        for option in self.ignored:
+            record.ignored(f"{option} of {executable}")
         self._afterwards(context)
 
     def skip(self, context: LaunchContext) -> None:
@@ -246,6 +249,11 @@ class SetParametersFromFile(_SetsParameters):
 class SetRemap(Action):
     def __init__(self, src: Any, dst: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        self._pair = _pair((src, dst))
+
+    def execute(self, context: LaunchContext) -> None:
+        known = context.locals_.get(_REMAPPINGS, ())
+        context.locals_[_REMAPPINGS] = (*known, self._pair)
 
 
 class SetROSLogDir(Action):

@@ -1,0 +1,94 @@
+"""The programs of a submission in a run: each in a confined process, with an account of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from grader.message import Message
+from grader.recording.recording import LONGEST_OUTPUT, Clock, Outcome, ProgramRun
+from grader.run.evidence import EvidencePage
+from grader.run.finish import Ending, ended
+from grader.run.processes.started_process import SubmissionProcess
+from grader.submission.start import Program, Submission
+
+
+class RunningProgram(NamedTuple):
+    """A program whose process was started.
+
+    Attributes:
+        submission: with its paths in the copy of that process.
+    """
+
+    program: Program
+    submission: Submission
+    process: SubmissionProcess
+    account: EvidencePage
+
+    def output(self) -> str:
+        """Return what it has printed."""
+        return self.submission.with_original_paths(self.process.output())
+
+
+class ProgramEnd(NamedTuple):
+    """How a program has ended.
+
+    Attributes:
+        at_s: when, by the clock of the run [s].
+        has_failed: whether that is why something is missing.
+    """
+
+    outcome: Outcome
+    exit_code: int | None
+    at_s: float
+    has_failed: bool
+
+
+def blamed(ends: Sequence[ProgramEnd]) -> int:
+    """Return which program a run's outcome is due to: the first that failed.
+
+    Without one it is the first that still ran, else the first.
+    """
+    failed = [(end.at_s, number) for number, end in enumerate(ends) if end.has_failed]
+    if failed:
+        return min(failed)[1]
+    return next((number for number, end in enumerate(ends) if end.exit_code is None), 0)
+
+
+def ending_of(
+    clock: Clock,
+    running: Sequence[RunningProgram],
+    ends: Sequence[ProgramEnd],
+    isolation: str,
+    since_s: float,
+    flags: tuple[Message, ...] = (),
+) -> Ending:
+    """Return the ending of a run that is over; of several programs each line says whose it is.
+
+    Args:
+        since_s: when the run began, on the machine's monotonic clock [s].
+    """
+    number = blamed(ends)
+    its, end = running[number], ends[number]
+    made = ended(
+        *(clock, its.submission, its.process, isolation, since_s),
+        *(end.outcome, end.exit_code, flags),
+    )
+    texts = [each.output() for each in running]
+    programs = tuple(
+        ProgramRun(
+            *(each.program.name, each.program.package, each.program.executable),
+            *(end.outcome, end.exit_code, text[-LONGEST_OUTPUT:]),
+        )
+        for each, end, text in zip(running, ends, texts, strict=True)
+    )
+    made = made._replace(run=replace(made.run, programs=programs))
+    if len(running) == 1:
+        return made
+    lines = [
+        f"[{each.program.name}] {line}\n"
+        for each, text in zip(running, texts, strict=True)
+        for line in text.splitlines()
+    ]
+    return made._replace(output="".join(lines))
