@@ -30,7 +30,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from PIL import Image
 
@@ -69,17 +69,7 @@ class Replay:
     snapshots: dict[str, Canvas] = field(default_factory=dict)
 
 
-class ReplayObserver(Protocol):
-    """Follows a replay tick by tick."""
-
-    def begin(self, arena: Arena) -> None:
-        """Receive the arena before the first tick; the replay begins with changes made here."""
-
-    def after_tick(self, arena: Arena, readings: Mapping[str, Reading]) -> None:
-        """Receive the arena after a tick, and what every turtle has published in it."""
-
-
-def replay(scenario: dict[str, Any], observer: ReplayObserver | None = None) -> Replay:
+def replay(scenario: dict[str, Any]) -> Replay:
     """Run a scenario from its first to its last tick.
 
     Raises:
@@ -88,12 +78,8 @@ def replay(scenario: dict[str, Any], observer: ReplayObserver | None = None) -> 
     by_tick = events_by_tick(scenario)
     player = _Player()
     _begin(player.arena, scenario.get("start"))
-    if observer is not None:
-        observer.begin(player.arena)
     for tick in range(1, scenario["ticks"] + 1):
-        readings = player.play_tick(tick, by_tick[tick])
-        if observer is not None:
-            observer.after_tick(player.arena, readings)
+        player.play_tick(tick, by_tick[tick])
     return Replay({"scenario": scenario, **player.result()}, player.arena, player.snapshots)
 
 
@@ -190,8 +176,8 @@ class _Player:
         self.snapshots: dict[str, Canvas] = {}
         self.arena = Arena((self._on_notice,))
 
-    def play_tick(self, tick: int, inputs: list[tuple[int, Event]]) -> Mapping[str, Reading]:
-        """Apply the inputs of a tick, update the turtles, and return what they publish."""
+    def play_tick(self, tick: int, inputs: list[tuple[int, Event]]) -> None:
+        """Apply the inputs of a tick, and update the turtles."""
         self.tick = tick
         for index, event in inputs:
             try:
@@ -201,12 +187,10 @@ class _Player:
                 raise ScenarioError(f"{where}: {error}") from None
             if answer is not None:
                 self.responses.append({"tick": tick, "event": index, **answer})
-        readings = self.arena.tick()
-        self._record(readings)
+        self._record(self.arena.tick())
         for _, event in inputs:
             if isinstance(event, kinds.Snapshot):
                 self._keep_drawing(event.name)
-        return readings
 
     def _apply(self, event: Event) -> dict[str, Any] | None:
         """Apply an event, and return the answer to its caller, if there is one."""

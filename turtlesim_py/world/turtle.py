@@ -162,9 +162,14 @@ class Turtle:
         reading = Reading(
             self._pose(), canvas.color_at(self.x_m * METER_PX, self.y_down_m * METER_PX)
         )
-        if not (fuzzy_equal(self.x_m, old_x) and fuzzy_equal(self.y_down_m, old_y)):
-            self._draw_from(old_x, old_y, canvas)
+        self._draw_way(old_x, old_y, canvas)
         return reading
+
+    def go_to(self, x: float, y: float, theta: float, canvas: Canvas) -> None:
+        """Be at (x, y) [m, y up], heading theta [rad]; draw the way there as an update does."""
+        old_x, old_y = self.x_m, self.y_down_m
+        self.place(x, y, theta)
+        self._draw_way(old_x, old_y, canvas)
 
     @property
     def is_busy(self) -> bool:
@@ -239,6 +244,10 @@ class Turtle:
         speed = math.sqrt(self.lin_x * self.lin_x + self.lin_y * self.lin_y)
         heading, turning = self.heading_rad, self.ang
         return Pose._make(float32s(self.x_m, SIZE_M - self.y_down_m, heading, speed, turning))
+
+    def _draw_way(self, old_x: float, old_y: float, canvas: Canvas) -> None:
+        if not (fuzzy_equal(self.x_m, old_x) and fuzzy_equal(self.y_down_m, old_y)):
+            self._draw_from(old_x, old_y, canvas)
 
     def _draw_from(self, old_x: float, old_y: float, canvas: Canvas) -> None:
         if self.pen_on:

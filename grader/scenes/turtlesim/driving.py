@@ -57,9 +57,7 @@ def drive(
 
 def as_commanded(trace: TurtleTrace, start: Start | None) -> TurtleTrace:
     """Return where the same inputs would have taken the turtle if it obeyed them as they are."""
-    inputs: dict[int, list[Event]] = defaultdict(list)
-    for event in trace.events:
-        inputs[event.tick].append(event)
+    inputs = trace.by_tick()
 
     def repeat(tick: int, _: Pose | None, arena: Arena) -> None:
         for event in inputs[tick]:

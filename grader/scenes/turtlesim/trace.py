@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import NamedTuple, Self, TypeVar
@@ -90,6 +91,13 @@ class TurtleTrace:
         """Return the inputs of one kind, in order; of a kind that names a turtle, those to it."""
         found = (event for event in self.events if isinstance(event, kind))
         return [event for event in found if getattr(event, "turtle", turtle) == turtle]
+
+    def by_tick(self) -> Mapping[int, list[Event]]:
+        """Return the inputs of each tick, in order; none for a tick without."""
+        found: dict[int, list[Event]] = defaultdict(list)
+        for event in self.events:
+            found[event.tick].append(event)
+        return found
 
     def trajectory(self, turtle: str = FIRST_TURTLE) -> Trajectory:
         """Return what a turtle published; empty where there was none of that name."""

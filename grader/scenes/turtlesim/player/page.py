@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import base64
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from grader.recording.playback import Line, Playback, PlayedRun, Sent
@@ -17,7 +17,7 @@ from grader.scenes import joined
 from grader.scenes.turtlesim.player.replay import animate
 from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
 from turtlesim_py.world import picture
-from turtlesim_py.world.events import to_json
+from turtlesim_py.world.events import Event, to_json
 from turtlesim_py.world.turtle import TICK_S
 
 #: Services of the node, not of a turtle.
@@ -97,17 +97,15 @@ def first_difference(mine: TurtleTrace, other: TurtleTrace) -> dict[str, Any] | 
 
     `{"tick", "mine": [...], "other": [...]}`, with the inputs of that tick as JSON.
     """
-    first, second = _by_tick(mine), _by_tick(other)
+    first, second = mine.by_tick(), other.by_tick()
     for tick in sorted(first.keys() | second.keys()):
-        if first.get(tick, []) != second.get(tick, []):
-            return {"tick": tick, "mine": first.get(tick, []), "other": second.get(tick, [])}
+        one, two = _inputs(first.get(tick, ())), _inputs(second.get(tick, ()))
+        if one != two:
+            return {"tick": tick, "mine": one, "other": two}
     return None
 
 
-def _by_tick(trace: TurtleTrace) -> dict[int, list[Any]]:
-    """Return the inputs by tick, without the ids of goals, which are random."""
-    by_tick: dict[int, list[Any]] = defaultdict(list)
-    for event in trace.events:
-        data = to_json(event)
-        by_tick[event.tick].append({key: data[key] for key in data if key not in ("id", "tick")})
-    return dict(by_tick)
+def _inputs(events: Iterable[Event]) -> list[dict[str, Any]]:
+    """Return inputs as JSON, without the ids of goals, which are random."""
+    found = map(to_json, events)
+    return [{key: each[key] for key in each if key not in ("id", "tick")} for each in found]
