@@ -47,14 +47,12 @@ class Libc:
 
 
 def like_macos() -> None:
-    """No Linux: no /proc, no namespaces, nothing that only its kernel does; rcl is no librcl.so."""
+    """No Linux: no /proc, no namespaces, nothing that only its kernel does."""
     for name in OF_LINUX:
         vars(os).pop(name, None)
     original, pair = ctypes.CDLL, socket.socketpair
 
     def load(name: str | None, *args: Any, **more: Any) -> Any:
-        if name in ("librcl.so", "librcl_action.so"):
-            raise OSError(f"{name}: no such file")
         found = original(name, *args, **more)
         return Libc(found) if name is None else found
 

@@ -116,17 +116,3 @@ def test_the_teleop_says_what_is_missing(tmp_path: Path) -> None:
     assert done.stderr.endswith(
         "turtle_teleop_key: this system has no termios, which gives single keys\n"
     )
-
-
-def test_the_node_looks_for_arrivals_itself_where_rcl_has_another_name(tmp_path: Path) -> None:
-    code = """
-import rclpy
-from turtlesim_py.ros.executor import TickExecutor
-rclpy.init()
-node = rclpy.create_node("node")
-executor = TickExecutor(node)
-executor.watch_arrivals()
-print(executor._arrivals)
-"""
-    done = Elsewhere("macos", tmp_path).run("-c", code)
-    assert done.stdout == "None\n", done.stderr

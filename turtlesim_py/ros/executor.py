@@ -6,12 +6,10 @@ than everything else in a tick. This one keeps its wait set until the node's ent
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
-from typing import Any, ClassVar
+from typing import Any
 
-from rclpy.action import ActionServer
 from rclpy.event_handler import EventHandler
 from rclpy.exceptions import InvalidHandle
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -20,61 +18,11 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.waitable import NumberOfEntities, Waitable
 
-#: How often it polls what is not counted [spins]: QoS events, which bring no more than a
-#: warning in the log, and old goals that can be forgotten.
+#: How often it polls QoS events [spins], which bring no more than a warning in the log.
 QUIET_SPINS = 16
 
 #: Gets the name of what was served, and the exception.
 OnFailure = Callable[[str, Exception], None]
-
-
-class Arrivals:
-    """Counts what arrives, so that entities are polled only when something has.
-
-    To poll all entities of a node is the dearest part of a tick in which nothing arrives, and
-    mostly nothing does. rcl accepts a C function that the middleware's threads call, with a pointer
-    that we choose. libc's `sem_post(semaphore)` fits: where nobody waits for the semaphore it only
-    counts. A Python function needs the interpreter's lock, while the middleware holds a lock.
-
-    Raises:
-        OSError: the libraries of rcl cannot be found by their names.
-    """
-
-    #: Never freed: the middleware may count as long as the process lives.
-    _semaphores: ClassVar[list[ctypes.Array[ctypes.c_uint64]]] = []
-
-    def __init__(self) -> None:
-        self._rcl = ctypes.CDLL("librcl.so")
-        self._rcl_action = ctypes.CDLL("librcl_action.so")
-        self._count = ctypes.cast(ctypes.CDLL(None).sem_post, ctypes.c_void_p)
-        # Zeros are a new semaphore; its first word is not 0 any more when it has counted.
-        self._semaphore = (ctypes.c_uint64 * 4)()
-        self._semaphores.append(self._semaphore)
-
-    def watch(self, entity: Subscription | Service | ActionServer) -> None:
-        """Count for this entity too; at once if something has already arrived."""
-        if isinstance(entity, Subscription):
-            setters = [self._rcl.rcl_subscription_set_on_new_message_callback]
-        elif isinstance(entity, Service):
-            setters = [self._rcl.rcl_service_set_on_new_request_callback]
-        else:
-            setters = [
-                self._rcl_action.rcl_action_server_set_goal_service_callback,
-                self._rcl_action.rcl_action_server_set_cancel_service_callback,
-                self._rcl_action.rcl_action_server_set_result_service_callback,
-            ]
-        handle = entity._handle if isinstance(entity, ActionServer) else entity.handle
-        for setter in setters:
-            setter.argtypes = [ctypes.c_void_p] * 3
-            if setter(handle.pointer, self._count, self._semaphore):
-                raise RuntimeError(f"{setter.__name__} failed")
-
-    def any_new(self) -> bool:
-        """Whether anything has arrived since it was last asked."""
-        if not self._semaphore[0]:
-            return False
-        self._semaphore[0] = 0
-        return True
 
 
 class TickExecutor:
@@ -97,18 +45,7 @@ class TickExecutor:
         self._actions: list[Waitable] = []
         self._events: list[Waitable] = []
         self._spins = 0
-        self._found_something = True
-        self._arrivals: Arrivals | None = None
         node.executor = self
-
-    def watch_arrivals(self) -> None:
-        """From now on, poll the entities only when something has arrived: much cheaper.
-
-        Only where nobody else listens for arrivals: rcl has one listener for each entity.
-        """
-        with suppress(OSError):  # without rcl's libraries each spin polls
-            self._arrivals = Arrivals()
-        self.wake()
 
     def spin_some(self) -> None:
         """Serve at most one message or request of every entity that has one.
@@ -120,16 +57,12 @@ class TickExecutor:
         if self._wait_set is None:
             self._collect()
         self._spins += 1
-        waitables = self._actions
-        if self._spins % QUIET_SPINS == 0:
-            waitables = waitables + self._events
-        elif not self._something_may_have_arrived():
-            return
+        is_quiet = self._spins % QUIET_SPINS != 0
+        waitables = self._actions if is_quiet else self._actions + self._events
         wait_set = self._polled(waitables)
         subscriptions = wait_set.get_ready_entities("subscription")
         services = wait_set.get_ready_entities("service")
         ready = [waitable for waitable in waitables if waitable.is_ready(wait_set)]
-        self._found_something = bool(subscriptions or services or ready)
         # What is not in these dictionaries belongs to an action.
         for pointer in subscriptions:
             if pointer in self._subscriptions:
@@ -148,10 +81,6 @@ class TickExecutor:
                 raise
             self._on_failure(_name(entity), error)
 
-    def _something_may_have_arrived(self) -> bool:
-        # after a poll that found something: only one of each was served, there may be more
-        return self._arrivals is None or self._found_something or self._arrivals.any_new()
-
     def wait_for(self, topic: str, patience_ns: int) -> None:
         """Serve the subscription to `topic` alone, as soon as it has a message.
 
@@ -169,7 +98,6 @@ class TickExecutor:
     def wake(self) -> None:
         """Note that the node's entities have changed."""
         self._wait_set = None
-        self._found_something = True
 
     def add_node(self, node: Node) -> None:
         """Called by the node when this executor becomes its executor."""
@@ -199,9 +127,6 @@ class TickExecutor:
         count = NumberOfEntities()
         for waitable in node.waitables:
             count += waitable.get_num_entities()
-        if self._arrivals is not None:
-            for entity in (*node.subscriptions, *node.services, *self._actions):
-                self._arrivals.watch(entity)
         self._wait_set = _rclpy.WaitSet(
             len(self._subscriptions) + count.num_subscriptions,
             count.num_guard_conditions,

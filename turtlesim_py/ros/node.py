@@ -303,7 +303,6 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
     # What exists now stays: no search through it in the middle of a tick
     gc.collect()
     gc.freeze()
-    node.tick_executor.watch_arrivals()
 
     def goes_on(with_ros_clock: bool, _: object) -> bool:
         return not stopped() and node.follows_ros_clock == with_ros_clock

@@ -13,7 +13,6 @@ from rclpy.subscription import Subscription
 from std_srvs.srv import Empty, Trigger
 
 from tests.graph import Graph, wait_for_arrival
-from turtlesim_py.ros import executor
 from turtlesim_py.ros.executor import OnFailure, TickExecutor
 
 
@@ -145,37 +144,3 @@ def test_what_it_does_not_serve_is_not_left_waiting_silently(served: Served) -> 
     served.node.create_client(Trigger, "somewhere")
     with pytest.raises(AssertionError, match="not served"):
         served.executor.spin_some()
-
-
-def test_watching_arrivals_it_looks_only_for_what_has_arrived(
-    served: Served, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(executor, "QUIET_SPINS", 10**9)
-    _, publisher = served.subscription("topic")
-    served.service("service")
-    served.executor.watch_arrivals()
-    looks = 0
-    look = TickExecutor._polled
-
-    def counting(*arguments: Any) -> Any:
-        nonlocal looks
-        looks += 1
-        return look(*arguments)
-
-    monkeypatch.setattr(TickExecutor, "_polled", counting)
-    served.graph.until(lambda: served.spin() == [] and looks > 0, "the first look")
-    before = looks
-    for _ in range(10):
-        served.spin()
-    assert looks == before
-    # a burst rings once or often; what it left behind is found in any case
-    send(publisher, 1, 2, 3)
-    served.graph.ask(Empty, "served/service")
-    taken: list[str] = []
-
-    def all_taken() -> bool:
-        taken.extend(served.spin())
-        return len(taken) == 4
-
-    served.graph.until(all_taken, "three messages and a request")
-    assert [note for note in taken if note != "service"] == ["topic 1", "topic 2", "topic 3"]

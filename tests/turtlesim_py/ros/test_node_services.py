@@ -15,9 +15,8 @@ from std_srvs.srv import Empty, Trigger
 from turtlesim.msg import Color, Pose
 from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 
-from tests.graph import ROSOUT_QOS, Graph
+from tests.graph import ROSOUT_QOS, Graph, wait_for_arrival
 from tests.programs import Program
-from turtlesim_py.ros.executor import Arrivals
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.world.arena import TICK_NS
 
@@ -90,12 +89,11 @@ def test_simultaneous_requests_of_one_service_are_executed_one_a_tick(
 def test_of_many_requests_of_one_service_the_last_ten_are_kept(graph: Graph) -> None:
     node = TurtlesimNode(["--ros-args", "-r", "__ns:=/crowded"])
     name = "/crowded/spawn"
-    (service,) = (service for service in node.services if service.service_name == name)
-    arrivals = Arrivals()
-    arrivals.watch(service)
     for number in range(15):
         graph.ask(Spawn, name, name=f"number{number}")
-        graph.until(arrivals.any_new, "the request")
+    graph.ask(Empty, "/crowded/clear")  # sent last, it arrives last
+    (last,) = (each for each in node.services if each.service_name == "/crowded/clear")
+    wait_for_arrival(last)
     for tick in range(1, 21):
         node.tick(tick * TICK_NS)
     assert list(node.arena.turtles) == ["turtle1", *(f"number{n}" for n in range(5, 15))]
