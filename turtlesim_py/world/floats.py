@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from ctypes import c_float
-from struct import Struct
 
 #: The original computes with this macro, not with the closest double to pi [rad].
 PI = 3.14159265
-_SINGLES = Struct("<5f")
 
 
 def float32(value: float) -> float:
@@ -17,14 +15,6 @@ def float32(value: float) -> float:
     Values beyond the range of a single become infinite; nothing is raised.
     """
     return c_float(value).value
-
-
-def float32s(a: float, b: float, c: float, d: float, e: float) -> tuple[float, ...]:
-    """Round the five numbers of a pose like `float32`, in a fifth of the time."""
-    try:
-        return _SINGLES.unpack(_SINGLES.pack(a, b, c, d, e))
-    except OverflowError:  # struct refuses what an assignment makes infinite
-        return tuple(map(float32, (a, b, c, d, e)))
 
 
 def normalize_angle(angle_rad: float) -> float:

@@ -17,7 +17,6 @@ from turtlesim_py.world.events import GoalFeedback, GoalResult, GoalStatus, LogL
 from turtlesim_py.world.floats import (
     cos,
     float32,
-    float32s,
     fuzzy_equal,
     normalize_angle,
     printf_f,
@@ -242,8 +241,8 @@ class Turtle:
 
     def _pose(self) -> Pose:
         speed = math.sqrt(self.lin_x * self.lin_x + self.lin_y * self.lin_y)
-        heading, turning = self.heading_rad, self.ang
-        return Pose._make(float32s(self.x_m, SIZE_M - self.y_down_m, heading, speed, turning))
+        place = (self.x_m, SIZE_M - self.y_down_m, self.heading_rad)
+        return Pose._make(map(float32, (*place, speed, self.ang)))
 
     def _draw_way(self, old_x: float, old_y: float, canvas: Canvas) -> None:
         if not (fuzzy_equal(self.x_m, old_x) and fuzzy_equal(self.y_down_m, old_y)):
