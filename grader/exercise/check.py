@@ -49,10 +49,14 @@ Ask = Callable[[str], Finding]
 
 
 class Checks:
-    """The checks of one exercise, in the order of their definition."""
+    """The checks of one exercise, in the order of their definition.
 
-    def __init__(self) -> None:
-        self._checks: list[Check] = []
+    Args:
+        parts: whose checks come first.
+    """
+
+    def __init__(self, *parts: Checks) -> None:
+        self._checks: list[Check] = [check for part in parts for check in part]
         self._validators: dict[str, Validator] = {}
 
     def __iter__(self) -> Iterator[Check]:

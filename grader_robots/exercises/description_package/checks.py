@@ -11,7 +11,4 @@ from grader_robots.exercises.description_package import (
     spawning,
 )
 
-checks = Checks()
-for part in (installing, launching, robots, dependencies, spawning):
-    for check in part.checks:
-        checks()(check.function)
+checks = Checks(*(part.checks for part in (installing, launching, robots, dependencies, spawning)))

@@ -41,9 +41,7 @@ _FEW = 6
 #: Instead of a link, where none moves along.
 _NOTHING = "nothing"
 
-checks = Checks()
-for check in of_packages.checks:
-    checks()(check.function)
+checks = Checks(of_packages.checks, wheels.checks)
 
 
 class _Shape(NamedTuple):
@@ -59,10 +57,6 @@ def spawns(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     As `spawn`, and one has to be there.
     """
     return judge_spawning(facts, is_asked=True)
-
-
-for check in wheels.checks:
-    checks()(check.function)
 
 
 @checks()
