@@ -182,22 +182,6 @@ def placed(joint: Joint, position: float, stamp_ns: int, prefix: str) -> Placed:
     )
 
 
-class StaticFrames:
-    """The transforms that a static broadcaster has sent: every message has all of them.
-
-    A frame that was sent before is replaced and keeps its place; none ever goes, not even with the
-    robot that had it.
-    """
-
-    def __init__(self) -> None:
-        self._by_child: dict[str, Placed] = {}
-
-    def send(self, transforms: Sequence[Placed]) -> tuple[Placed, ...]:
-        """Add transforms; return the whole message for /tf_static."""
-        self._by_child.update((one.child_frame, one) for one in transforms)
-        return tuple(self._by_child.values())
-
-
 class RobotState:
     """Answers joint states; remembers when each joint was published.
 

@@ -76,7 +76,8 @@ class RobotStatePublisher(RclcppNode):
             qos_overriding_options=QoSOverridingOptions(OVERRIDABLE),
         )
         self._description = self.create_publisher(String, "robot_description", LATCHED)
-        self._static_frames = robot_state.StaticFrames()
+        #: all that were sent on /tf_static, by frame; none ever goes, not even with its robot
+        self._static_frames: dict[str, Placed] = {}
         try:
             self._state = RobotState(self._read(description), parameters)
         except RefusedDescription as error:
@@ -132,7 +133,8 @@ class RobotStatePublisher(RclcppNode):
     def _publish_fixed(self) -> None:
         now_ns = self.get_clock().now().nanoseconds
         fixed = self._state.robot.fixed(self._state.parameters.frame_prefix, now_ns)
-        self._tf_static.publish(tf_message(self._static_frames.send(fixed)))
+        self._static_frames.update((one.child_frame, one) for one in fixed)
+        self._tf_static.publish(tf_message(list(self._static_frames.values())))
 
     # Joint states -----------------------------------------------------------------------------
 

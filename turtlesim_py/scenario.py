@@ -276,19 +276,31 @@ def read(path: Path) -> dict[str, Any]:
     """Read a scenario file.
 
     Raises:
-        ScenarioError: it cannot be read, is not JSON, or holds no scenario.
+        ScenarioError: it cannot be read, or holds no scenario.
     """
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        return {"name": path.stem, **parse(path.read_text(encoding="utf-8"))}
     except OSError as error:
         raise ScenarioError(f"cannot read {path}: {error.strerror}") from None
+    except (ValueError, ScenarioError) as error:
+        raise ScenarioError(f"{path} holds no scenario: {error}") from None
+
+
+def parse(text: str) -> dict[str, Any]:
+    """Return the scenario that a text holds.
+
+    Raises:
+        ScenarioError: it is not JSON, or holds none.
+    """
+    try:
+        data = json.loads(text)
     except ValueError as error:
-        raise ScenarioError(f"{path} is not JSON: {error}") from None
+        raise ScenarioError(str(error)) from None
     if isinstance(data, dict):
         data = data.get("scenario", data)
     if not isinstance(data, dict):
-        raise ScenarioError(f"{path} holds no scenario: expected an object, found {data!r:.60}")
-    return {"name": path.stem, **data}
+        raise ScenarioError(f"expected an object, found {data!r:.40}")
+    return data
 
 
 def write(outcome: Replay, folder: Path) -> list[Path]:

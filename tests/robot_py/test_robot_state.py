@@ -13,7 +13,6 @@ from robot_py.robot_state import (
     RefusedDescription,
     Robot,
     RobotState,
-    StaticFrames,
 )
 from tests.robot_py import urdf_cases as cases
 
@@ -191,14 +190,6 @@ def test_fixed_joints_come_by_the_alphabet_of_their_names():
     assert [one.child_frame for one in fixed] == ["p/box", "p/leg1", "p/leg2"]
     assert {one.stamp_ns for one in fixed} == {7}
     assert fixed[1].translation == (0, 0.31, 0)
-
-
-def test_a_static_broadcaster_forgets_no_frame_and_replaces_what_comes_again():
-    frames = StaticFrames()
-    frames.send(WALKER.fixed("", 1))
-    sent = frames.send([*ROVER.fixed("", 2), *WALKER.fixed("", 3)[:1]])
-    assert [one.child_frame for one in sent] == ["box", "leg1", "leg2", "base_link", "caster"]
-    assert [one.stamp_ns for one in sent] == [3, 1, 1, 2, 2]
 
 
 def test_another_robot_and_other_parameters_act_at_once():

@@ -6,12 +6,10 @@ that tick.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from grader.message import NOTHING, Message, msg
-from turtlesim_py.scenario import ScenarioError, events_by_tick, replay
+from turtlesim_py.scenario import ScenarioError, events_by_tick, parse, replay
 from turtlesim_py.world.events import Event, Spawn
 
 #: The longest scenario [ticks]: an hour. It is replayed when an exercise is loaded.
@@ -27,8 +25,7 @@ def script(setting: str) -> tuple[Sequence[Event], Mapping[int, Sequence[Event]]
     if not setting:
         return (), {}
     by_tick = {
-        tick: [event for _, event in each]
-        for tick, each in events_by_tick(_scenario(setting)).items()
+        tick: [event for _, event in each] for tick, each in events_by_tick(parse(setting)).items()
     }
     spawned = [event for event in by_tick.get(1, ()) if isinstance(event, Spawn)]
     if spawned:
@@ -41,7 +38,7 @@ def wrong(setting: str) -> Message:
     if not setting:
         return NOTHING
     try:
-        scenario = _scenario(setting)
+        scenario = parse(setting)
         ticks = scenario.get("ticks")
         if isinstance(ticks, int) and ticks > MOST_TICKS:
             return msg("expected {most} ticks at most, found {ticks}", most=MOST_TICKS, ticks=ticks)
@@ -52,15 +49,3 @@ def wrong(setting: str) -> Message:
     except ScenarioError as error:
         return msg("expected a scenario in JSON: {why}", why=str(error))
     return NOTHING
-
-
-def _scenario(setting: str) -> dict[str, Any]:
-    try:
-        data = json.loads(setting)
-    except ValueError as error:
-        raise ScenarioError(str(error)) from None
-    if isinstance(data, dict):
-        data = data.get("scenario", data)
-    if not isinstance(data, dict):
-        raise ScenarioError(f"expected an object, found {data!r:.40}")
-    return data
