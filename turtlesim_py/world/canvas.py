@@ -13,10 +13,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from turtlesim_py.world.stroke import Span, spans
+from turtlesim_py.world.stroke import SIZE_PX, Span, spans
 
-#: Edge of the original's window [px].
-SIZE_PX = 500
 #: Red, green, blue, alpha of a pixel without paint: the original clears to transparent white.
 UNPAINTED = (255, 255, 255, 0)
 
@@ -58,13 +56,11 @@ class Canvas:
         watcher: called with the pen and the runs of each stroke, if there is one; a copy has none.
     """
 
-    def __init__(self, width: int = SIZE_PX, height: int = SIZE_PX) -> None:
-        self.width = width
-        self.height = height
+    def __init__(self) -> None:
         self.watcher: Callable[[Pen, Sequence[Span]], None] | None = None
         # One 32-bit item a pixel, row after row, with the bytes r, g, b, a in memory: painting a
         # run is one slice assignment, and numpy reads the same bytes without conversion.
-        self._blank = array("I", bytes(UNPAINTED)) * (width * height)
+        self._blank = array("I", bytes(UNPAINTED)) * SIZE_PX**2
         self._pixels = self._blank[:]
 
     def clear(self) -> None:
@@ -73,7 +69,7 @@ class Canvas:
 
     def copy(self) -> Self:
         """Return a canvas with the same pixels that later strokes do not change."""
-        twin = type(self)(self.width, self.height)
+        twin = type(self)()
         twin._pixels = self._pixels[:]
         return twin
 
@@ -83,13 +79,13 @@ class Canvas:
         For a turtle, a is the new position and b the old one: the order decides some pixels.
         Coordinates may be far outside; with one that is not finite nothing is drawn.
         """
-        self.paint(pen, spans(ax, ay, bx, by, pen.width, self.width, self.height))
+        self.paint(pen, spans(ax, ay, bx, by, pen.width))
 
     def paint(self, pen: Pen, runs: Sequence[Span]) -> None:
         """Paint runs of pixels, all of them within the canvas."""
-        pixels, width, pixel = self._pixels, self.width, pen._pixel
+        pixels, pixel = self._pixels, pen._pixel
         for row, first, last in runs:
-            start = row * width
+            start = row * SIZE_PX
             pixels[start + first : start + last + 1] = pixel * (last - first + 1)
         if self.watcher is not None:
             self.watcher(pen, runs)
@@ -103,13 +99,13 @@ class Canvas:
         # Compared before it is rounded, because infinity cannot be rounded.
         column = x + 0.5 if x == x else 0.0
         row = y + 0.5 if y == y else 0.0
-        if not (0.0 <= column < self.width and 0.0 <= row < self.height):
+        if not (0.0 <= column < SIZE_PX and 0.0 <= row < SIZE_PX):
             return UNPAINTED[:3]
-        pixel = self._pixels[floor(row) * self.width + floor(column)]
+        pixel = self._pixels[floor(row) * SIZE_PX + floor(column)]
         r, g, b, _ = pixel.to_bytes(4, byteorder)
         return r, g, b
 
     def rgba(self) -> NDArray[np.uint8]:
-        """Return a copy of the pixels, shape (height, width, 4); unpainted is 255, 255, 255, 0."""
+        """Return a copy of the pixels, shape (500, 500, 4); unpainted is 255, 255, 255, 0."""
         pixels = np.frombuffer(self._pixels, dtype=np.uint8)
-        return pixels.reshape(self.height, self.width, 4).copy()
+        return pixels.reshape(SIZE_PX, SIZE_PX, 4).copy()

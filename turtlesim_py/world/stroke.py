@@ -25,29 +25,30 @@ Point = tuple[float, float]
 Segment = tuple[float, float, float, float]
 """x, y of the first point, x, y of the second [px]"""
 
+#: Edge of the image, the original's window [px].
+SIZE_PX = 500
+
+_BEYOND = SIZE_PX + 1.0  # [px] lines of one pixel may leave the image so far
 _CELL = 1.0 / 64.0  # [px] the grid that Qt snaps outlines to
 _FLAT_EDGE = 1e20  # dx/dy of an edge without height; Qt's number
 _INT_MIN = -(2**31)
 
 
-def spans(
-    ax: float, ay: float, bx: float, by: float, width: int, image_width: int, image_height: int
-) -> list[Span]:
+def spans(ax: float, ay: float, bx: float, by: float, width: int) -> list[Span]:
     """List the pixels that a line from a to b paints, each of them once and inside the image.
 
     Args:
         ax, ay: first argument of drawLine [px]; for a turtle its NEW position. The order matters.
         bx, by: second argument of drawLine [px]; for a turtle its OLD position.
         width: of the pen [px]; 0 and 1 are the same pen.
-        image_width, image_height: [px]
 
     Returns:
         No runs at all for coordinates that are not finite.
     """
     try:
         if width <= 1:
-            return _thin_stroke(ax, ay, bx, by, image_width, image_height)
-        return _wide_stroke(ax, ay, bx, by, width, image_width, image_height)
+            return _thin_stroke(ax, ay, bx, by)
+        return _wide_stroke(ax, ay, bx, by, width)
     except (ArithmeticError, ValueError):
         # Beyond 1e40 px a length or a corner may stop being a finite number: Qt paints nothing.
         return []
@@ -69,26 +70,24 @@ def _to_int(value: float) -> int:
 # --- width 1: a chain of pixels ------------------------------------------------------------------
 
 
-def _thin_stroke(
-    ax: float, ay: float, bx: float, by: float, image_width: int, image_height: int
-) -> list[Span]:
+def _thin_stroke(ax: float, ay: float, bx: float, by: float) -> list[Span]:
     """Paint one pixel in every column that the line crosses, or in every row if it is steep."""
     if _same_point(ax, ay, bx, by):
-        return _thin_dot(ax, ay, image_width, image_height)
-    clipped = _rough_clip(ax, ay, bx, by, image_width + 1.0, image_height + 1.0)
+        return _thin_dot(ax, ay)
+    clipped = _rough_clip(ax, ay, bx, by)
     if clipped is None:
         return []
     x1, y1, x2, y2 = [_to_int(64.0 * c) for c in clipped]
     if abs(x2 - x1) < abs(y2 - y1):
-        return _steep_chain(x1, y1, x2, y2, image_width, image_height)
+        return _steep_chain(x1, y1, x2, y2)
     if x1 == x2:  # both ends in one cell of 1/64 px, yet not the same point: Qt loses the line
         return []
-    return _flat_chain(x1, y1, x2, y2, image_width, image_height)
+    return _flat_chain(x1, y1, x2, y2)
 
 
-def _thin_dot(x: float, y: float, image_width: int, image_height: int) -> list[Span]:
+def _thin_dot(x: float, y: float) -> list[Span]:
     column, row = _round(x), _round(y)  # rounded, whereas a line takes the pixel that it is in
-    if 0 <= column < image_width and 0 <= row < image_height:
+    if 0 <= column < SIZE_PX and 0 <= row < SIZE_PX:
         return [(row, column, column)]
     return []
 
@@ -102,82 +101,75 @@ def _round(value: float) -> int:
     return nearest if nearest >= _INT_MIN else nearest + 2**32
 
 
-def _rough_clip(
-    ax: float, ay: float, bx: float, by: float, right: float, bottom: float
-) -> Segment | None:
+def _rough_clip(ax: float, ay: float, bx: float, by: float) -> Segment | None:
     """Shorten a line that leaves the image by more than a pixel, so that 26.6 can hold it.
 
     The order a.x, b.x, a.y, b.y is Qt's; every step sees the points as the last one left them.
     """
-    columns_fit = -1.0 <= ax <= right and -1.0 <= bx <= right
-    if columns_fit and -1.0 <= ay <= bottom and -1.0 <= by <= bottom:
+    columns_fit = -1.0 <= ax <= _BEYOND and -1.0 <= bx <= _BEYOND
+    if columns_fit and -1.0 <= ay <= _BEYOND and -1.0 <= by <= _BEYOND:
         return ax, ay, bx, by
     if not (isfinite(ax) and isfinite(ay) and isfinite(bx) and isfinite(by)):
         return None
-    if (ax < -1.0 and bx <= -1.0) or (ax > right and bx >= right):
+    if (ax < -1.0 and bx <= -1.0) or (ax > _BEYOND and bx >= _BEYOND):
         return None
-    ax, ay = _pulled_inside(ax, ay, bx, by, right)
-    bx, by = _pulled_inside(bx, by, ax, ay, right)
-    if (ay < -1.0 and by <= -1.0) or (ay > bottom and by >= bottom):
+    ax, ay = _pulled_inside(ax, ay, bx, by)
+    bx, by = _pulled_inside(bx, by, ax, ay)
+    if (ay < -1.0 and by <= -1.0) or (ay > _BEYOND and by >= _BEYOND):
         return None
-    ay, ax = _pulled_inside(ay, ax, by, bx, bottom)
-    by, bx = _pulled_inside(by, bx, ay, ax, bottom)
+    ay, ax = _pulled_inside(ay, ax, by, bx)
+    by, bx = _pulled_inside(by, bx, ay, ax)
     return ax, ay, bx, by
 
 
-def _pulled_inside(c: float, n: float, other_c: float, other_n: float, high: float) -> Point:
-    """Move the point (c, n) along the line to the other one, until c is within [-1, high]."""
+def _pulled_inside(c: float, n: float, other_c: float, other_n: float) -> Point:
+    """Move the point (c, n) along the line to the other one, until c is within [-1, 501]."""
     if c < -1.0:
         bound = -1.0
-    elif c > high:
-        bound = high
+    elif c > _BEYOND:
+        bound = _BEYOND
     else:
         return c, n
     return bound, n + (other_n - n) / (other_c - c) * (bound - c)
 
 
-def _steep_chain(
-    x1: int, y1: int, x2: int, y2: int, image_width: int, image_height: int
-) -> list[Span]:
+def _steep_chain(x1: int, y1: int, x2: int, y2: int) -> list[Span]:
     """Walk a line that is higher than wide: one pixel a row."""
     if y1 > y2:
         x1, y1, x2, y2 = x2, y2, x1, y1
-    first, last, x, step = _walk(y1, x1, y2, x2, image_height)
+    first, last, x, step = _walk(y1, x1, y2, x2)
     chain = []
     for row in range(first, last + 1):
         column = x >> 16
-        if 0 <= column < image_width:
+        if 0 <= column < SIZE_PX:
             chain.append((row, column, column))
         x += step
     return chain
 
 
-def _flat_chain(
-    x1: int, y1: int, x2: int, y2: int, image_width: int, image_height: int
-) -> list[Span]:
+def _flat_chain(x1: int, y1: int, x2: int, y2: int) -> list[Span]:
     """Walk a line at least as wide as high: one pixel a column, joined to runs along each row."""
     if x1 > x2:
         x1, y1, x2, y2 = x2, y2, x1, y1
-    first, last, y, step = _walk(x1, y1, x2, y2, image_width)
+    first, last, y, step = _walk(x1, y1, x2, y2)
     chain = []
     run_start, row = first, y >> 16
     for column in range(first, last + 1):
         if y >> 16 != row:
-            if 0 <= row < image_height:
+            if 0 <= row < SIZE_PX:
                 chain.append((row, run_start, column - 1))
             run_start, row = column, y >> 16
         y += step
-    if run_start <= last and 0 <= row < image_height:
+    if run_start <= last and 0 <= row < SIZE_PX:
         chain.append((row, run_start, last))
     return chain
 
 
-def _walk(m1: int, n1: int, m2: int, n2: int, size: int) -> tuple[int, int, int, int]:
+def _walk(m1: int, n1: int, m2: int, n2: int) -> tuple[int, int, int, int]:
     """Plan a chain: pixel by pixel along the major axis m (m1 < m2), by small steps along n.
 
     Args:
         m1, n1, m2, n2: both ends [26.6]. Square caps make the chain half a pixel longer at each.
-        size: of the image along m [px]
 
     Returns:
         First and last pixel on m, cut to the image; n at the first of them and its step [16.16].
@@ -190,15 +182,13 @@ def _walk(m1: int, n1: int, m2: int, n2: int, size: int) -> tuple[int, int, int,
     if first < 0:
         n -= first * step
         first = 0
-    return first, min(last, size - 1), n, step
+    return first, min(last, SIZE_PX - 1), n, step
 
 
 # --- width 2 and more: a filled rectangle --------------------------------------------------------
 
 
-def _wide_stroke(
-    ax: float, ay: float, bx: float, by: float, width: int, image_width: int, image_height: int
-) -> list[Span]:
+def _wide_stroke(ax: float, ay: float, bx: float, by: float, width: int) -> list[Span]:
     """Fill the rectangle along a-b, half a pen's width longer at both ends.
 
     p-q is the rectangle's midline and changes from step to step, whereas a-b stays. `ratio` is the
@@ -215,7 +205,7 @@ def _wide_stroke(
 
     midline = (ax, ay, bx, by) if is_dot else _with_caps(ax, ay, bx, by, ratio)
     margin_x, margin_y = abs(dy) * ratio * 0.5, abs(dx) * ratio * 0.5
-    clipped = _wide_clip(*midline, margin_x, margin_y, image_width, image_height)
+    clipped = _wide_clip(*midline, margin_x, margin_y)
     if clipped is None:
         return []
     px, py, qx, qy = clipped
@@ -227,8 +217,8 @@ def _wide_stroke(
     if -_CELL < qy - py < _CELL:
         px, py, qx, qy, ratio = _stood_upright(px, py, qx, ratio)
     if -_CELL < qx - px < _CELL:
-        return _upright_rectangle(px, py, qx, qy, ratio, image_width, image_height)
-    return _tilted_rectangle(px, py, qx, qy, ratio, image_width, image_height)
+        return _upright_rectangle(px, py, qx, qy, ratio)
+    return _tilted_rectangle(px, py, qx, qy, ratio)
 
 
 def _with_caps(ax: float, ay: float, bx: float, by: float, ratio: float) -> Segment:
@@ -245,16 +235,14 @@ def _wide_clip(
     qy: float,
     margin_x: float,
     margin_y: float,
-    image_width: int,
-    image_height: int,
 ) -> Segment | None:
     """Cut p-q down to the image with margins around it; None if nothing is left.
 
     The margins are half of what the pen's width adds in x and y. (Liang and Barsky's algorithm.)
     """
     left, top = 0.0 - margin_x, 0.0 - margin_y
-    right = left + ((image_width + margin_x) - left)
-    bottom = top + ((image_height + margin_y) - top)
+    right = left + ((SIZE_PX + margin_x) - left)
+    bottom = top + ((SIZE_PX + margin_y) - top)
     if left <= px <= right and left <= qx <= right and top <= py <= bottom and top <= qy <= bottom:
         return px, py, qx, qy
     dx, dy = qx - px, qy - py
@@ -287,15 +275,13 @@ def _stood_upright(
     return middle, py - half, middle, py + half, 1.0 / ratio
 
 
-def _upright_rectangle(
-    px: float, py: float, qx: float, qy: float, ratio: float, image_width: int, image_height: int
-) -> list[Span]:
+def _upright_rectangle(px: float, py: float, qx: float, qy: float, ratio: float) -> list[Span]:
     """Fill a nearly vertical bar: the same columns in every row."""
     if py > qy:
         px, py, qy = qx, qy, py
     half = (0.5 * ratio) * (qy - py)
-    left, right = _clamp(px - half, image_width), _clamp(px + half, image_width)
-    top, bottom = _clamp(py, image_height), _clamp(qy, image_height)
+    left, right = _clamp(px - half), _clamp(px + half)
+    top, bottom = _clamp(py), _clamp(qy)
     if right - left < _CELL or bottom - top < _CELL:
         return []
     first, last = _first_beyond(left), _last_before(right)
@@ -304,8 +290,8 @@ def _upright_rectangle(
     return [(row, first, last) for row in range(_first_beyond(top), _last_before(bottom) + 1)]
 
 
-def _clamp(value: float, size: int) -> float:
-    return min(value, float(size)) if value > 0.0 else 0.0  # not-a-number becomes 0
+def _clamp(value: float) -> float:
+    return min(value, float(SIZE_PX)) if value > 0.0 else 0.0  # not-a-number becomes 0
 
 
 def _first_beyond(edge: float) -> int:
@@ -318,9 +304,7 @@ def _last_before(edge: float) -> int:
     return floor(edge - 0.5) if edge >= 0.5 else -1
 
 
-def _tilted_rectangle(
-    px: float, py: float, qx: float, qy: float, ratio: float, image_width: int, image_height: int
-) -> list[Span]:
+def _tilted_rectangle(px: float, py: float, qx: float, qy: float, ratio: float) -> list[Span]:
     """Snap the four corners to the grid of 1/64 px, always left and up, and fill between them."""
     if py > qy:
         px, py, qx, qy = qx, qy, px, py
@@ -336,21 +320,19 @@ def _tilted_rectangle(
     left = floor(lx * 64.0) * _CELL, floor(ly * 64.0) * _CELL
     right = floor(rx * 64.0) * _CELL, floor(ry * 64.0) * _CELL
     bottom = floor(bx * 64.0) * _CELL, floor(by * 64.0) * _CELL
-    return _fill(top, left, right, bottom, image_width, image_height)
+    return _fill(top, left, right, bottom)
 
 
-def _fill(
-    top: Point, left: Point, right: Point, bottom: Point, image_width: int, image_height: int
-) -> list[Span]:
+def _fill(top: Point, left: Point, right: Point, bottom: Point) -> list[Span]:
     """Go down row by row and fill the pixels from the left side to the right one."""
     first_row = _first_beyond(top[1])
     last_row = _last_before(bottom[1])
-    if last_row >= image_height:
-        last_row = image_height - 1
+    if last_row >= SIZE_PX:
+        last_row = SIZE_PX - 1
     start_row = first_row if first_row > 0 else 0
     x1, step1, turn1, below1, step_below1 = _side(top, left, bottom, 0.5, first_row, start_row)
     x2, step2, turn2, below2, step_below2 = _side(top, right, bottom, -0.5, first_row, start_row)
-    last_column = image_width - 1
+    last_column = SIZE_PX - 1
     rows = []
     for row in range(start_row, last_row + 1):
         if row == turn1:

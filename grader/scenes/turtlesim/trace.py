@@ -19,7 +19,6 @@ import numpy.typing as npt
 from grader.recording.subject import Behaviour, Command, Start, Trace, until_lost
 from turtlesim_py.world import events as inputs
 from turtlesim_py.world.arena import TICK_NS
-from turtlesim_py.world.canvas import SIZE_PX
 from turtlesim_py.world.events import (
     Cancel,
     CmdVel,
@@ -29,6 +28,7 @@ from turtlesim_py.world.events import (
     SetPen,
     SomeEvent,
 )
+from turtlesim_py.world.stroke import SIZE_PX
 from turtlesim_py.world.trajectory import Trajectory
 from turtlesim_py.world.turtle import SIZE_M
 

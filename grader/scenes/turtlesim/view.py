@@ -13,8 +13,9 @@ from grader.recording.view import Call, Curve, Floats, PenChange, Plane, Rest, T
 from grader.scenes.turtlesim import words
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.arena import TICK_NS
-from turtlesim_py.world.canvas import SIZE_PX, Pen
+from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.events import Clear, CmdVel, Event, Reset, SetPen
+from turtlesim_py.world.stroke import SIZE_PX
 from turtlesim_py.world.trajectory import Trajectory
 from turtlesim_py.world.turtle import METER_PX, SIZE_M, TICK_S
 

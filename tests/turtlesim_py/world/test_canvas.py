@@ -47,7 +47,7 @@ def test_a_pen_outside_of_a_byte_is_refused(values, message):
 
 
 def test_a_dot_is_painted_opaque_in_the_pens_colour():
-    canvas = Canvas(20, 10)
+    canvas = Canvas()
     canvas.draw_line(7.5, 4.5, 7.5, 4.5, Pen(1, 2, 3, 3))
     pixels = canvas.rgba()
     assert (pixels[3:6, 6:9] == (1, 2, 3, 255)).all()
@@ -94,7 +94,7 @@ def test_the_colour_at_not_a_number_is_read_at_pixel_0():
 
 @given(st.floats(), st.floats())
 def test_the_colour_of_an_unpainted_canvas_is_white_everywhere_and_outside_too(x, y):
-    assert Canvas(8, 8).color_at(x, y) == WHITE
+    assert Canvas().color_at(x, y) == WHITE
 
 
 @pytest.mark.parametrize("x", [-0.51, -1e300, float("-inf"), 499.5, 1e300, float("inf")])
@@ -115,7 +115,7 @@ def test_pixels_that_were_handed_out_do_not_change_and_change_nothing():
 
 
 def test_a_copy_has_the_same_pixels_and_a_life_of_its_own():
-    canvas = Canvas(40, 30)
+    canvas = Canvas()
     canvas.draw_line(10.0, 10.0, 20.0, 20.0, RED)
     copy = canvas.copy()
     assert (copy.rgba() == canvas.rgba()).all()
@@ -128,9 +128,9 @@ def test_a_copy_has_the_same_pixels_and_a_life_of_its_own():
 
 @given(st.floats(), st.floats(), st.floats(), st.floats(), st.integers(0, 255))
 def test_no_line_changes_the_size_of_the_canvas(ax, ay, bx, by, width):
-    canvas = Canvas(30, 20)
+    canvas = Canvas()
     canvas.draw_line(ax, ay, bx, by, Pen(1, 2, 3, width))
-    assert canvas.rgba().shape == (20, 30, 4)
+    assert canvas.rgba().shape == (500, 500, 4)
 
 
 @pytest.mark.parametrize("run", ["arc", "huge_velocity", "spiral", "straight"])

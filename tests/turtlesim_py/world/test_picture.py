@@ -119,6 +119,6 @@ def test_a_turtle_without_a_heading_is_invisible_as_in_the_original(heading_rad)
 
 @given(st.floats(), st.floats(), st.floats(), st.sampled_from(NAMES))
 def test_any_turtle_can_be_shown(x_px, y_px, heading_rad, name):
-    canvas = Canvas(60, 50)
+    canvas = Canvas()
     picture = render(canvas, BLUE, [Sprite(x_px, y_px, heading_rad, name)])
-    assert picture.shape == (50, 60, 3)
+    assert picture.shape == (500, 500, 3)

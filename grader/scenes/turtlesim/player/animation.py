@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from turtlesim_py.world.canvas import SIZE_PX, Pen
-from turtlesim_py.world.stroke import Span
+from turtlesim_py.world.canvas import Pen
+from turtlesim_py.world.stroke import SIZE_PX, Span
 from turtlesim_py.world.turtle import Pose
 
 Color = tuple[int, int, int]
