@@ -22,6 +22,7 @@ from grader_robots.scene.trace import (
     RobotRecorder,
     RobotTrace,
 )
+from robot_py.model import Vector
 from robot_py.robot_state import Placed
 
 #: When a run begins, on its clock.
@@ -31,6 +32,7 @@ EPOCH_NS = 1_750_000_000_000_000_000
 Controller = Callable[[int, int], Sequence["Said"]]
 #: A topic, and the bytes of a message on it.
 Said = tuple[str, bytes]
+Quaternion = tuple[float, float, float, float]
 
 
 def drive(controller: Controller, ticks: int, description: str) -> RobotTrace:
@@ -90,50 +92,21 @@ def _named(names: str, values: Sequence[float]) -> Any:
 JOINTS = ("swivel", "tilt", "periscope")
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 NAN, INF = math.nan, math.inf
+TICKS = 200
 
 
-def _nothing(tick: int, now_ns: int) -> Sequence[Said]:
-    return ()
+def _sends(
+    now_ns: int, positions: Sequence[float], place: Vector, turned: Quaternion = UPRIGHT
+) -> Sequence[Said]:
+    return joint_state(now_ns, JOINTS, positions), _goes(now_ns, place, turned)
 
 
-def _once(tick: int, now_ns: int) -> Sequence[Said]:
-    return _stands(tick, now_ns) if tick == 1 else ()
+def _goes(now_ns: int, place: Vector, turned: Quaternion = UPRIGHT) -> Said:
+    return tf(Placed(now_ns, "odom", "axis", place, turned))
 
 
-def _stands(tick: int, now_ns: int) -> Sequence[Said]:
-    placed = Placed(now_ns, "odom", "axis", (1.0, 0.0, 0.0), UPRIGHT)
-    return joint_state(now_ns, JOINTS, (0.0, 0.0, 0.0)), tf(placed)
-
-
-def _straight(tick: int, now_ns: int) -> Sequence[Said]:
-    return (tf(Placed(now_ns, "odom", "axis", (tick / 100, 0.0, 0.7), UPRIGHT)),)
-
-
-def _no_numbers(tick: int, now_ns: int) -> Sequence[Said]:
-    placed = Placed(now_ns, "odom", "axis", (NAN, INF, -INF), (NAN, 0.0, 0.0, 0.0))
-    return joint_state(now_ns, JOINTS, (NAN, INF, -INF)), tf(placed)
-
-
-def _huge_numbers(tick: int, now_ns: int) -> Sequence[Said]:
-    placed = Placed(now_ns, "odom", "axis", (1e308, -1e308, tick * 1e300), (1e200,) * 4)
-    return joint_state(now_ns, JOINTS, (1e308, -1e308, tick * 1e300)), tf(placed)
-
-
-def _zero_quaternion(tick: int, now_ns: int) -> Sequence[Said]:
-    placed = Placed(now_ns, "odom", "axis", (math.cos(tick), math.sin(tick), 0.7), (0.0,) * 4)
-    return joint_state(now_ns, JOINTS, (tick, tick, tick)), tf(placed)
-
-
-def _empty(tick: int, now_ns: int) -> Sequence[Said]:
-    return joint_state(now_ns, (), ()), tf(), tf(topic=TF_STATIC)
-
-
-def _other_lengths(tick: int, now_ns: int) -> Sequence[Said]:
-    return (joint_state(now_ns, JOINTS, (1.0,)), joint_state(now_ns, (), (1.0, 2.0)))
-
-
-def _names_twice(tick: int, now_ns: int) -> Sequence[Said]:
-    return (joint_state(now_ns, ("tilt", "tilt", ""), (tick / 9, 1.0, 2.0)),)
+def _stands(now_ns: int) -> Sequence[Said]:
+    return _sends(now_ns, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
 
 
 def _a_circle_of_frames(tick: int, now_ns: int) -> Sequence[Said]:
@@ -146,26 +119,36 @@ def _stamps_before_time(tick: int, now_ns: int) -> Sequence[Said]:
     return joint_state(-tick * 10**9, JOINTS, (1.0, 2.0, 3.0)), tf(placed)
 
 
-def _at_the_end(tick: int, now_ns: int) -> Sequence[Said]:
-    return _stands(tick, now_ns) if tick >= TICKS - 1 else ()
-
-
-TICKS = 200
 #: What the node does -> what it publishes.
 ODDITIES: Final[Mapping[str, Controller]] = {
-    "does nothing": _nothing,
-    "publishes once": _once,
-    "stands": _stands,
-    "goes straight ahead": _straight,
-    "sends what is no number": _no_numbers,
-    "sends huge numbers": _huge_numbers,
-    "sends a quaternion of zeros": _zero_quaternion,
-    "sends empty messages": _empty,
-    "sends more names than positions, and less": _other_lengths,
-    "names a joint twice": _names_twice,
+    "does nothing": lambda tick, now_ns: (),
+    "publishes once": lambda tick, now_ns: _stands(now_ns) if tick == 1 else (),
+    "stands": lambda tick, now_ns: _stands(now_ns),
+    "goes straight ahead": lambda tick, now_ns: (_goes(now_ns, (tick / 100, 0.0, 0.7)),),
+    "sends what is no number": lambda tick, now_ns: _sends(
+        now_ns, (NAN, INF, -INF), (NAN, INF, -INF), (NAN, 0.0, 0.0, 0.0)
+    ),
+    "sends huge numbers": lambda tick, now_ns: _sends(
+        now_ns, (1e308, -1e308, tick * 1e300), (1e308, -1e308, tick * 1e300), (1e200,) * 4
+    ),
+    "sends a quaternion of zeros": lambda tick, now_ns: _sends(
+        now_ns, (tick, tick, tick), (math.cos(tick), math.sin(tick), 0.7), (0.0,) * 4
+    ),
+    "sends empty messages": lambda tick, now_ns: (
+        joint_state(now_ns, (), ()),
+        tf(),
+        tf(topic=TF_STATIC),
+    ),
+    "sends more names than positions, and less": lambda tick, now_ns: (
+        joint_state(now_ns, JOINTS, (1.0,)),
+        joint_state(now_ns, (), (1.0, 2.0)),
+    ),
+    "names a joint twice": lambda tick, now_ns: (
+        joint_state(now_ns, ("tilt", "tilt", ""), (tick / 9, 1.0, 2.0)),
+    ),
     "sends frames in a circle": _a_circle_of_frames,
     "stamps before the beginning of time": _stamps_before_time,
-    "begins at the very end": _at_the_end,
+    "begins at the very end": lambda tick, now_ns: _stands(now_ns) if tick >= TICKS - 1 else (),
 }
 
 
