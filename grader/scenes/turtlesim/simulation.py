@@ -58,10 +58,6 @@ class TurtlesimSimulation(Simulation):
         """The number of recorded ticks."""
         return self._recorder.ticks
 
-    def submission_gone(self) -> None:
-        """Note that the submission's process has ended."""
-        self._end.submission_gone()
-
     def tick(self, now_ns: int | None = None) -> Reason:
         """Serve what has arrived and let a tick pass; return why the run is over, or ''."""
         if self.records and (events := self._script.get(self._recorder.ticks + 1)):
@@ -74,7 +70,7 @@ class TurtlesimSimulation(Simulation):
     def _record(self, readings: dict[str, Reading]) -> Reason:
         self._recorder.record(readings)
         poses = {name: reading.pose for name, reading in readings.items()}
-        return self._end.after(self._recorder.ticks, self._about(poses))
+        return self._end.after(self._recorder.ticks, self._about(poses), self.gone_tick)
 
     def _about(self, poses: Mapping[str, Pose]) -> Mapping[str, Pose]:
         """Return the poses that can end the run: turtle1's, or all where there is a script."""
@@ -89,7 +85,8 @@ class TurtlesimSimulation(Simulation):
 
         def goes_on(poses: dict[str, Pose]) -> bool:
             tick = next(ticks)
-            return tick not in self._script and not end.after(tick, self._about(poses))
+            over = end.after(tick, self._about(poses), self.gone_tick)
+            return tick not in self._script and not over
 
         return self.node.foresee(most, goes_on)
 
@@ -132,35 +129,30 @@ class EndOfRun:
         self._moved = False
         self._driven = False
         self._still_ticks = 0
-        self._gone_ticks: int | None = None
 
     @property
     def is_at_rest(self) -> bool:
         """Whether the turtle has moved, and rests now."""
         return self._moved and self._still_ticks > 0
 
-    def submission_gone(self) -> None:
-        """Note that the submission's process has ended."""
-        self._gone_ticks = 0
+    def after(self, tick: int, poses: Mapping[str, Pose], gone_tick: int | None = None) -> Reason:
+        """Return why to stop after this tick, or ''.
 
-    def after(self, tick: int, poses: Mapping[str, Pose]) -> Reason:
-        """Return why to stop after this tick, or ''; `poses` are those that can end the run."""
+        Args:
+            poses: those that can end the run.
+            gone_tick: the last tick before the end of the submission's process.
+        """
+        limits = self._limits
         self._watch(poses)
-        if self._gone_ticks is not None:
-            self._gone_ticks += 1
-        if tick * TICK_S >= self._limits.total_s:
+        if tick * TICK_S >= limits.total_s:
             return "time_limit"
         if self._moved:
-            return "rest" if self._still_ticks * TICK_S >= self._patience_s() else ""
-        if self._gone_ticks is not None and self._gone_ticks >= GRACE_TICKS:
+            has_begun = self._driven or gone_tick is not None
+            rest_s = limits.rest_s if has_begun else max(limits.rest_s, limits.first_motion_s)
+            return "rest" if self._still_ticks * TICK_S >= rest_s else ""
+        if gone_tick is not None and tick - gone_tick >= GRACE_TICKS:
             return "gone"
-        return "no_motion" if tick * TICK_S >= self._limits.first_motion_s else ""
-
-    def _patience_s(self) -> float:
-        """Return the length of a rest that ends the run [s]."""
-        has_begun = self._driven or self._gone_ticks is not None
-        rest_s = self._limits.rest_s
-        return rest_s if has_begun else max(rest_s, self._limits.first_motion_s)
+        return "no_motion" if tick * TICK_S >= limits.first_motion_s else ""
 
     def _watch(self, poses: Mapping[str, Pose]) -> None:
         known = self._last_poses

@@ -20,11 +20,11 @@ def turtles(pose: Pose | None) -> dict[str, Pose]:
     return {} if pose is None else {"turtle1": pose}
 
 
-def ends(poses, end: EndOfRun | None = None) -> tuple[int, str]:
+def ends(poses, limits: Limits = LIMITS, gone_tick: int | None = None) -> tuple[int, str]:
     """The tick after which a run of these poses (tick -> pose) is over, and why."""
-    end = end or EndOfRun(LIMITS)
+    end = EndOfRun(limits)
     for tick in range(1, 1000):
-        reason = end.after(tick, turtles(poses(tick)))
+        reason = end.after(tick, turtles(poses(tick)), gone_tick)
         if reason:
             return tick, reason
     raise AssertionError("it never ends")
@@ -71,24 +71,16 @@ def test_what_moves_for_ever_is_over_with_the_time():
 
 
 def test_the_time_limit_goes_before_everything_else():
-    end = EndOfRun(Limits(first_motion_s=TICK_S, rest_s=TICK_S, total_s=TICK_S))
-    end.submission_gone()
-    assert ends(lambda tick: at(1.0), end) == (1, "time_limit")
+    limits = Limits(first_motion_s=TICK_S, rest_s=TICK_S, total_s=TICK_S)
+    assert ends(lambda tick: at(1.0), limits, gone_tick=0) == (1, "time_limit")
 
 
 def test_the_last_commands_of_a_submission_that_is_gone_may_still_arrive():
-    end = EndOfRun(LIMITS)
-    for tick in range(1, 6):
-        assert end.after(tick, turtles(at(1.0))) == ""
-    end.submission_gone()
-    found = [end.after(tick, turtles(at(1.0))) for tick in range(6, 6 + GRACE_TICKS)]
-    assert found == [""] * (GRACE_TICKS - 1) + ["gone"]
+    assert ends(lambda tick: at(1.0), gone_tick=5) == (5 + GRACE_TICKS, "gone")
 
 
 def test_a_submission_that_is_gone_may_have_left_something_that_moves():
-    end = EndOfRun(LIMITS)
-    end.submission_gone()
-    assert ends(lambda tick: at(min(tick, 50)), end) == (50 + REST, "rest")
+    assert ends(lambda tick: at(min(tick, 50)), gone_tick=0) == (50 + REST, "rest")
 
 
 def test_a_turtle_that_is_no_more_stands_still():
