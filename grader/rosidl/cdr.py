@@ -15,7 +15,6 @@ import array
 import importlib
 import re
 import struct
-from collections.abc import Iterable
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -41,12 +40,6 @@ class CdrWriter:
         """Write a string; what UTF-8 cannot hold, as half a surrogate pair, becomes '?'."""
         self.octets(value.encode("utf-8", errors) + b"\x00")
 
-    def numbers(self, values: Iterable[float]) -> None:
-        """Write a sequence of float64."""
-        listed = list(values)
-        self.number("I", len(listed))
-        self.array(listed, _DOUBLE)
-
     def array(self, values: Any, dtype: np.dtype[Any]) -> None:
         """Write numbers without how many they are."""
         if len(values):
@@ -57,12 +50,6 @@ class CdrWriter:
         """Write a sequence of uint8."""
         self.number("I", len(value))
         self._data += value
-
-    def header(self, header: Any) -> None:
-        """Write a std_msgs/Header."""
-        self.number("i", header.stamp.sec)
-        self.number("I", header.stamp.nanosec)
-        self.text(header.frame_id)
 
     def message(self) -> bytes:
         """Return the whole message, with its mark."""
@@ -199,9 +186,16 @@ def module_of(slot: Any) -> str:
     return f"{'.'.join(slot.namespaces)}._{name}"
 
 
+#: Namespaces and name of a message -> its class.
+_INSTALLED: Final[dict[tuple[str, ...], Any]] = {}
+
+
 def installed(slot: Any) -> Any:
     """Return the installed class of a message."""
-    return getattr(importlib.import_module(module_of(slot)), slot.name)
+    key = (*slot.namespaces, slot.name)
+    if key not in _INSTALLED:
+        _INSTALLED[key] = getattr(importlib.import_module(module_of(slot)), slot.name)
+    return _INSTALLED[key]
 
 
 def is_made(kind: Any) -> bool:

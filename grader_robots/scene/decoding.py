@@ -1,11 +1,11 @@
-"""Messages to bytes and back, as plain data; their definitions, and nothing of ROS."""
+"""Messages out of their bytes, as plain data; their definitions, and nothing of ROS."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from grader.rosidl.cdr import CdrReader, CdrWriter, string_of
+from grader.rosidl.cdr import CdrReader, string_of
 
 JOINT_STATE, TF_MESSAGE = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 STRING = "std_msgs/msg/String"
@@ -62,37 +62,6 @@ class Transform(NamedTuple):
     child: str
     translation: tuple[float, float, float]
     rotation: tuple[float, float, float, float]
-
-
-# To bytes -------------------------------------------------------------------------------------
-
-
-def joint_state_bytes(message: Any) -> bytes:
-    """A sensor_msgs/JointState of rclpy, or what has its fields."""
-    made = CdrWriter()
-    made.header(message.header)
-    made.number("I", len(message.name))
-    for name in message.name:
-        made.text(name)
-    for values in (message.position, message.velocity, message.effort):
-        made.numbers(values)
-    return made.message()
-
-
-def tf_bytes(message: Any) -> bytes:
-    """A tf2_msgs/TFMessage of rclpy, or what has its fields."""
-    made = CdrWriter()
-    made.number("I", len(message.transforms))
-    for each in message.transforms:
-        made.header(each.header)
-        made.text(each.child_frame_id)
-        moved, turned = each.transform.translation, each.transform.rotation
-        for value in (moved.x, moved.y, moved.z, turned.x, turned.y, turned.z, turned.w):
-            made.number("d", value)
-    return made.message()
-
-
-# From bytes -----------------------------------------------------------------------------------
 
 
 def joint_states(tick: int, data: bytes) -> HeardJointState:

@@ -1,4 +1,4 @@
-"""Moves a robot without ROS: a function takes a submission's place, and answers tick by tick.
+"""Moves a robot without a node: a function takes a submission's place, and answers tick by tick.
 
 Among such functions are odd ones, which checks have to survive.
 """
@@ -7,12 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from types import SimpleNamespace
-from typing import Any, Final
+from typing import Final
 
 from grader.recording.subject import Trace
 from grader.rosidl import cdr
-from grader_robots.scene import decoding
 from grader_robots.scene.trace import (
     DESCRIPTION,
     JOINT_STATES,
@@ -56,34 +54,18 @@ def drive(controller: Controller, ticks: int, description: str) -> RobotTrace:
 
 def joint_state(stamp_ns: int, names: Sequence[str], positions: Sequence[float]) -> Said:
     """A message on /joint_states."""
-    message = SimpleNamespace(
-        header=_header(stamp_ns, ""), name=names, position=positions, velocity=(), effort=()
-    )
-    return JOINT_STATES, decoding.joint_state_bytes(message)
+    from sensor_msgs.msg import JointState
+
+    message = JointState(name=names, position=positions)
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp_ns, 10**9)
+    return JOINT_STATES, cdr.serialise(message)
 
 
 def tf(*placed: Placed, topic: str = TF) -> Said:
     """A message on /tf, or another topic."""
-    each = [
-        SimpleNamespace(
-            header=_header(one.stamp_ns, one.frame),
-            child_frame_id=one.child_frame,
-            transform=SimpleNamespace(
-                translation=_named("xyz", one.translation), rotation=_named("xyzw", one.rotation)
-            ),
-        )
-        for one in placed
-    ]
-    return topic, decoding.tf_bytes(SimpleNamespace(transforms=each))
+    from robot_py.robot_state_publisher import tf_message
 
-
-def _header(stamp_ns: int, frame_id: str) -> Any:
-    sec, nanosec = divmod(stamp_ns, 1_000_000_000)
-    return SimpleNamespace(stamp=SimpleNamespace(sec=sec, nanosec=nanosec), frame_id=frame_id)
-
-
-def _named(names: str, values: Sequence[float]) -> Any:
-    return SimpleNamespace(**dict(zip(names, values, strict=True)))
+    return topic, cdr.serialise(tf_message(placed))
 
 
 # Odd things that a robot's node may publish ------------------------------------------------------

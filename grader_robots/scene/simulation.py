@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from rclpy.node import Node
@@ -14,7 +13,6 @@ from tf2_msgs.msg import TFMessage
 from grader.message import Message
 from grader.rosidl import cdr
 from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Simulation, arrived
-from grader_robots.scene import decoding
 from grader_robots.scene.trace import (
     DESCRIPTION,
     JOINT_STATES,
@@ -32,14 +30,6 @@ DEPTH = 1000
 AS_STATE_PUBLISHER = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 AS_LISTENER = QoSProfile(depth=DEPTH)
 AS_STATIC_LISTENER = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-#: Topic -> the bytes in which its messages are recorded.
-BYTES: dict[str, Callable[[Any], bytes]] = {
-    JOINT_STATES: decoding.joint_state_bytes,
-    TF: decoding.tf_bytes,
-    TF_STATIC: decoding.tf_bytes,
-    DESCRIPTION: lambda message: cdr.string(message.data),
-}
 
 
 class RobotSimulation(Simulation):
@@ -134,10 +124,10 @@ class StateNode(Node):
                 self._on(topic, message, now_ns)
 
     def _on(self, topic: str, message: Any, now_ns: int) -> None:
-        answer = self._recorder.answer(topic, BYTES[topic](message), now_ns)
+        answer = self._recorder.answer(topic, cdr.serialise(message), now_ns)
         if answer is not None:
             self._send(TF, tf_message(answer))
 
     def _send(self, topic: str, message: Any) -> None:
-        self._recorder.publishes(topic, BYTES[topic](message))
+        self._recorder.publishes(topic, cdr.serialise(message))
         self._publishers_of[topic].publish(message)

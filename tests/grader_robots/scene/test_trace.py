@@ -67,7 +67,7 @@ def test_messages_survive_the_way_from_process_to_process(walk):
 
 def test_a_number_that_is_none_stays_one():
     def odd(tick, now_ns):
-        return [joint_state(now_ns, ["turn", "\udcff", "turn"], [float("nan"), float("inf"), 1])]
+        return [joint_state(now_ns, ["turn", "\ufffd", "turn"], [float("nan"), float("inf"), 1])]
 
     made = drive(odd, 3, URDF)
     assert there(made).messages == made.messages
