@@ -2,6 +2,8 @@
 
     .venv/bin/python benchmarks/grading.py [--real] [--repetitions N] [--only TABLE...]
 
+On a part of a processor: in a container with that quota, as `docker run --cpus 0.5`.
+
 Machines differ, so every table also has multiples of two yardsticks, which are measured again
 before it: the start of a bare rclpy process, and a process that handles 3,449 poses.
 `measuring.py` explains these, and what processor time and memory are here. No test reads any of
@@ -17,13 +19,10 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -49,148 +48,85 @@ STYLES = {
     "multi_threaded": "MultiThreadedExecutor, awaits",
 }
 PLAN = Plan(Limits(first_motion_s=5, rest_s=3, total_s=120))
-PHASES = ("start", "discovery", "ticking", "shutdown")
 AT_ONCE = (1, 2, 4)
-#: The share of a processor in the smallest container of Gradescope.
-HALF = 0.5
-TABLES = ("runs", "casts", "commands", "rates", "half")
+TABLES = ("runs", "casts", "commands", "rates")
 #: Nodes beside a cast: exercises of which the official solution is run.
 TUTORIALS = ("talker", "service_server", "action_server", "qos")
 #: What `grader run --watch` prints when it has graded.
 GRADED = "Waiting for the next save"
-#: Between two readings of the processor time of a run, to divide it among its phases [s].
-READ_S = 0.005
+#: Work in a group returns what it cost, and something more; `Do` repeats it in another process.
+Work = Callable[..., tuple[Cost, Any]]
+Do = Callable[..., list[tuple[Cost, Any]]]
 
 
-# Work in a separate process. Each returns when its parts began and ended [s, monotonic] -------
+# Work in a separate process, whose group comes first ----------------------------------------------
 
 
-def virtual_run(path: Path) -> tuple[list[float], int]:
+def virtual_run(own: Group, path: Path) -> tuple[Cost, int]:
     """Run a submission once in virtual time; also return the ticks."""
     with grader.open_submission(path) as submission:
-        marks: dict[str, float] = {}
-        begun = time.monotonic()
-        recording = virtual_time.run(submission, PLAN, marks=marks)
-        ended = time.monotonic()
+        begun = own.now()
+        recording = virtual_time.run(submission, PLAN)
+        cost = own.since(begun)
     if recording.run.time != "virtual":
         raise RuntimeError(f"{path.stem}: {recording.run.flags}")
-    return [begun, marks["met"], marks["connected"], marks["over"], ended], recording.run.ticks
+    return cost, recording.run.ticks
 
 
-def cast_run(path: Path, exercise: str) -> tuple[list[float], int]:
+def cast_run(own: Group, path: Path, exercise: str) -> tuple[Cost, int]:
     """Run the usual case of an exercise with a cast once; also return the ticks."""
     with grader.open_submission(path) as submission:
         plan, *_ = grading.plan(submission, load_exercise(exercise))
-        begun = time.monotonic()
+        begun = own.now()
         recording = virtual_time.run(submission, plan)
-        return [begun, time.monotonic()], recording.run.ticks
+        return own.since(begun), recording.run.ticks
 
 
-def cast_grading(path: Path, exercise: str) -> tuple[list[float], float]:
+def cast_grading(own: Group, path: Path, exercise: str) -> tuple[Cost, float]:
     """Grade a submission with all its cases; also return the score."""
-    begun = time.monotonic()
+    begun = own.now()
     score = grader.grade(path, exercise).score
-    return [begun, time.monotonic()], score
+    return own.since(begun), score
 
 
-def real_run(path: Path) -> tuple[list[float], int]:
+def real_run(own: Group, path: Path) -> tuple[Cost, int]:
     """Run a submission once in real time; also return the ticks."""
     with grader.open_submission(path) as submission:
-        begun = time.monotonic()
+        begun = own.now()
         recording = real_time.run(submission, PLAN)
-        return [begun, time.monotonic()], recording.run.ticks
+        return own.since(begun), recording.run.ticks
 
 
-def gradings(path: Path, at_once: int) -> tuple[list[float], list[float]]:
+def gradings(own: Group, path: Path, at_once: int) -> tuple[Cost, list[float]]:
     """Grade a submission as many times at once, all its runs each; also return the scores."""
-    begun = time.monotonic()
+    begun = own.now()
     with ThreadPoolExecutor(at_once) as pool:
         scores = [result.score for result in pool.map(grader.grade, [path] * at_once)]
-    return [begun, time.monotonic()], scores
+    return own.since(begun), scores
 
 
 # Measuring that work ------------------------------------------------------------------------------
 
 
-class CpuReadings:
-    """Samples a group's processor time: how much was used between two times."""
-
-    def __init__(self, measured: Group) -> None:
-        self._measured = measured
-        self._readings: list[tuple[float, float]] = []
-        self._done = threading.Event()
-        self._thread = threading.Thread(target=self._read_on, daemon=True)
-
-    def __enter__(self) -> CpuReadings:
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._done.set()
-        self._thread.join()
-
-    def between(self, begin_s: float, end_s: float) -> Cost:
-        """Return the cost between two times of the monotonic clock [s]."""
-        has_any = len(self._readings) > 1
-        return Cost(end_s - begin_s, self._at(end_s) - self._at(begin_s) if has_any else None)
-
-    def _at(self, when_s: float) -> float:
-        """Interpolate between the readings before and after."""
-        readings = self._readings
-        after = next((n for n, (at, _) in enumerate(readings) if at >= when_s), len(readings) - 1)
-        (t0, cpu0), (t1, cpu1) = readings[max(after - 1, 0)], readings[after]
-        return cpu1 if t1 <= t0 else cpu0 + (cpu1 - cpu0) * min((when_s - t0) / (t1 - t0), 1.0)
-
-    def _read_on(self) -> None:
-        while (used := self._measured.cpu_s()) is not None:
-            self._readings.append((time.monotonic(), used))
-            if self._done.is_set():  # one more after the end
-                return
-            self._done.wait(READ_S)
-
-
-class Worker:
-    """A process in a group, which does one job after the other."""
-
-    def __init__(self, measured: Group, pool: ProcessPoolExecutor) -> None:
-        self.group, self._pool = measured, pool
-
-    def do(
-        self, work: Callable[..., tuple[list[float], Any]], *arguments: object, times: int = 1
-    ) -> list[tuple[Cost, list[Cost], Any]]:
-        """Repeat the work; return each time the whole, its parts, and the work's other result."""
-        with CpuReadings(self.group) as watch:
-            answers = [self._pool.submit(work, *arguments).result() for _ in range(times)]
-        return [
-            (watch.between(edges[0], edges[-1]), [watch.between(*p) for p in pairwise(edges)], more)
-            for edges, more in answers
-        ]
-
-
 @contextmanager
-def worker(cpus: float | None = None) -> Iterator[Worker]:
-    """Start a worker for some jobs."""
+def worker() -> Iterator[Do]:
+    """Start a process in a group, which does one job after the other."""
     spawn = multiprocessing.get_context("spawn")
-    with measuring.group(cpus) as measured, ProcessPoolExecutor(1, spawn) as pool:
-        with measured.entered():
+    with measuring.group() as own, ProcessPoolExecutor(1, spawn) as pool:
+        with own.entered():
             pool.submit(os.getpid).result()  # starts it
-        yield Worker(measured, pool)
+
+        def do(work: Work, *arguments: object, times: int = 1) -> list[tuple[Cost, Any]]:
+            return [pool.submit(work, own, *arguments).result() for _ in range(times)]
+
+        yield do
 
 
-def warm_runs(
-    path: Path, repetitions: int, cpus: float | None = None
-) -> tuple[list[tuple[Cost, list[Cost], Any]], float | None]:
-    """Run a submission again and again in one process; also return the peak [MiB]."""
-    with worker(cpus) as at_work:
-        at_work.do(virtual_run, path)
-        return at_work.do(virtual_run, path, times=repetitions), at_work.group.peak_mib()
-
-
-def command_cold(repetitions: int, cpus: float | None = None) -> list[Cost]:
+def command_cold(repetitions: int) -> list[Cost]:
     """Measure `grader run` of the reference, each in a fresh process, everything written."""
     with tempfile.TemporaryDirectory() as folder:
         words = [sys.executable, "-m", "grader", "run", str(REFERENCE), "--out", folder]
-        return [measuring.command(words, cpus=cpus) for _ in range(repetitions)]
+        return [measuring.command(words) for _ in range(repetitions)]
 
 
 def command_warm(repetitions: int) -> list[Cost]:
@@ -207,15 +143,13 @@ def command_warm(repetitions: int) -> list[Cost]:
             )
         assert process.stderr
         for number in range(repetitions + 1):
-            with CpuReadings(measured) as watch:
-                begun = time.monotonic()
-                if number:
-                    path.write_bytes(REFERENCE.read_bytes() + b"# saved again\n" * number)
-                if not any(line.startswith(GRADED) for line in process.stderr):
-                    raise SystemExit("grader run --watch ended")
-                ended = time.monotonic()
+            begun = measured.now()
             if number:
-                samples.append(replace(watch.between(begun, ended), peak_mib=measured.peak_mib()))
+                path.write_bytes(REFERENCE.read_bytes() + b"# saved again\n" * number)
+            if not any(line.startswith(GRADED) for line in process.stderr):
+                raise SystemExit("grader run --watch ended")
+            if number:
+                samples.append(measured.since(begun))
         process.send_signal(signal.SIGINT)
         with suppress(subprocess.TimeoutExpired):
             process.wait(10)
@@ -229,10 +163,8 @@ def command_warm(repetitions: int) -> list[Cost]:
 class Units:
     """Both yardsticks, measured at the beginning of a table."""
 
-    def __init__(
-        self, env: dict[str, str], repetitions: int, *titles: str, cpus: float | None = None
-    ) -> None:
-        starts, floors = measuring.yardsticks(env, repetitions, cpus)
+    def __init__(self, env: dict[str, str], repetitions: int, *titles: str) -> None:
+        starts, floors = measuring.yardsticks(env, repetitions)
         self._units = (median(starts), median(floors))
         measured = ("", "wall [s]", "CPU [s]", "in starts (wall / CPU)", "in floors (wall / CPU)")
         measuring.head(*measured, *titles)
@@ -248,21 +180,22 @@ class Units:
 
 def table_of_runs(env: dict[str, str], repetitions: int, with_real: bool) -> None:
     """Print the costs of a run of the reference and of each style."""
-    print("\n## One run, warm: wall and CPU, and the stages of each (wall / CPU)")
-    titles = ("simulated [s]", *PHASES, "peak of the process and its runs [MiB]")
+    print("\n## One run, warm")
+    titles = ("simulated [s]", "peak of the process and its runs [MiB]")
     units = Units(env, 3, *titles, *["real time [s]"] * with_real)
     paths = {"reference": REFERENCE}
     for name, text in STYLES.items():
         paths[text] = ROOT / "tests" / "submissions" / "styles" / f"{name}.py"
     for name, path in paths.items():
-        runs, peak_mib = warm_runs(path, repetitions)
-        phases = [median(samples) for samples in zip(*(parts for _, parts, _ in runs), strict=True)]
-        split = [f"{spread([s.wall_s], 3)} / {spread([s.cpu_s], 3)}" for s in phases]
-        cells = [f"{runs[0][2] * TICK_S:.1f}", *split, spread([peak_mib], 0)]
+        with worker() as do:
+            do(virtual_run, path)
+            runs = do(virtual_run, path, times=repetitions)
+        samples, ticks = [cost for cost, _ in runs], runs[0][1]
+        cells = [f"{ticks * TICK_S:.1f}", spread([samples[-1].peak_mib], 0)]
         if with_real:
-            with worker() as at_work:
-                cells += [f"{at_work.do(real_run, path)[0][0].wall_s:.1f}"]
-        units.row(name, [whole for whole, *_ in runs], *cells)
+            with worker() as do:
+                cells += [f"{do(real_run, path)[0][0].wall_s:.1f}"]
+        units.row(name, samples, *cells)
 
 
 def table_of_casts(env: dict[str, str], repetitions: int) -> None:
@@ -272,10 +205,10 @@ def table_of_casts(env: dict[str, str], repetitions: int) -> None:
     for name in TUTORIALS:
         path = ROOT / "tests" / "submissions" / "tutorials" / name / "right" / "official.py"
         for what, work in (("run of the usual case", cast_run), ("grading", cast_grading)):
-            with worker() as at_work:
-                at_work.do(work, path, name)
-                done = at_work.do(work, path, name, times=repetitions)
-            units.row(f"{name}: {what}", [whole for whole, *_ in done])
+            with worker() as do:
+                do(work, path, name)
+                done = do(work, path, name, times=repetitions)
+            units.row(f"{name}: {what}", [cost for cost, _ in done])
     Units(env, 3)
 
 
@@ -296,27 +229,14 @@ def table_of_rates(env: dict[str, str], repetitions: int) -> None:
     print("that of one grading: the wall time of all divided by their number")
     units = Units(env, 3, "gradings a minute", "peak [MiB]")
     for at_once in AT_ONCE:
-        with worker() as at_work:
-            at_work.do(gradings, REFERENCE, at_once)
-            jobs = at_work.do(gradings, REFERENCE, at_once, times=repetitions)
-            peak_mib = at_work.group.peak_mib()
+        with worker() as do:
+            do(gradings, REFERENCE, at_once)
+            jobs = [cost for cost, _ in do(gradings, REFERENCE, at_once, times=repetitions)]
         each = [
-            Cost(s.wall_s / at_once, None if s.cpu_s is None else s.cpu_s / at_once)
-            for s, *_ in jobs
+            Cost(s.wall_s / at_once, None if s.cpu_s is None else s.cpu_s / at_once) for s in jobs
         ]
         rates = spread((60 / sample.wall_s for sample in each), 0)
-        units.row(f"{at_once} at once", each, rates, spread([peak_mib], 0))
-
-
-def table_at_half(env: dict[str, str]) -> None:
-    """Print the costs of the reference on half a processor."""
-    with measuring.group(HALF) as tried:
-        neighbour = "a busy neighbour on the one core it may use"
-        how = "cgroup quota" if tried.core is None else neighbour
-    print(f"\n## The reference on half a processor ({how})")
-    units = Units(env, 2, cpus=HALF)
-    units.row("one run, warm", [whole for whole, *_ in warm_runs(REFERENCE, 2, HALF)[0]])
-    units.row("`grader run`, cold", command_cold(2, HALF))
+        units.row(f"{at_once} at once", each, rates, spread([jobs[-1].peak_mib], 0))
 
 
 def main() -> None:
@@ -342,8 +262,6 @@ def main() -> None:
             table_of_commands(env, few)
         if "rates" in options.only:
             table_of_rates(env, few)
-        if "half" in options.only:
-            table_at_half(env)
     print(f"\nTook {time.monotonic() - begun:.0f} s; load after (1, 5, 15 minutes) {load()}")
 
 

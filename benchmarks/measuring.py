@@ -35,8 +35,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import TypeVar
 
-#: The period of a quota of a processor [us]; that of Docker's `--cpus`.
-PERIOD_US = 100_000
 #: Ticks of the reference controller's nominal run.
 POSES = 3449
 ROOT = Path(__file__).resolve().parents[1]
@@ -135,19 +133,14 @@ class Group:
         name: of its folder in each hierarchy of control groups.
         parents: controller -> the folder of this process's group, below which the new one is made;
             "" for cgroup v2.
-        core: the only core that its processes may use, or None.
     """
 
     name: str
     parents: Mapping[str, Path]
-    core: int | None = None
 
     @contextmanager
     def entered(self) -> Iterator[None]:
         """Move this process into the group for a moment: those that it starts then stay there."""
-        cores = os.sched_getaffinity(0)
-        if self.core is not None:
-            os.sched_setaffinity(0, {self.core})  # of this thread; a child inherits it
         for parent in set(self.parents.values()):
             _enter(parent / self.name)
         try:
@@ -155,7 +148,17 @@ class Group:
         finally:
             for parent in set(self.parents.values()):
                 _enter(parent)
-            os.sched_setaffinity(0, cores)
+
+    def now(self) -> Cost:
+        """Return the time, and what of a processor was used up to it."""
+        return Cost(time.monotonic(), self.cpu_s())
+
+    def since(self, begun: Cost) -> Cost:
+        """Return what was used since `now` returned this; the peak is that of all the time."""
+        now, cpu_s = self.now(), None
+        if now.cpu_s is not None and begun.cpu_s is not None:
+            cpu_s = now.cpu_s - begun.cpu_s
+        return Cost(now.wall_s - begun.wall_s, cpu_s, self.peak_mib())
 
     def cpu_s(self) -> float | None:
         """Return user and system time up to now [s]; what runs this moment may lack a tick."""
@@ -169,16 +172,6 @@ class Group:
         """Return the most memory up to now [MiB]."""
         file = self._file("", "memory.peak") or self._file("memory", "memory.max_usage_in_bytes")
         return int(file.read_text()) / 2**20 if file else None
-
-    def limit(self, cpus: float) -> bool:
-        """Limit its processes together to so much of a processor; False if that is not allowed."""
-        quota_us = int(cpus * PERIOD_US)
-        file, text = self._file("", "cpu.max"), f"{quota_us} {PERIOD_US}"
-        if not file:
-            file, text = self._file("cpu", "cpu.cfs_quota_us"), f"{quota_us}"
-        with suppress(OSError):
-            return bool(file and file.write_text(text))
-        return False
 
     def end(self) -> None:
         """Kill the processes that are still in it, and remove it."""
@@ -201,25 +194,12 @@ class Group:
 
 
 @contextmanager
-def group(cpus: float | None = None) -> Iterator[Group]:
-    """Make a group; with `cpus`, its processes get that much of a processor.
-
-    If no quota can be set, a busy process shares one core with the group, which then gets about
-    half of it.
-    """
+def group() -> Iterator[Group]:
+    """Make a group, and end what is left in it."""
     made = _new_group()
-    neighbour = None
     try:
-        if cpus is not None and not made.limit(cpus):
-            made.core = min(os.sched_getaffinity(0))
-            pinned = f"import os\nos.sched_setaffinity(0, {{{made.core}}})\n"
-            code = f"{pinned}while os.getppid() == {os.getpid()}: 0"
-            neighbour = subprocess.Popen([sys.executable, "-c", code])
         yield made
     finally:
-        if neighbour:
-            neighbour.kill()
-            neighbour.wait()
         made.end()
 
 
@@ -251,9 +231,7 @@ def _current_groups() -> Iterator[tuple[list[str], Path]]:
     mounts = [line.split() for line in Path("/proc/mounts").read_text().splitlines()]
     for line in Path("/proc/self/cgroup").read_text().splitlines():
         _, names, path = line.split(":", 2)
-        controllers = [
-            name for name in names.split(",") if name in ("", "cpu", "cpuacct", "memory")
-        ]
+        controllers = [name for name in names.split(",") if name in ("", "cpuacct", "memory")]
         kind = "cgroup" if names else "cgroup2"
         for mount in mounts:
             ours = mount[2] == kind and (not names or names in mount[3] or mount[1].endswith(names))
@@ -265,24 +243,22 @@ def _current_groups() -> Iterator[tuple[list[str], Path]]:
 # Measuring ------------------------------------------------------------------------------------
 
 
-def command(
-    words: Sequence[str], env: Mapping[str, str] | None = None, cpus: float | None = None
-) -> Cost:
+def command(words: Sequence[str], env: Mapping[str, str] | None = None) -> Cost:
     """Run a command to its end.
 
     Raises:
         SystemExit: it failed.
     """
-    with group(cpus) as measured, tempfile.TemporaryFile() as output:
-        begun = time.monotonic()
+    with group() as measured, tempfile.TemporaryFile() as output:
+        begun = measured.now()
         with measured.entered():
             process = subprocess.Popen(words, cwd=ROOT, env=env, stdout=output, stderr=output)
         failed = process.wait()
-        wall_s = time.monotonic() - begun
+        cost = measured.since(begun)
         if failed:
             output.seek(0)
             raise SystemExit(f"{output.read().decode()}\n{' '.join(words)}: exit {failed}")
-        return Cost(wall_s, measured.cpu_s(), measured.peak_mib())
+        return cost
 
 
 # Yardsticks -----------------------------------------------------------------------------------
@@ -320,13 +296,11 @@ def floor() -> None:
     rclpy.shutdown()
 
 
-def yardsticks(
-    env: Mapping[str, str], repetitions: int, cpus: float | None = None
-) -> list[list[Cost]]:
+def yardsticks(env: Mapping[str, str], repetitions: int) -> list[list[Cost]]:
     """Measure both yardsticks, in turns."""
 
     def process(name: str) -> Callable[[], Cost]:
-        return lambda: command([sys.executable, __file__, name], env, cpus)
+        return lambda: command([sys.executable, __file__, name], env)
 
     return in_turns(repetitions, process("start"), process("floor"))
 
