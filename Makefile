@@ -101,7 +101,6 @@ demo: install
 bench: install
 	@$(BIN)/python benchmarks/node.py
 	@$(BIN)/python benchmarks/grading.py
-	@$(BIN)/python benchmarks/sandbox.py
 
 wheel:
 	@scripts/wheel.sh

@@ -277,11 +277,6 @@ def _is_answer(refusal: Refusal) -> bool:
     return refusal.number == errno.ENOENT and refusal.step == TRIAL_STEP
 
 
-def offered(isolated: Isolation) -> list[Level]:
-    """Return all levels that there are here, the best first; for tests and benchmarks."""
-    return [level for level in _candidates() if _try(level, isolated) is None]
-
-
 def _candidates() -> Iterator[Level]:
     """Yield all possible levels, the best first."""
     separate = [SEPARATE] if os.geteuid() == 0 else []

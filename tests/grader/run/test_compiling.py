@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 import random
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from importlib import metadata
 
 import pytest
 
 from grader import scratch
+from grader.errors import NotOffered
 from grader.message import msg
 from grader.recording.recording import OwnInterfaces
 from grader.rosidl import compiler
@@ -20,7 +21,7 @@ from grader.rosidl.definitions import Definitions, slot_of
 from grader.run import compiling, real_time, run_context
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
-from grader.run.processes import levels, network
+from grader.run.processes import levels
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.grader.rosidl.comparing import differences
@@ -81,9 +82,10 @@ def at_level(level):
     levels.only("")
 
 
-def offered():
-    with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
-        return [level.level for level in levels.offered(isolated)]
+def is_offered(level):
+    with suppress(NotOffered):
+        return levels.here(level).level == level
+    return False
 
 
 def test_dds_carries_messages_services_and_actions_of_ones_own():
@@ -97,7 +99,7 @@ def test_dds_carries_messages_services_and_actions_of_ones_own():
 def test_they_can_be_imported_not_written_into_and_are_kept(sends, monkeypatch):
     output = run(sends, NUM).output
     assert HEARD in output
-    assert ("written into" in output) == (offered()[0] == levels.LIMITS)
+    assert ("written into" in output) == (levels.here().level == levels.LIMITS)
     monkeypatch.setattr(compiling, "_built", None)
     assert HEARD in run(sends, NUM).output
 
@@ -105,7 +107,7 @@ def test_they_can_be_imported_not_written_into_and_are_kept(sends, monkeypatch):
 @pytest.mark.more("the best level stands for the others")
 @pytest.mark.parametrize("level", levels.LEVELS[1:])
 def test_at_each_level_they_can_be_imported_and_not_written_into(level, sends):
-    if level not in offered():
+    if not is_offered(level):
         pytest.skip(f"no {level} here")
     is_lowest = level == levels.LIMITS
     package = "lowest_interfaces" if is_lowest else "demo_interfaces"
