@@ -1,10 +1,10 @@
-"""Measure what a class costs: `grader batch` for 1, 2, 4 jobs, and where the time goes.
+"""Measure what a class costs: `grader batch` for 1, 2, 4 jobs.
 
     .venv/bin/python benchmarks/class.py [--count N] [--jobs 1 2 4] [--seed N]
 
 A class made of the fixtures (scripts/make_class.py) is graded anew for each number of jobs. It
-prints gradings a minute, CPU seconds a grading and the peak of memory, all processes together; how
-long each step of one submission takes; and the cost of 1,000 and 100,000 submissions.
+prints gradings a minute, CPU seconds a grading and the peak of memory, all processes together; and
+the cost of 1,000 and 100,000 submissions.
 """
 
 from __future__ import annotations
@@ -13,18 +13,9 @@ import argparse
 import subprocess
 import sys
 import tempfile
-import time
-from itertools import pairwise
 from pathlib import Path
 
 from measuring import ROOT, command, head, machine, row, spread
-
-from grader import grading, judging, open_submission
-from grader.batch.page.thumb import thumb
-from grader.batch.similar import features, sources
-from grader.exercise.loading import load_exercise
-from grader.reports import Report, render
-from grader.run.processes import cores
 
 HOUR_S = 3600.0
 
@@ -35,33 +26,8 @@ def batch(submissions: Path, out: Path, jobs: int) -> list[str]:
     return [*words, "--jobs", str(jobs)]
 
 
-def steps(path: Path, place: Path) -> dict[str, float]:
-    """Grade a submission; return the wall time of each step [s]."""
-    exercise, run = load_exercise("turtlesim_challenge"), grading.RUNNERS["virtual"]
-    place.mkdir()
-    ends = {"": time.perf_counter()}
-    with open_submission(path) as submission:
-        ends["read what was handed in"] = time.perf_counter()
-        recordings = grading.run_all(submission, exercise, run)
-        ends["three runs"] = time.perf_counter()
-        if submission.copy is not None:
-            sources.keep(submission.copy.folder, place / sources.SOURCE)
-        features.features_file(place / sources.SOURCE, recordings.nominal)
-        thumb(recordings)
-        ends["for the pages of the class"] = time.perf_counter()
-    judging.save_recordings(recordings, place / "recording")
-    ends["write recordings"] = time.perf_counter()
-    result = judging.judge(recordings, exercise, submission="x")
-    ends["judge"] = time.perf_counter()
-    render("html", [Report.of(result, place, recordings, "whole")])
-    ends["report page"] = time.perf_counter()
-    judging.judge(judging.load_recordings(place / "recording"), exercise)
-    ends["(a regrade: read and judge)"] = time.perf_counter()
-    return {step: end - before for (_, before), (step, end) in pairwise(ends.items())}
-
-
 def measure(submissions: Path, folder: Path, count: int, jobs: list[int]) -> None:
-    """Print both tables."""
+    """Print the table."""
     head("jobs", "wall [s]", "gradings a minute", "CPU a grading [s]", "peak memory [MiB]")
     samples = []
     for number in jobs:
@@ -73,12 +39,6 @@ def measure(submissions: Path, folder: Path, count: int, jobs: list[int]) -> Non
     if cpu_s := [sample for sample in samples if sample is not None]:
         for many in (1_000, 100_000):
             print(f"{many:,} submissions: {many * min(cpu_s) / HOUR_S:.1f} core hours")
-    usual = ROOT / "turtlesim_challenge" / "turtle_controller.py"
-    steps(usual, folder / "first")  # imports, and processes that wait for the next
-    found = [steps(usual, folder / f"step{number}") for number in range(10)]
-    head(f"one right solution at a time, {cores.share():g} cores", "wall [s]")
-    for step in found[0]:
-        row(step, spread((times[step] for times in found), 3))
 
 
 def main() -> None:
