@@ -1,14 +1,14 @@
-"""Grade all fixture submissions with a checkout's grader, and compare such snapshots.
+"""Grade all fixture submissions with a checkout's grader, for a comparison.
 
-    python scripts/snapshot.py take DIR [--grader PATH/TO/grader] [--jobs N] [--only NAME...]
-    python scripts/snapshot.py compare BEFORE AFTER
+    python scripts/snapshot.py BEFORE [--grader PATH/TO/grader] [--jobs N] [--only NAME...]
+    python scripts/snapshot.py AFTER
+    diff -rq BEFORE AFTER
 
-To check that a change leaves behaviour as it is, take a snapshot before and one after it. `take`
-uses only the command line, so it works for any two versions of the grader. `compare` compares,
-byte for byte, the result, the recordings and every report format; what differs between equal runs
-(wall time, dates and versions) is removed first, and pictures inside reports are compared by their
-pixels. Runs in real time are compared by their outcome alone.
-It ends with 1 where anything differs.
+To check that a change leaves behaviour as it is, take a snapshot before and one after it. Only the
+command line is used, so it works for any two versions of the grader. A snapshot has the result, the
+recordings and every report format, without what differs between equal runs (wall time, dates and
+versions), and with a hash of its pixels for each picture inside a report. Of runs in real time
+there is the outcome alone.
 """
 
 from __future__ import annotations
@@ -98,6 +98,7 @@ def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
     if done.returncode:
         (folder / name).mkdir(exist_ok=True)
         (folder / name / "failed.txt").write_text(f"{done.returncode}\n{done.stderr}")
+        _remove_what_differs(folder / name, [])
         return f"{name}: exit {done.returncode}"
     file = folder / name / "result.json"
     result = json.loads(file.read_text(encoding="utf-8"))
@@ -110,6 +111,7 @@ def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
         command = [grader, "report", f"{name}/result.json", "--format", form]
         report = subprocess.run(command, cwd=folder, env=env, capture_output=True)
         (folder / name / f"report.{form}").write_bytes(report.stdout or report.stderr)
+    _remove_what_differs(folder / name, _runs(result))
     hashes = " ".join(run["trace_sha256"][:8] for run in _runs(result))
     return f"{name}: {result['score']} {result['run']['time']} {hashes}"
 
@@ -118,50 +120,18 @@ def _runs(result: dict[str, Any]) -> list[dict[str, Any]]:
     return [result["run"], *result.get("varied_runs", [])]
 
 
-def compare(before: Path, after: Path) -> int:
-    """Print what differs; return the number of submissions that do."""
-    names = sorted({path.name for folder in (before, after) for path in folder.iterdir()})
-    different = traces = files = 0
-    for name in names:
-        faults, counted = _differences(before / name, after / name)
-        files += counted
-        if (before / name / "result.json").exists():
-            result = json.loads((before / name / "result.json").read_text(encoding="utf-8"))
-            traces += len(_runs(result))
-        different += bool(faults)
-        for fault in faults:
-            print(f"{name}: {fault}")
-    print(f"{len(names)} submissions, {traces} runs, {files} files compared; {different} differ")
-    return different
-
-
-def _differences(before: Path, after: Path) -> tuple[list[str], int]:
-    if not before.is_dir() or not after.is_dir():
-        return [f"only in {before.parent if before.is_dir() else after.parent}"], 0
-    both = [_result(folder) for folder in (before, after)]
-    if any(run["time"] == "real" for result in both if result for run in _runs(result)):
-        seen = [
-            [(run["time"], run["outcome"], run["flags"]) for run in _runs(result)]
-            for result in both
-            if result
-        ]
-        return ([] if seen[0] == seen[-1] and len(seen) == 2 else [f"{seen}"]), 0
-    names = sorted(
-        {
-            path.relative_to(folder)
-            for folder in (before, after)
-            for path in folder.rglob("*")
-            if path.is_file() and path.name != CIRCUMSTANCES
-        }
-    )
-    faults = []
-    for name in names:
-        ours, theirs = before / name, after / name
-        if not ours.exists() or not theirs.exists():
-            faults.append(f"{name} is only {'after' if theirs.exists() else 'before'}")
-        elif _timeless(ours) != _timeless(theirs):
-            faults.append(f"{name} differs")
-    return faults, len(names)
+def _remove_what_differs(folder: Path, runs: list[dict[str, Any]]) -> None:
+    """Leave what is the same in equal runs; of those in real time, how they have ended."""
+    if any(run["time"] == "real" for run in runs):
+        shutil.rmtree(folder)
+        folder.mkdir()
+        ends = [(run["time"], run["outcome"], run["flags"]) for run in runs]
+        (folder / "runs.json").write_text(json.dumps(ends, indent=2), encoding="utf-8")
+    for path in filter(Path.is_file, folder.rglob("*")):
+        if path.name == CIRCUMSTANCES:
+            path.unlink()
+        else:
+            path.write_bytes(_timeless(path))
 
 
 def _timeless(path: Path) -> bytes:
@@ -180,28 +150,16 @@ def _pixels(found: re.Match[bytes]) -> bytes:
     return f"[{shown.size} {hashlib.sha256(shown.tobytes()).hexdigest()}]".encode()
 
 
-def _result(folder: Path) -> dict[str, Any] | None:
-    file = folder / "result.json"
-    return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
-
-
-def main() -> int:
-    """Run a verb; 1 if something differs."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
-    verbs = parser.add_subparsers(dest="verb", required=True)
-    taking, comparing = verbs.add_parser("take"), verbs.add_parser("compare")
-    taking.add_argument("folder", type=Path)
-    taking.add_argument("--jobs", type=int, default=2)
-    taking.add_argument("--only", nargs="*", default=[], metavar="NAME")
-    taking.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
-    comparing.add_argument("before", type=Path)
-    comparing.add_argument("after", type=Path)
+def main() -> None:
+    """Take a snapshot."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--only", nargs="*", default=[], metavar="NAME")
+    parser.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
     args = parser.parse_args()
-    if args.verb == "compare":
-        return int(compare(args.before, args.after) > 0)
     record(args.grader, args.folder, args.jobs, args.only)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
