@@ -35,7 +35,7 @@ help:
 	@echo "make needs     install what tests need of the machine: a browser, ..."
 	@echo "make lint      ruff and mypy"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
-	@echo "make bench     what the simulator and a grading cost: tables (about ten minutes)"
+	@echo "make bench     what the simulator and a grading cost: tables, in minutes"
 	@echo "make wheel     a wheel for each Python that is here, in dist/jazzy, each tried where there is no gcc"
 	@echo "make clean     remove everything that was made here"
 	@echo "PYTHON=python3.12 make install   with that Python (3.11, 3.12 or 3.13)"

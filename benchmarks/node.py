@@ -1,4 +1,4 @@
-"""Measure what the simulator costs, beside the original: a table, in about four minutes.
+"""Measure what the simulator costs, beside the original: a table, in about three minutes.
 
     .venv/bin/python benchmarks/node.py
 
@@ -8,7 +8,6 @@ machine with 2 cores. No test reads any of these numbers: they are for people.
 
 from __future__ import annotations
 
-import math
 import os
 import random
 import signal
@@ -34,8 +33,6 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from grader.run.processes import network
-from turtlesim_py.world.arena import TICK_NS, Arena
-from turtlesim_py.world.canvas import Canvas, Pen
 
 #: How often a figure is measured.
 REPETITIONS = 5
@@ -219,74 +216,16 @@ def cost_of_page(subscriber: Subscriber) -> None:
             figure("... standard deviation", "ms", list(deviations), 2)
 
 
-def most_turtles(subscriber: Subscriber) -> None:
-    """Print how many turtles hold 62.5 Hz while the node has one core only.
-
-    Turtles are added, a sixth more each time, until the poses of turtle1 come on average later
-    than every 16.2 ms, in three tries: other programs want that core too.
-    """
-
-    def holds_the_rate() -> bool:
-        gaps_ms = subscriber.gaps_ms(2.0)
-        return bool(gaps_ms) and statistics.mean(gaps_ms) < 1.0125 * TICK_NS / 1e6
-
-    with simulator() as process:
-        subscriber.spin_until(lambda: subscriber.stamps_ns)
-        core = min(os.sched_getaffinity(process.pid))
-        for thread in process.threads():
-            os.sched_setaffinity(thread.id, {core})
-        count, most = 1, 0
-        while any(holds_the_rate() for _ in range(3)):
-            most = count
-            more = math.ceil(count / 6) if count >= 16 else count
-            subscriber.spawn(more)
-            subscriber.spin_for(0.5)
-            count += more
-    figure("turtles at 62.5 Hz on one core", "", [most], 0)
-
-
-def per_second(work: Callable[[int], None], count: int) -> list[float]:
-    """Return the rate at which `work(count)` repeats its job [1/s]."""
-    rates = []
-    for _ in range(REPETITIONS):
-        begin = time.perf_counter()
-        work(count)
-        rates.append(count / (time.perf_counter() - begin))
-    return rates
-
-
-def bare_world() -> None:
-    """Print the rates of the world without ROS."""
-
-    def ticks(count: int) -> None:
-        arena = Arena()
-        for tick in range(count):
-            if tick % 30 == 0:
-                arena.command("turtle1", (2.0, 0.0, 0.0), (0.0, 0.0, 1.0))
-            arena.tick()
-
-    def strokes(count: int) -> None:
-        canvas, pen = Canvas(), Pen()
-        for number in range(count):
-            angle = number * 0.016
-            x, y = 250.0 + 90.0 * math.sin(angle), 250.0 + 90.0 * math.cos(angle)
-            canvas.draw_line(x + 1.4 * math.cos(angle), y - 1.4 * math.sin(angle), x, y, pen)
-
-    figure("ticks of the bare world, 1 driven turtle", "1/s", per_second(ticks, 20_000), 0)
-    figure("strokes of a tick's length", "1/s", per_second(strokes, 20_000), 0)
-
-
 def main() -> None:
     """Print the table, each line when it is known."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # the simulator is not left behind
     head("", "unit", "median (lowest-highest)", "the original")
-    bare_world()
     with network.reserve_domain() as number:
         os.environ["ROS_DOMAIN_ID"] = str(number)
         os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         rclpy.init(args=[])
         start_to_first_pose()
-        for part in (cost_of_node, pose_interval, cost_of_page, most_turtles):
+        for part in (cost_of_node, pose_interval, cost_of_page):
             subscriber = Subscriber()
             part(subscriber)
             subscriber.node.destroy_node()
