@@ -8,9 +8,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from grader.exercise.exercise import Exercise  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
-from grader.exercise.sheet import check_rubric, rubric  # noqa: E402
+from grader.exercise.sheet import check_rubric  # noqa: E402
 from grader.text import points  # noqa: E402
 
 PAGE = ROOT / "docs" / "rubric.md"
@@ -32,21 +31,25 @@ def page(old: str) -> str:
     first_in: dict[str, str] = {}  # what a check measures -> the first exercise with it
     for name in EXERCISES:
         exercise = load_exercise(name)
-        texts = {check.name: check_rubric(check, exercise.tolerances) for check in exercise.checks}
-        above = {
-            check: first_in[texts[check]] for check in exercise.points if texts[check] in first_in
-        }
-        first = (texts[check] for check in exercise.points if check not in above)
-        first_in |= {text: name for text in first if text}
+        checks = {check.name: check for check in exercise.checks}
+        above, own, first = [], [], {}
+        for check, worth in exercise.points.items():
+            text = check_rubric(checks[check], exercise.tolerances)
+            if text in first_in:
+                above.append(f"- `{check}`: {points(worth)} points, as in `{first_in[text]}`")
+                continue
+            waits = ", ".join(f"`{n}`" for n in checks[check].depends_on if n in exercise.points)
+            condition = f" · judged when passed: {waits}" if waits else ""
+            own.append(f"### {checks[check].title!s}: {worth:g} points\n\n`{check}`{condition}")
+            if text:
+                own.append(text)
+                first[text] = name
+        first_in |= first
         parts.append(f"## {exercise.title!s}\n\n`{name}`\n")
         if above:
-            parts.append("\n".join(_as_in(exercise, *each) for each in above.items()) + "\n")
-        parts.append(rubric(exercise, above))
+            parts.append("\n".join(above) + "\n")
+        parts.append("\n\n".join(own) + "\n")
     return f"{before}{FIRST}\n\n{chr(10).join(parts)}\n{LAST}{after}"
-
-
-def _as_in(exercise: Exercise, check: str, other: str) -> str:
-    return f"- `{check}`: {points(exercise.points[check])} points, as in `{other}`"
 
 
 if __name__ == "__main__":

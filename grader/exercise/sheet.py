@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -335,25 +335,3 @@ def in_force(text: str, tolerances: Mapping[str, Any]) -> str:
         return f"{100 * value:g} %" if found["percent"] else f"{value:g}"
 
     return _TOLERANCE.sub(put_in, text)
-
-
-def rubric(exercise: Exercise, left_out: Collection[str] = ()) -> str:
-    """Return the checks of an exercise with their points, as Markdown, without a heading.
-
-    Args:
-        left_out: names of checks that are described elsewhere.
-    """
-    known = {check.name: check for check in exercise.checks}
-    parts = []
-    for name, worth in exercise.points.items():
-        if name in left_out:
-            continue
-        check = known[name]
-        waits = [f"`{other}`" for other in check.depends_on if other in exercise.points]
-        heading = tr("{title}: {points} points", title=check.title, points=f"{worth:g}")
-        parts.append(f"### {heading}\n\n`{name}`")
-        if waits:
-            parts[-1] += " · " + tr("judged when passed: {titles}", titles=", ".join(waits))
-        if text := check_rubric(check, exercise.tolerances):
-            parts.append(text)
-    return "\n\n".join(parts) + "\n"
