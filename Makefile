@@ -31,7 +31,7 @@ help:
 	@echo "   test-lowest    ... make test with our dependencies at their lower bounds"
 	@echo "   test-kilted    ... make test with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
 	@echo "make mutate    do the tests notice a change?  (ARGS=\"grader/exercise --count 100\": in these modules)"
-	@echo "make size      lines and modules of each room, class names that stand twice, circles"
+	@echo "make size      lines and modules of each room, class names that stand twice"
 	@echo "make needs     install what tests need of the machine: a browser, ..."
 	@echo "make lint      ruff and mypy"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"

@@ -58,9 +58,3 @@ def test_class_names_that_stand_twice_are_shown_apart_from_those_of_ros(printed)
     assert "class names in several modules: 1\n" in printed
     assert "  Run: grader/run/run.py, world/turtle.py\n" in printed
     assert "doubles of ROS's API besides: Pose\n" in printed
-
-
-def test_a_circle_is_shown_and_which_arrow_in_it_runs_back_up(printed):
-    assert "arrows between rooms: 6; that run back up: 1\n" in printed
-    assert "  grader/batch -> grader/cli: grader/batch/pages.py:2\n" in printed
-    assert "circles: 1\n  grader/batch, grader/cli\n" in printed
