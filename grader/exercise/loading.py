@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,7 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
     """
     try:
         return _load(name_or_path)
-    except PermissionError as error:
+    except OSError as error:
         raise ExerciseError(
             "cannot read the exercise {name_or_path}: {strerror}: {filename}",
             name_or_path=repr(str(name_or_path)),
@@ -87,43 +88,41 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
 
 
 def _from_place(place: Place) -> Exercise:
-    try:
+    with _naming(place.folder):
         file = _read(place.description)
-        try:
+        with _placing(file):
             return build(_described(file, place), place)
-        except Mistake as mistake:
-            raise ExerciseError(file.describe(mistake)) from mistake
-    except OSError as error:
-        raise ExerciseError(
-            "cannot read {description}: {strerror}",
-            description=str(place.description),
-            strerror=error.strerror,
-        ) from None
-    except (ExerciseError, ValueError) as error:
-        raise ExerciseError(
-            "{path} is not an exercise: {why}", path=str(place.folder), why=reason(error)
-        ) from error
 
 
 def _from_file(path: Path) -> Exercise:
     if path.name == DESCRIPTION and places.is_exercise(path.parent):
         return _from_place(places.in_folder(path.parent))
-    try:
+    with _naming(path):
         edited = _read(path)
-        try:
+        with _placing(edited):
             _check_keys(edited.data)
             place, original = _original(edited.data.get("exercise"), path.parent)
             return build(_merged(original, edited.data), place)
-        except Mistake as mistake:
-            raise ExerciseError(edited.describe(mistake)) from mistake
-    except OSError as error:
-        raise ExerciseError(
-            "cannot read the exercise {path}: {strerror}", path=str(path), strerror=error.strerror
-        ) from None
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Name the folder or the file of an exercise in an error of it."""
+    try:
+        yield
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
             "{path} is not an exercise: {why}", path=str(path), why=reason(error)
         ) from error
+
+
+@contextmanager
+def _placing(file: YamlFile) -> Iterator[None]:
+    """Tell a mistake with its file and line."""
+    try:
+        yield
+    except Mistake as mistake:
+        raise ExerciseError(file.describe(mistake)) from mistake
 
 
 def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
@@ -131,10 +130,8 @@ def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
     if places.is_exercise(folder):
         beside = places.in_folder(folder)
         file = _read(beside.description)
-        try:
+        with _placing(file):  # which is another than the one that is being read
             described = _described(file, beside)
-        except Mistake as mistake:  # of another file than the one that is being read
-            raise ExerciseError(file.describe(mistake)) from mistake
         if described["exercise"] == name:
             return beside, described
     if not isinstance(name, str) or name not in names():
