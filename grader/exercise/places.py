@@ -106,9 +106,10 @@ def in_folder(folder: Path) -> Place:
 
 def _wrong_with(folder: Path) -> Message:
     """Say why there is no exercise in a folder; '' where there is one."""
-    names = (DESCRIPTION,) if _expects(folder) else (DESCRIPTION, CHECKS)
-    files = (folder / name for name in names)
-    return next((_instead_of(file) for file in files if not file.is_file()), NOTHING)
+    for name in (DESCRIPTION,) if _expects(folder) else (DESCRIPTION, CHECKS):
+        if not (folder / name).is_file():
+            return msg("it has no {name}", name=name)
+    return NOTHING
 
 
 def is_exercise(folder: Path) -> bool:
@@ -123,21 +124,6 @@ def _expects(folder: Path) -> bool:
             re.search(rb"^expect:", (folder / DESCRIPTION).read_bytes(), re.MULTILINE) is not None
         )
     return False
-
-
-def _instead_of(file: Path) -> Message:
-    """Say what lies where a file should be."""
-    if file.is_symlink() and not file.exists():
-        return msg(
-            "{name} is a link to {target}, which is not there",
-            name=file.name,
-            target=str(file.readlink()),
-        )
-    if file.is_dir():
-        return msg("{name} is a folder, not a file", name=file.name)
-    if file.exists():
-        return msg("{name} is not a regular file", name=file.name)
-    return msg("it has no {name}", name=file.name)
 
 
 def import_checks(place: Place) -> Checks:
