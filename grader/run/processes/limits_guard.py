@@ -47,29 +47,18 @@ class FamilyUsage(NamedTuple):
 
 
 class LimitsGuard:
-    """Watches the descendants of a process, or of several, until it is stopped.
+    """Watches the descendants of some processes, until it is stopped.
 
     Attributes:
         remark: what they used too much of, for the result; NOTHING for none.
     """
 
-    def __init__(
-        self,
-        ancestor: int,
-        end: Callable[[], None],
-        limits: RunLimits = LIMITS,
-        budget: CpuBudget | None = None,
-        printed_bytes: Callable[[], int] = lambda: 0,
-    ) -> None:
-        """Start watching; `end` is called, in a separate thread, when they are to be ended.
-
-        Args:
-            budget: of their grading.
-            printed_bytes: returns how much they have printed.
-        """
+    def __init__(self, limits: RunLimits = LIMITS, budget: CpuBudget | None = None) -> None:
+        """Start watching, within a budget of the grading."""
         self.remark = NOTHING
-        self._family, self._limits = Family(ancestor), limits
-        self._ends, self._printed_bytes = [end], [printed_bytes]
+        self._family, self._limits = Family(), limits
+        self._ends: list[Callable[[], None]] = []
+        self._printed_bytes: list[Callable[[], int]] = []
         self._budget, self._seen_ticks = budget or CpuBudget(), 0
         self._has_ended = False
         self._next_close_measurement, self._available = 0.0, 0
@@ -77,8 +66,15 @@ class LimitsGuard:
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
 
-    def add(self, ancestor: int, end: Callable[[], None], printed_bytes: Callable[[], int]) -> None:
-        """Watch the descendants of another process as well: the limits are those of all."""
+    def add(
+        self, ancestor: int, end: Callable[[], None], printed_bytes: Callable[[], int] = lambda: 0
+    ) -> None:
+        """Watch the descendants of a process; the limits are those of all together.
+
+        Args:
+            end: called, in a separate thread, when they are to be ended.
+            printed_bytes: returns how much they have printed.
+        """
         self._ends.append(end)
         self._printed_bytes.append(printed_bytes)
         self._family.add(ancestor)
@@ -165,8 +161,8 @@ class LimitsGuard:
 class Family:
     """The descendants of some processes, found anew for each measurement."""
 
-    def __init__(self, ancestor: int) -> None:
-        self._ancestors = {ancestor}
+    def __init__(self, *ancestors: int) -> None:
+        self._ancestors = set(ancestors)
         #: Processes that are not in the family, and never will be.
         self._others: set[int] = set()
 

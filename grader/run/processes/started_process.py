@@ -283,14 +283,8 @@ class SubmissionProcess(StartedProcess):
         self._guard: LimitsGuard | None = None
         self._excess = NOTHING
         super().__init__(command, server)
-        watched = (self._child.pid, self.kill)
-        if beside is not None and beside._guard is not None:
-            self._guard = beside._guard
-            self._guard.add(*watched, lambda: self.printed_bytes)
-        else:
-            self._guard = LimitsGuard(
-                *watched, budget=budget, printed_bytes=lambda: self.printed_bytes
-            )
+        self._guard = (beside and beside._guard) or LimitsGuard(budget=budget)
+        self._guard.add(self._child.pid, self.kill, lambda: self.printed_bytes)
 
     def ends_for_excess(self) -> bool:
         """Measure its usage once more; return whether it is ended for too much, now or before."""

@@ -97,7 +97,8 @@ def test_a_process_that_does_not_exist_has_no_family() -> None:
 def test_too_much_ends_them(limits: RunLimits, said: str) -> None:
     ended = threading.Event()
     with family():
-        guard = LimitsGuard(os.getpid(), ended.set, limits)
+        guard = LimitsGuard(limits)
+        guard.add(os.getpid(), ended.set)
         assert ended.wait(DEADLINE_S)
         guard.stop()
     assert said in str(guard.remark)
@@ -109,7 +110,8 @@ def test_the_last_look_finds_what_came_after_the_one_before(
     monkeypatch.setattr("grader.run.processes.limits_guard.EVERY_S", DEADLINE_S)
     ended = threading.Event()
     with family():
-        guard = LimitsGuard(os.getpid(), ended.set, RunLimits(family_bytes=50 * MIB))
+        guard = LimitsGuard(RunLimits(family_bytes=50 * MIB))
+        guard.add(os.getpid(), ended.set)
         assert guard.measure_last()
     assert ended.is_set()
     assert "used more than 50 MiB of memory" in str(guard.remark)
@@ -118,5 +120,7 @@ def test_the_last_look_finds_what_came_after_the_one_before(
 def test_the_last_look_lets_be_who_takes_little() -> None:
     ended = threading.Event()
     with family():
-        assert not LimitsGuard(os.getpid(), ended.set).measure_last()
+        guard = LimitsGuard()
+        guard.add(os.getpid(), ended.set)
+        assert not guard.measure_last()
     assert not ended.is_set()
