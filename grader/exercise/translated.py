@@ -1,13 +1,15 @@
 """The key `languages` of exercise.yaml: title, task, checks and tolerances in other languages.
 
-languages:
-fr:
-title: Dans le coin
-checks:
-moves: Le nœud conduit la tortue
-arrives: {title: Elle s'arrête dans un coin, rubric: Dans chaque essai ...}
-tolerances:
-corner_m: distance du coin
+    languages:
+      fr:
+        title: Dans le coin
+        checks:
+          moves: Le nœud conduit la tortue
+          arrives: {title: Elle s'arrête dans un coin, rubric: Dans chaque essai ...}
+        tolerances:
+          corner_m: distance du coin
+
+A text alone is the title of a check.
 """
 
 from __future__ import annotations
