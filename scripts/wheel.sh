@@ -10,7 +10,7 @@
 # its own.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-unset LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH
+unset AMENT_PREFIX_PATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH
 
 fail() {
     echo "Cannot make a wheel: $*" >&2
@@ -39,6 +39,25 @@ quietly() {
         tail -5 "$log" >&2
     fi
     fail "see above and $log"
+}
+
+# in an empty environment of the Python $1, where there is no compiler: the wheel $2 and what it
+# requires, turtlesim_node up and down again, tf2, and the reference, graded
+try_wheel() {
+    local bare reference
+    rm -rf "$work/venv"
+    quietly "$1" -m venv "$work/venv"
+    bare=(env -C "$work" "PATH=$work/venv/bin" CC=/nonexistent CXX=/nonexistent)
+    quietly "${bare[@]}" python -m pip install --no-cache-dir --progress-bar off "$2"
+    if ! timeout --preserve-status --signal INT 10 "${bare[@]}" turtlesim_node >"$work/node" 2>&1 ||
+        ! grep -q "Starting turtlesim" "$work/node"; then
+        fail "turtlesim_node does not start or end: $(<"$work/node")"
+    fi
+    quietly "${bare[@]}" python -c 'import tf2_ros'
+    reference=$("${bare[@]}" python -c \
+        'import turtlesim_challenge as c; print(c.__path__[0] + "/turtle_controller.py")')
+    quietly "${bare[@]}" grader run "$reference" --out "$work/graded" --fail-under 100
+    echo "   it installs, starts, ends and grades"
 }
 
 # the Pythons of release $1 that could be meant: on the path, pyenv's, uv's
@@ -103,6 +122,6 @@ for python in "${pythons[@]}"; do
     wheel=$dist/$(basename "$work"/audited/*.whl)
     mv "$work"/audited/*.whl "$wheel"
     echo "   ${wheel#"$PWD"/}"
-    scripts/try_wheel.py "$python" "$wheel"
+    try_wheel "$python" "$wheel"
 done
 echo "== ${#pythons[@]} of 3 wheels are in ${dist#"$PWD"/}"
