@@ -57,7 +57,6 @@ def run(
     plan: Plan,
     progress: Progress | None = None,
     patience: Patience = PATIENCE,
-    marks: dict[str, float] | None = None,
     audience: Audience | None = None,
 ) -> Recording:
     """Run a submission once in virtual time, or in real time if it must be.
@@ -65,17 +64,13 @@ def run(
     Args:
         progress: called now and then with the simulated time [s], if the run takes so long.
         patience: how long the submission's process is waited for, in real seconds.
-        marks: filled with the times, on the machine's monotonic clock [s], of the first message
-            between the two processes (`met`), of their connection by DDS (`connected`), of the last
-            tick (`over`).
         audience: receives the run live; changes nothing of what is recorded.
 
     Raises:
         GraderFailure: the simulator could not be started or died; a `SimulatorLost` where the
             submission had sent it something; a `SceneFailure` where the scene is to blame.
     """
-    known = {} if marks is None else marks
-    recording, why = _try(submission, plan, patience, known, audience)
+    recording, why = _try(submission, plan, patience, audience)
     if recording is not None:
         return recording
     flag = msg("graded in real time, because {why}", why=why)
@@ -86,7 +81,6 @@ def _try(
     submission: Submission,
     plan: Plan,
     patience: Patience,
-    marks: dict[str, float],
     audience: Audience | None,
 ) -> tuple[Recording | None, Message]:
     """Return the recording of a run in virtual time, or None and why there is none."""
@@ -134,7 +128,6 @@ def _try(
                 if len(running) > 1:
                     reason = msg("{why} ({program})", why=reason, program=its.program.name)
                 return None, reason
-            marks.update(message["marks"])
             trace, topics = handover.fetch(context.recording, handover.keeper(plan, scene))
         except SceneFailure:
             raise

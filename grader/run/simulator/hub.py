@@ -21,7 +21,6 @@ import gc
 import json
 import os
 import socket
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -167,8 +166,7 @@ class Hub:
         self._foresight = Foresight(self._simulation, self._registry)
         self._tick = 0
         self._reason: Reason = ""
-        #: when the run was connected, over, ..., on the machine's monotonic clock [s]
-        self._marks: dict[str, float] = {}
+        self._has_met = False
         self._was_at_rest: bool | None = None  # when the last program stopped responding
 
     # The run ----------------------------------------------------------------------------------
@@ -179,7 +177,6 @@ class Hub:
         for member in self._members:
             if not member.start_ns:
                 self._start(member)
-        self._mark("connected")
         self._share_core()
         while not self._reason and (alive := self._alive()):
             due = [member for member in alive if member.is_due(self._time_ns)]
@@ -197,7 +194,6 @@ class Hub:
         for member in self._alive():
             member.link.send(Reply(self._time_ns, State.OVER, self._tick))
         self._finish_alone()
-        self._mark("over")
         if self._feed is not None:
             self._feed.close()
         flags = dict.fromkeys(flag for member in self._members for flag in member.link.flags)
@@ -214,7 +210,6 @@ class Hub:
             ],
             "was_at_rest": self._was_at_rest,
             "flags": [f.serialise() for f in (*flags, *self._simulation.flags, *more)],
-            "marks": self._marks,
         }
 
     def _start(self, member: LinkedProgram) -> None:
@@ -225,9 +220,6 @@ class Hub:
 
     def _alive(self) -> list[LinkedProgram]:
         return [member for member in self._members if not member.is_gone]
-
-    def _mark(self, name: str) -> None:
-        self._marks.setdefault(name, time.monotonic())
 
     def _finish_alone(self) -> None:
         """Tick to the end without the submission, which sends nothing more."""
@@ -302,8 +294,8 @@ class Hub:
         """Handle what a program says, until it asks for time or says nothing more."""
         self.heard_last = member.number
         while (packet := member.link.receive()) is not None:
-            if "met" not in self._marks:
-                self._mark("met")
+            if not self._has_met:
+                self._has_met = True
                 self._on_met()
             if isinstance(packet, Advance):
                 member.request = packet

@@ -195,7 +195,7 @@ def test_what_virtual_time_cannot_follow_runs_in_real_time(recorded: Recorded) -
 def test_who_waits_in_c_cannot_be_followed() -> None:
     plan, patience = Plan(Limits(0.5, 0.5, 5)), Patience(asleep_s=0.5)
     with open_submission(SUBMISSIONS / "misbehaving/blocks_in_c.py") as submission:
-        recording, why = virtual_time._try(submission, plan, patience, {}, None)
+        recording, why = virtual_time._try(submission, plan, patience, None)
     assert recording is None
     assert "waits for something outside of Python's and ROS's own waiting" in str(why)
 

@@ -124,7 +124,7 @@ def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time
     monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
     with open_submission(submissions / "misbehaving/exits.py") as submission:
         plan = Plan(Limits(1, 0.2, 5))
-        found = virtual_time._try(submission, plan, virtual_time.PATIENCE, {}, None)
+        found = virtual_time._try(submission, plan, virtual_time.PATIENCE, None)
     fault = {"version": system.rclpy_version(), "fault": "ClockType has no STEADY_TIME"}
     why = msg("virtual time does not fit rclpy {version}: {fault}", **fault)
     assert found == (None, why)
