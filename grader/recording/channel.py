@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -52,17 +52,33 @@ class Channel:
         if len(other):
             expected = f"a {self.msgtype} has {layout.itemsize} bytes"
             raise ValueError(f"{self.topic}: {expected}, found {other[0]}")
-        return records_at(self.data, self.begins, layout)
+        if not len(self):
+            return np.empty(0, layout)
+        windows = np.lib.stride_tricks.sliding_window_view(self.data, layout.itemsize)
+        return windows[self.begins].view(layout)[:, 0]
 
     def __len__(self) -> int:
         return len(self.times_ns)
 
 
-def records_at(
-    data: npt.NDArray[np.uint8], begins: Ints, layout: np.dtype[np.void]
-) -> npt.NDArray[Any]:
-    """Return the records at n places inside `data`, (n,)."""
-    if not len(begins):
-        return np.empty(0, layout)
-    windows = np.lib.stride_tricks.sliding_window_view(data, layout.itemsize)
-    return windows[begins].view(layout)[:, 0]
+def divided(
+    topics: Sequence[tuple[str, str]],
+    times_ns: Ints,
+    numbers: Ints,
+    sizes: Ints,
+    data: npt.NDArray[np.uint8],
+) -> list[Channel]:
+    """Divide the messages of a bag, in its order, among their topics.
+
+    Args:
+        topics: each with its ROS type.
+        numbers: which of the topics each message is of, (n,).
+        sizes: how long the CDR of each is; in `data` one is behind the other, (n,).
+    """
+    ends = np.cumsum(sizes)
+    made = []
+    for number, (topic, msgtype) in enumerate(topics):
+        rows = np.flatnonzero(numbers == number)
+        begins = ends[rows] - sizes[rows]
+        made.append(Channel(topic, msgtype, times_ns[rows], rows, data, begins, ends[rows]))
+    return made

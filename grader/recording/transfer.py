@@ -11,7 +11,7 @@ from struct import Struct
 
 import numpy as np
 
-from grader.recording.channel import Channel
+from grader.recording.channel import divided
 from grader.recording.subject import Subject, Trace
 
 _LENGTH = Struct("<Q")
@@ -53,14 +53,8 @@ def unpack(packed: bytes, subject: Subject) -> Trace:
         data = np.frombuffer(packed, np.uint8, offset=begin + columns.nbytes)
         if (columns["size"] < 0).any() or columns["size"].sum(dtype=object) != len(data):
             raise ValueError("its messages have other lengths")
-        ends = np.cumsum(columns["size"])
-        channels = []
-        for number, (topic, msgtype) in enumerate(head["topics"]):
-            rows = np.flatnonzero(columns["topic"] == number)
-            begins = ends[rows] - columns["size"][rows]
-            channels.append(
-                Channel(topic, msgtype, columns["time_ns"][rows], rows, data, begins, ends[rows])
-            )
+        order = (columns["time_ns"], columns["topic"], columns["size"])
+        channels = divided(head["topics"], *order, data)
         if sum(map(len, channels)) != len(columns):
             raise ValueError("a message is of no topic")
         duration_ns = head["duration_ns"]

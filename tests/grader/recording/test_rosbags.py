@@ -18,12 +18,12 @@ from grader.recording.rosbag2_writer import Rosbag2Writer
 CALLED = {
     storage_mcap.write_channel: ["bio", "channel", "schemas"],
     storage_mcap.write_string: ["bio", "string"],
-    storage_mcap.read_exact: ["bio", "size"],
-    storage_mcap.decompress: ["data", "compression", "size", "crc"],
     storage_mcap.McapWriter.add_connection: ["self", "connection", "offered_qos_profiles"],
     storage_mcap.McapWriter.close_chunk: ["self"],
     storage_mcap.McapWriter.close: ["self", "version", "metadata"],
     storage_mcap.McapReader.open: ["self"],
+    storage_mcap.McapReader.messages: ["self", "connections", "start", "stop"],
+    storage_mcap.McapReader.close: ["self"],
 }
 #: of whom -> what is read or changed
 USED = {
@@ -33,8 +33,7 @@ USED = {
         *("message_start_time", "message_end_time"),
     },
     "its chunk": {"bio", "msgs", "message_start_time"},
-    "the reader": {"bio", "chunks", "connections"},
-    "a chunk told of": {"chunk_start_offset", "uncompressed_size", "message_index_offsets"},
+    "the reader": {"connections"},
     "a channel": {"metadata"},
 }
 
@@ -57,7 +56,7 @@ def test_what_is_read_and_changed_is_there(tmp_path: Path) -> None:
             (who, name) for who in found for name in USED[who] if not hasattr(found[who], name)
         ]
     reader = storage_mcap.McapReader(tmp_path / "bag" / "bag.mcap")
-    kinds = {"a chunk told of": storage_mcap.ChunkInfo, "a channel": storage_mcap.Channel}
+    kinds = {"a channel": storage_mcap.Channel}
     lacking += [("the reader", name) for name in USED["the reader"] if not hasattr(reader, name)]
     lacking += [(who, n) for who in kinds for n in USED[who] if n not in kinds[who]._fields]
     assert lacking == []
