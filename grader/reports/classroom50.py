@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from decimal import ROUND_HALF_UP, Decimal
 from typing import Any, Final
@@ -29,7 +28,7 @@ def render(report: Report) -> str:
     Raises:
         UsageError: the environment is not that of a Classroom 50 autograder.
     """
-    points = whole_points(report.verdicts)
+    scores, max_scores = whole_points(report.verdicts)
     tests: list[dict[str, Any]] = [
         {
             "test-name": verdict.check,
@@ -40,14 +39,12 @@ def render(report: Report) -> str:
             "exact-score": text.number(verdict.score),
             "message": "\n".join(report.led_lines(verdict)),
         }
-        for verdict, score, max_score in zip(
-            report.verdicts, points.scores, points.max_scores, strict=True
-        )
+        for verdict, score, max_score in zip(report.verdicts, scores, max_scores, strict=True)
     ]
     if report.not_shown:
         left_out = {"test-name": report.not_shown_name, "passed": False, "score": 0, "max-score": 0}
         tests.append({**left_out, "status": "not_shown", "message": report.not_shown})
-    return _document(report.made, points, tests)
+    return _document(report.made, sum(scores), sum(max_scores), tests)
 
 
 def render_error(report: ErrorReport) -> str:
@@ -63,18 +60,18 @@ def render_error(report: ErrorReport) -> str:
             "code other than 0 instead: {message}",
             message=text.one_line(report.message),
         )
-    points = zero_points(report.max_score or 0)
+    max_score = int(_half_up(_decimal(report.max_score or 0)))
     test = {
         "test-name": "submission",
         "passed": False,
-        "score": points.total,
-        "max-score": points.max_total,
+        "score": 0,
+        "max-score": max_score,
         "message": "\n\n".join(report.paragraphs),
     }
-    return _document(report.made, points, [test])
+    return _document(report.made, 0, max_score, [test])
 
 
-def _document(made: datetime, points: WholePoints, tests: list[dict[str, Any]]) -> str:
+def _document(made: datetime, score: int, max_score: int, tests: list[dict[str, Any]]) -> str:
     now = made.strftime("%Y-%m-%dT%H:%M:%SZ")
     document = {
         "schema": _SCHEMA,
@@ -82,8 +79,8 @@ def _document(made: datetime, points: WholePoints, tests: list[dict[str, Any]]) 
         # The runner puts the time of the commit here; this is for calls without a runner.
         "datetime": now,
         "graded_at": now,
-        "score": points.total,
-        "max-score": points.max_total,
+        "score": score,
+        "max-score": max_score,
         "tests": tests,
     }
     return json.dumps(document, indent=2) + "\n"
@@ -121,35 +118,8 @@ def _identity(env: Mapping[str, str]) -> dict[str, str]:
     }
 
 
-# Whole points -------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class WholePoints:
-    """Whole points, one of each list per verdict.
-
-    Attributes:
-        scores, max_scores: the points earned, and the most points.
-        factor: that all points are multiplied by: 1 where the checks are worth whole points.
-    """
-
-    scores: tuple[int, ...]
-    max_scores: tuple[int, ...]
-    factor: int
-
-    @property
-    def total(self) -> int:
-        """The sum of the scores: the exact total, times the factor, rounded half up."""
-        return sum(self.scores)
-
-    @property
-    def max_total(self) -> int:
-        """The sum of the most points."""
-        return sum(self.max_scores)
-
-
-def whole_points(verdicts: Sequence[Verdict]) -> WholePoints:
-    """Round by largest remainders.
+def whole_points(verdicts: Sequence[Verdict]) -> tuple[list[int], list[int]]:
+    """Return the points of each verdict, and the most points, rounded by largest remainders.
 
     The total is rounded half up. Every score is rounded down, and the points that are then missing
     from the total go to the scores that lost most. Where a check is worth 2.5 points, all points
@@ -167,12 +137,7 @@ def whole_points(verdicts: Sequence[Verdict]) -> WholePoints:
     by_loss = sorted(range(len(exact)), key=lambda i: scores[i] - exact[i])
     for index in by_loss[:missing]:
         scores[index] += 1
-    return WholePoints(tuple(scores), tuple(max_scores), factor)
-
-
-def zero_points(max_score: float) -> WholePoints:
-    """Return 0 of `max_score` points, where the checks are not known."""
-    return WholePoints((0,), (int(_half_up(_decimal(max_score))),), 1)
+    return scores, max_scores
 
 
 def _decimal(value: float) -> Decimal:
