@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from grader.recording.observations import SourceLine
 from grader.recording.subject import Start, Trace
 
 
@@ -47,33 +48,20 @@ class JudgedCheck:
 
 
 @dataclass(frozen=True)
-class Line:
-    """A line of a submission.
-
-    Attributes:
-        file, line, text: its place, and the line itself.
-    """
-
-    file: str
-    line: int
-    text: str
-
-
-@dataclass(frozen=True)
 class Sent:
     """The lines that sent on one name, as the submission's process has reported.
 
     Attributes:
         name: of a topic or service, with its namespace.
         times: how often it was sent.
-        lines: that sent.
+        lines: that sent; without their functions, so that a line is one.
         order: (which of the lines, how often in a row), from the first that was sent on; not
             always to the last.
     """
 
     name: str
     times: int
-    lines: tuple[Line, ...]
+    lines: tuple[SourceLine, ...]
     order: tuple[tuple[int, int], ...]
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from grader import text
 from grader.exercise.verdict import Verdict
 from grader.recording.observations import SourceLine
-from grader.recording.playback import JudgedCheck, Line, Moment, Playback, PlayedRun, Sent
+from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun, Sent
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
 from grader.reports.report import Report
@@ -74,8 +76,8 @@ def _sent(recording: Recording) -> tuple[Sent, ...]:
     return tuple(several[0] for several in found.values() if len(several) == 1)
 
 
-def _line(place: SourceLine) -> Line:
-    return Line(place.file, place.line, place.text)
+def _line(place: SourceLine) -> SourceLine:
+    return replace(place, function="")
 
 
 def _judged(report: Report, verdict: Verdict, runs: int) -> JudgedCheck:

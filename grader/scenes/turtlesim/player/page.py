@@ -12,7 +12,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from grader.recording.playback import Line, Playback, PlayedRun, Sent
+from grader.recording.observations import SourceLine
+from grader.recording.playback import Playback, PlayedRun, Sent
 from grader.scenes import joined
 from grader.scenes.turtlesim.player.replay import animate
 from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
@@ -68,7 +69,7 @@ def with_lines(calls: Sequence[Mapping[str, Any]], sent: Sequence[Sent]) -> dict
     for index, call in enumerate(calls):
         by_name[_name(call)].append(index)
     known: dict[int, int] = {}
-    lines: dict[Line, int] = {}
+    lines: dict[SourceLine, int] = {}
     for each in sent:
         where = [line for line, times in each.order for _ in range(min(times, len(calls) + 1))]
         came = by_name[each.name]

@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given
 
 from grader.errors import RecordingError
-from grader.recording.playback import JudgedCheck, Line, Playback, PlayedRun, Sent
+from grader.recording.observations import SourceLine
+from grader.recording.playback import JudgedCheck, Playback, PlayedRun, Sent
 from grader.recording.subject import Start
 from grader.scenes import joined
 from grader.scenes.turtlesim.driving import drive
@@ -192,7 +193,7 @@ def test_one_that_ended_earlier_differs_where_the_other_goes_on():
 
 
 COMMANDS = [{"op": "cmd_vel", "turtle": "turtle1", "tick": tick} for tick in (1, 2, 3)]
-LINES = (Line("a.py", 5, "go"), Line("a.py", 9, "stop"))
+LINES = (SourceLine("a.py", 5, text="go"), SourceLine("a.py", 9, text="stop"))
 
 
 def lines_of(sent: Sent) -> list[int | None]:
