@@ -31,6 +31,7 @@ from grader.recording.folder import (
 )
 from grader.recording.recording import Recording, Recordings
 from grader.recording.subject import DEFAULT_SCENE, PACKAGE_SCENE, load_subject
+from grader.removal import remove
 from grader.strict_json import OURS, to_json
 
 #: Where the files are written before they come into the folder.
@@ -97,27 +98,15 @@ def into(folder: Path, varied_runs: int) -> Iterator[Unsaved]:
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     place = folder / UNFINISHED
-    _clear(place)
+    remove(place)  # the rest of a save that was cut off
     place.mkdir()
     try:
         yield Unsaved(place, folder, varied_runs)
     finally:
-        shutil.rmtree(place, ignore_errors=True)
+        remove(place)
         if is_new:
             with suppress(OSError):  # it holds what was put there
                 folder.rmdir()
-
-
-def _clear(place: Path) -> None:
-    """Remove the rest of a save that was cut off; of a link, which we never make, only the link.
-
-    Raises:
-        OSError: it cannot be removed.
-    """
-    if place.is_symlink() or (place.exists() and not place.is_dir()):
-        place.unlink()
-    elif place.exists():
-        shutil.rmtree(place)
 
 
 def _put(made: Path, folder: Path) -> None:
