@@ -16,9 +16,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from grader.recording import bag, saving
-from grader.recording.bag import types_of
+from grader.recording.bag import Rosbag2Writer, types_of
 from grader.recording.recording import Recording, Recordings
-from grader.recording.rosbag2_writer import Rosbag2Writer
 from grader.rosidl.cdr import serialise
 from grader.rosidl.definitions import Definitions
 from grader.scenes import load_scene

@@ -9,7 +9,7 @@ import yaml
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 
-from grader.recording import bag, rosbag2_reader
+from grader.recording import bag
 from grader.recording.channel import Channel
 from grader.scenes import load_scene
 from tests.grader.driving import Spiral, drive, twist
@@ -43,7 +43,7 @@ def columns(channels: list[Channel]) -> dict[str, list[tuple[int, bytes]]]:
 
 
 def test_it_finds_what_rosbags_finds_message_by_message(written):
-    channels = rosbag2_reader.read(written)
+    channels = bag.read_channels(written)
     with Reader(written.parent) as reader:
         expected = [(c.topic, time, bytes(data)) for c, time, data in reader.messages()]
         topics = [(c.topic, c.msgtype) for c in reader.connections]
@@ -80,7 +80,7 @@ def test_metadata_that_is_not_that_of_the_bag_is_refused(written, tmp_path, chan
     data["rosbag2_bagfile_information"].update(changed)
     mcap.with_name("metadata.yaml").write_text(yaml.safe_dump(data))
     with pytest.raises((ValueError, TypeError)):
-        rosbag2_reader.read(mcap)
+        bag.read_channels(mcap)
 
 
 def test_metadata_that_would_make_an_object_makes_none(written, tmp_path):
@@ -88,4 +88,4 @@ def test_metadata_that_would_make_an_object_makes_none(written, tmp_path):
     mcap.write_bytes(written.read_bytes())
     mcap.with_name("metadata.yaml").write_text("!!python/object/apply:os.system ['false']")
     with pytest.raises(yaml.YAMLError):
-        rosbag2_reader.read(mcap)
+        bag.read_channels(mcap)
