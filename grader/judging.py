@@ -30,7 +30,7 @@ def judge(
     asked = loaded(exercise)
     verdicts = check.judge(recordings, asked.checks, asked.points, asked.tolerances)
     cause = diagnose(recordings, verdicts, asked.peers_have, is_to_end=asked.is_to_end)
-    return build(submission, asked, recordings, verdicts, {}, cause)
+    return build(submission, asked, recordings, verdicts, cause)
 
 
 def load_recordings(folder: AnyPath) -> Recordings:
@@ -56,7 +56,7 @@ def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "
     verdicts = check.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
     alone = Recordings(nominal)
     cause = diagnose(alone, verdicts, exercise.peers_have, is_to_end=exercise.is_to_end)
-    return build(submission, exercise, alone, verdicts, {}, cause)
+    return build(submission, exercise, alone, verdicts, cause)
 
 
 def loaded(exercise: AnyPath | Exercise) -> Exercise:

@@ -149,7 +149,7 @@ class Entry:
         if entry.state == "judged":
             path = folder / RESULT
             data = json_file.read(path, is_ours=True)
-            entry = replace(entry, result=json_file.made(Result.from_file, path, data))
+            entry = replace(entry, result=json_file.made(Result.from_json, path, data))
             json_file.made(entry._check_result, path, entry.result)
         return replace(entry, folder=folder)
 

@@ -65,7 +65,7 @@ def read(path: Path, checks: Sequence[str] = (), view: View = "student") -> Repo
     if isinstance(data, dict) and str(data.get("schema")).startswith(error.FAMILY):
         failed = json_file.made(ErrorResult.from_json, path, data)
         return ErrorReport(failed, path.parent, checks, path)
-    result = json_file.made(Result.from_file, path, data)
+    result = json_file.made(Result.from_json, path, data)
     return Report(result, Beside(result, path.parent), view)
 
 

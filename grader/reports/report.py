@@ -17,7 +17,7 @@ from grader.reports import readable, wording
 from grader.reports.beside import Beside
 from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, points, title_of, where, word
 from grader.result.result import Result
-from grader.result.visible import View, as_seen
+from grader.result.visible import View, student_view
 from grader.translations import tr, translate
 
 
@@ -71,7 +71,8 @@ class Report:
     """
 
     def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
-        shown: Result = text.plain_all(readable.few(as_seen(result, view)), readable.RAW_LIMIT)
+        seen = result if view == "whole" else student_view(result, view == "after_due")
+        shown: Result = text.plain_all(readable.few(seen), readable.RAW_LIMIT)
         self._result = result
         self.made = datetime.now(UTC)
         self.beside = beside

@@ -117,12 +117,6 @@ class ResultProvenance:
     judged: Judging
     recorded: Provenance | None = field(default=None, metadata=SPARSE)
 
-    @classmethod
-    def of(cls, recordings: Recordings, exercise: Exercise) -> Self:
-        """Make the provenance of recordings that are being judged."""
-        judged = Judging(now(), system.grader_version(), exercise.sha256)
-        return cls(judged, recordings.nominal.provenance)
-
 
 @dataclass(frozen=True)
 class RunSummary(Run):
@@ -201,23 +195,14 @@ class Result:
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
-        """Parse the result of a file.
-
-        Raises:
-            ValueError: it does not follow the schema.
-        """
-        json_file.validate(data, "result", SCHEMA)
-        values = {name: data[name] for name in IN_ORDER if name in data}
-        return json_file.typed(cls, values, data.get("phrases"))
-
-    @classmethod
-    def from_file(cls, data: Any) -> Self:
         """Parse the result of a file that others may have changed.
 
         Raises:
             ValueError: it does not follow the schema, or does not add up.
         """
-        result = cls.from_json(data)
+        json_file.validate(data, "result", SCHEMA)
+        values = {name: data[name] for name in IN_ORDER if name in data}
+        result = json_file.typed(cls, values, data.get("phrases"))
         names = [verdict.check for verdict in result.verdicts]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
@@ -244,7 +229,7 @@ class Result:
             UsageError: it cannot be read or is no result of this version.
         """
         path = Path(path)
-        return json_file.made(cls.from_file, path, json_file.read(path))
+        return json_file.made(cls.from_json, path, json_file.read(path))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the result file.
@@ -268,14 +253,14 @@ def build(
     exercise: Exercise,
     recordings: Recordings,
     verdicts: Sequence[Verdict],
-    artifacts: Mapping[str, str],
     diagnosis: Diagnosis | None = None,
 ) -> Result:
-    """Put a result together; `artifacts` are paths relative to the result file."""
+    """Put a result together, without artifacts."""
     seen = exercise.visible
     verdicts = [replace(each, visible=seen.get(each.check, "now")) for each in verdicts]
     # where students do not see all, no remark that they read may reveal that all passed
     all_passed = all(v.passed and v.visible in ("now", "points_only") for v in verdicts)
+    judged = Judging(now(), system.grader_version(), exercise.sha256)
     return Result(
         exercise.name,
         submission,
@@ -284,8 +269,7 @@ def build(
         tuple(verdicts),
         _nominal(recordings.nominal, exercise, all_passed),
         tuple(RunSummary.of(recording, all_passed) for recording in recordings.varied),
-        dict(artifacts),
-        provenance=ResultProvenance.of(recordings, exercise),
+        provenance=ResultProvenance(judged, recordings.nominal.provenance),
         diagnosis=diagnosis,
     )
 

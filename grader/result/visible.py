@@ -18,11 +18,6 @@ from grader.result.result import NotShown, Result
 View = Literal["student", "after_due", "whole"]
 
 
-def as_seen(result: Result, view: View) -> Result:
-    """Return a result as one of these sees it."""
-    return result if view == "whole" else student_view(result, view == "after_due")
-
-
 def is_hidden(visible: Visible, after_due: bool = False) -> bool:
     """Whether students see nothing of a check."""
     return visible == "never" or (visible == "after_due" and not after_due)

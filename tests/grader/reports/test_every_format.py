@@ -160,7 +160,8 @@ def any_results(draw):
         outcome=draw(st.sampled_from(["finished", "crashed", "time_limit"])),
         exit_code=draw(st.none() | st.integers(-11, 255)),
     )
-    listed = draw(st.lists(verdicts(), min_size=1, max_size=5))
+    each = st.lists(verdicts(), min_size=1, max_size=5, unique_by=lambda made: made["check"])
+    listed = draw(each)
     made = samples.result(
         *listed, submission=draw(TEXTS), exercise=draw(TEXTS), run=facts, varied_runs=[facts]
     )

@@ -65,8 +65,8 @@ def test_a_check_that_is_not_judged_waits_for_those_that_did_not_pass_only():
     assert report.waited_for(report.verdicts[3]) == ("stops",)
 
 
-def test_checks_of_one_name_or_none_can_be_told_apart():
-    names = [v.check for v in samples.report(*map(verdict, ["a", "", "a", "a (2)"])).verdicts]
+def test_checks_that_look_the_same_or_have_no_name_can_be_told_apart():
+    names = [v.check for v in samples.report(*map(verdict, ["a", "", "a\n", "a (2)"])).verdicts]
     assert names[:3] == ["a", "check 2", "a (2)"]
     assert len(set(names)) == 4
 

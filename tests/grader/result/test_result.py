@@ -188,7 +188,7 @@ def test_a_result_adds_up_its_verdicts_and_remarks_on_its_runs():
     verdicts = [Verdict(n, msg(n), "failed", 3.33, 10.0, NOTHING) for n in ("a", "b", "c")]
     exercise = load_exercise("turtlesim_challenge")
     varied = replace(recording, start=Start(1.0, 2.0, 0.5))
-    result = build("s", exercise, Recordings(crashed, (varied,)), verdicts, {})
+    result = build("s", exercise, Recordings(crashed, (varied,)), verdicts)
     assert (result.exercise, result.score, result.max_score) == ("turtlesim_challenge", 9.99, 30)
     assert tuple(map(str, result.run.flags)) == ("The node ended with an error: exit code 1.",)
     assert isinstance(result.run, Run)
@@ -211,7 +211,7 @@ def test_a_result_keeps_whose_it_is():
     assert (LATE.days, LATE.deducted) == (2, 20)
     result = with_it(LATE)
     assert result.handed_in == LATE
-    assert Result.from_file(result.to_json()) == result
+    assert Result.from_json(result.to_json()) == result
 
 
 @pytest.mark.parametrize(("score", "final"), [(87.5, 67.5), (20, 0), (3.25, 0)])
