@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grader import files
+from grader import content, files, system
 from grader.batch import grade
 from grader.batch.class_file import CLASS, MACHINE, ClassFile
 from grader.batch.entry import Entry, HandIn
@@ -60,8 +60,16 @@ class Order:
 
     @property
     def class_file(self) -> ClassFile:
-        """The class.json of what is graded so."""
-        return ClassFile.of(self.exercise, self.time, self.seed, self.isolation, self.secret)
+        """The class.json of what is graded so, on this machine."""
+        secret = content.of_bytes(f"class {self.secret}".encode())[:12] if self.secret else ""
+        return ClassFile(
+            *(self.exercise.name, self.exercise.sha256, self.time, self.seed),
+            grader=system.grader_version(),
+            ros=f"rclpy {system.rclpy_version()} {system.ros_distro()}".strip(),
+            python=system.python_version(),
+            isolation=self.isolation,
+            seed_file=secret,
+        )
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
-from grader import content, files, system
+from grader import files
 from grader.errors import NotOffered, UsageError
-from grader.exercise.exercise import Exercise
 from grader.message import Message, Text, msg
 from grader.recording.recording import Clock
 from grader.result import json_file
@@ -65,25 +64,6 @@ class ClassFile:
     hand_ins: int = 0
     isolation: str = ""
     seed_file: str = ""
-
-    @classmethod
-    def of(
-        cls,
-        exercise: Exercise,
-        time: Clock,
-        seed: int | None,
-        isolation: str = "",
-        secret: str = "",
-    ) -> Self:
-        """Return the class file of a call on this machine."""
-        seed_file = content.of_bytes(f"class {secret}".encode())[:12] if secret else ""
-        ros = f"rclpy {system.rclpy_version()} {system.ros_distro()}".strip()
-        made_by = (system.grader_version(), ros, system.python_version())
-        return cls(
-            *(exercise.name, exercise.sha256, time, seed, *made_by),
-            isolation=isolation,
-            seed_file=seed_file,
-        )
 
     def put(self, out: Path) -> None:
         """Write class.json.

@@ -31,7 +31,7 @@ from grader.reports import Format, readable, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import templating
 from grader.reports.page.parts import DrawnTree, Turnable, drawn, turnable
-from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, plane_uri, window_uri
+from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, recorded_uri
 from grader.reports.page.plots import HEIGHT, WIDTH, Drawn, Plots, expected, plots
 from grader.reports.page.tracks import Animation, animation
 from grader.reports.report import Report
@@ -244,7 +244,7 @@ def draw(recording: Recording) -> Drawing:
 def _view(report: Report, number: int, on_paper: bool) -> RunView:
     recording = report.recordings.get(number)
     drawing = Drawing() if recording is None else draw(recording)
-    window = canvas_uri(report) if number == 0 else window_uri(report, number)
+    window = recorded_uri(report, number, "window") if number else canvas_uri(report)
     is_apart = not report.subject.window_is_plane
     output = report.output if number == 0 else text.plain(recording.output if recording else "")
     return RunView(
@@ -252,7 +252,7 @@ def _view(report: Report, number: int, on_paper: bool) -> RunView:
         number=number,
         title=_title(report, number),
         facts=report.varied_runs[number - 1] if number else report.run,
-        picture=plane_uri(report, number) if is_apart else window,
+        picture=recorded_uri(report, number, "plan") if is_apart else window,
         still=window if is_apart else "",
         still_words=_still_words(drawing),
         expected=expected(report, drawing.plots) if number == 0 else {},

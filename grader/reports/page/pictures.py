@@ -10,6 +10,7 @@ import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from PIL import Image, UnidentifiedImageError
 
@@ -33,20 +34,14 @@ def canvas_uri(report: Report) -> str:
                     return _uri(_png(image.convert("RGB")), limit)
         except (OSError, UnidentifiedImageError):
             pass  # a damaged picture; the recording may have a good one
-    return window_uri(report, 0)
+    return recorded_uri(report, 0, "window")
 
 
-def window_uri(report: Report, run: int) -> str:
-    """Return the final window of a run from its recording; '' without a recording."""
-    return _recorded(report, run, "window")
+def recorded_uri(report: Report, run: int, name: Literal["window", "plan"]) -> str:
+    """Return the final window of a run, or the scene's plane where that is not the window.
 
-
-def plane_uri(report: Report, run: int) -> str:
-    """Return the scene's plane, where that is not the window; '' where there is none."""
-    return _recorded(report, run, "plan")
-
-
-def _recorded(report: Report, run: int, name: str) -> str:
+    It comes from the recording; '' without one, or where there is no such picture.
+    """
     recording = report.recordings.get(run)
     if recording is None or name not in recording.png:
         return ""

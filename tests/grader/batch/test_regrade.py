@@ -15,6 +15,7 @@ import pytest
 from rich.console import Console
 
 from grader.batch import grade, pool
+from grader.batch.batch import Order
 from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, HandIn, Person, entries
 from grader.batch.find.joining import NOT_HANDED_IN
@@ -117,7 +118,7 @@ def whole(runs, original, tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("class") / "out"
     exercise = load_exercise(original)
     with Store.opened(out) as store:
-        ClassFile.of(exercise, "virtual", None).put(out)
+        Order(exercise, "").class_file.put(out)
         for key, (kind, names) in CLASS.items():
             place = store.new_place()
             save_recordings(runs[kind], place / RUN / RECORDING)
