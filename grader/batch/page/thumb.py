@@ -40,8 +40,6 @@ _PREFIX = "data:image/png;base64,"
 _LIMIT_BYTES = 40_000
 
 Piece = tuple[int, ...]
-#: A line with more points is thinned out evenly first: simplifying may be quadratic.
-_MOST_TO_SIMPLIFY = 2000
 
 
 def _is_png(value: str) -> str:
@@ -145,10 +143,9 @@ def pieces(x: Floats, y: Floats) -> list[Floats]:
 def simplified(points: Floats, tolerance: float) -> Floats:
     """Return the points (n, 2) that keep the line within the tolerance.
 
-    The algorithm of Ramer (1972) and of Douglas and Peucker (1973).
+    The algorithm of Ramer (1972) and of Douglas and Peucker (1973); it may be quadratic, but an
+    animation has few samples.
     """
-    step = max(1, -(-len(points) // _MOST_TO_SIMPLIFY))
-    points = np.concatenate([points[:-1:step], points[-1:]])
     kept = np.zeros(len(points), dtype=bool)
     kept[[0, -1]] = True
     open_ended = [(0, len(points) - 1)]

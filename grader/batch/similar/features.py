@@ -82,12 +82,12 @@ def hash_of(words: Iterable[str]) -> int:
     return int.from_bytes(hashlib.blake2b(data, digest_size=_HASH_BYTES).digest(), "big")
 
 
-def features_file(source: Path, nominal: Recording | None, left_out: int = 0) -> bytes:
+def features_file(source: Path, nominal: Recording, left_out: int = 0) -> bytes:
     """Return the content of similar.json.
 
     Args:
         source: the folder with the sources, from `sources.keep`.
-        nominal: the nominal run; None where there was none.
+        nominal: the nominal run.
         left_out: the return value of `sources.keep`.
 
     Raises:
@@ -98,10 +98,8 @@ def features_file(source: Path, nominal: Recording | None, left_out: int = 0) ->
     return strict_json.line(Features(tuple(files), commands, path, left_out + too_many))
 
 
-def _run(nominal: Recording | None) -> tuple[tuple[TimedCommand, ...], tuple[int, ...], int]:
+def _run(nominal: Recording) -> tuple[tuple[TimedCommand, ...], tuple[int, ...], int]:
     """Return the commands of a run, its path, and how many commands were left out."""
-    if nominal is None:
-        return (), (), 0
     done = load_subject(nominal.scene).behaviour(nominal.trace)
     begin = done.commands[0].time_ns if done.commands else 0
     kept_ones = islice(done.commands, MOST_COMMANDS)

@@ -77,8 +77,7 @@ def compare_class(entries: Sequence[Entry], exercise: Exercise) -> Class:
         """Whether a hand-in is what everybody was given, in a package with the name of a folder."""
         own = {file.sha256 for file in found.files} - given
         folders = {part for file in found.files for part in Path(file.name).parts[:-1]}
-        starters = (sources.renamed_starter(exercise, name) for name in folders if own)
-        return not own or any(own <= _hashes(starter) for starter in starters)
+        return not own or any(own <= _hashes(sources.starter(exercise, each)) for each in folders)
 
     by_id = {student.entry.id: student for student in students(entries)}
     present = [entry for entry in entries if entry.state != "nothing"]

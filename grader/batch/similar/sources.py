@@ -128,19 +128,14 @@ def given_files(exercise: Exercise) -> list[File]:
         ExerciseError: its mutants.yaml cannot be used.
         OSError: one of them cannot be read.
     """
-    found: list[File] = []
-    found += _starter(exercise)
+    found = starter(exercise)
     for path in _right_solutions(exercise):
-        found += _below(path, "reference")
+        found += _below(path)
     return sorted(set(found))
 
 
-def renamed_starter(exercise: Exercise, package: str) -> list[File]:
-    """Return the starter as `grader new` writes it into a package of this name."""
-    return _starter(exercise, package) if exercise.starter_package else []
-
-
-def _starter(exercise: Exercise, package: str = "") -> list[File]:
+def starter(exercise: Exercise, package: str = "") -> list[File]:
+    """Return the starter, as `grader new` writes it into a package of this name."""
     files = exercise.starter_files(package).items()
     return [File(f"starter/{name}", data) for name, data in files if name.endswith(".py")]
 
@@ -150,13 +145,13 @@ def _right_solutions(exercise: Exercise) -> Iterator[Path]:
         yield from (each.path for each in read_solutions(exercise) if each.is_right)
 
 
-def _below(path: Path, whose: str) -> list[File]:
+def _below(path: Path) -> list[File]:
     if not path.exists():
         raise ExerciseError("there is no {path}, which is to be known to everybody", path=str(path))
     if path.is_file():
-        return [File(f"{whose}/{path.name}", path.read_bytes())]
+        return [File(f"reference/{path.name}", path.read_bytes())]
     below = sorted(path.rglob("*.py"))
-    return [File(f"{whose}/{p.relative_to(path).as_posix()}", p.read_bytes()) for p in below]
+    return [File(f"reference/{p.relative_to(path).as_posix()}", p.read_bytes()) for p in below]
 
 
 def write_exports(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:

@@ -10,6 +10,7 @@ from grader.batch.similar import features, sources
 from grader.batch.similar.page import Class, compare_class
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording
+from grader.recording.subject import load_subject
 
 SUBMITTED = Path(__file__).parents[3] / "submissions"
 CHALLENGE = load_exercise("turtlesim_challenge")
@@ -41,8 +42,9 @@ def hand_in(
 
     Args:
         handed_in: a file, a folder, or the names and contents of files.
-        nominal: its run.
+        nominal: its run; else one in which it did nothing.
     """
+    nominal = nominal or Recording(load_subject("turtlesim").untouched(None))
     folder = out / SUBMISSIONS / who
     if isinstance(handed_in, Path):
         kept = _files(handed_in)
