@@ -200,10 +200,8 @@ def unpack(returned: object, task: Task) -> Answer:
         is_asked = name in (".", STUDENTS) or any(path.is_relative_to(each) for each in asked)
         if not is_asked or ".." in path.parts or sent.kind == "link":
             return Answer("failed", msg("a worker sent back what nobody has asked for"))
-    try:
+    with files.writing(task.into):
         _write(returned.files, task.into)
-    except OSError as error:
-        raise files.cannot_write(task.into, error.strerror or str(error)) from None
     return returned.answer
 
 

@@ -252,7 +252,7 @@ def keep(found: Regrade, store: Store) -> Path:
     """
     top = store.out / BEFORE
     made, into = store.new_place() / BEFORE, _next(top)
-    try:
+    with files.writing(top):
         for name in (CLASS, *GRADEBOOKS):
             if (store.out / name).is_file():
                 files.put(made / name, (store.out / name).read_bytes())
@@ -265,8 +265,6 @@ def keep(found: Regrade, store: Store) -> Path:
         files.put(made / CHANGES_PAGE, shown.page(found, "../..").encode("utf-8"))
         top.mkdir(exist_ok=True)
         made.rename(into)
-    except OSError as error:
-        raise files.cannot_write(top, error.strerror or str(error)) from None
     return into
 
 
