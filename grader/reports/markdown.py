@@ -102,24 +102,9 @@ def _seen(report: Report, verdict: Verdict) -> str:
 
 
 def _run(report: Report) -> str:
-    lines = [_how(report), *("- " + tr("Note: {flag}", flag=_quote(flag)) for flag in report.flags)]
-    return "\n".join(lines)
-
-
-def _how(report: Report) -> str:
-    run = report.run
-    values = {
-        "outcome": _quote(wording.outcome(report.outcome(0))),
-        "simulated_s": run.simulated_s,
-        "clock": wording.clock(run.time),
-    }
-    if not run.wall_s:
-        return tr("Run: {outcome}, {simulated_s:.1f} s simulated ({clock} time).", **values)
-    return tr(
-        "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
-        wall_s=run.wall_s,
-        **values,
-    )
+    how = wording.how_it_ran(report.run, _quote(wording.outcome(report.outcome(0))))
+    flags = ("- " + tr("Note: {flag}", flag=_quote(flag)) for flag in report.flags)
+    return "\n".join([how, *flags])
 
 
 def _output(report: Report) -> str:

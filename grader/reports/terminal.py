@@ -70,19 +70,8 @@ def show(report: Report, console: Console) -> None:
     lost = (v for v in report.verdicts if not v.passed and not report.waited_for(v))
     for _, alike in groupby(lost, lambda v: (v.rationale, report.help_for(v), v.evidence)):
         console.print(_explanation(report, list(alike)))
-    run = report.run
     console.print()
-    console.print(
-        _text(
-            tr(
-                "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
-                outcome=wording.outcome(report.outcome(0)),
-                simulated_s=run.simulated_s,
-                wall_s=run.wall_s,
-                clock=wording.clock(run.time),
-            )
-        )
-    )
+    console.print(_text(wording.how_it_ran(report.run, wording.outcome(report.outcome(0)))))
     for flag in report.flags:
         console.print(_text(tr("Note: {flag}", flag=flag)))
     for note in report.notes:

@@ -8,6 +8,7 @@ from typing import Final
 from grader import text
 from grader.exercise.verdict import Evidence, Verdict
 from grader.message import in_context, msg
+from grader.recording.recording import Run
 from grader.result.result import NotShown, Result, ResultProvenance
 from grader.translations import number, tr, tr_many, translate
 
@@ -75,6 +76,18 @@ def outcome(key: str) -> str:
 def clock(time: str) -> str:
     """Return the clock of a run, for people: the word before "time"."""
     return translate(CLOCKS.get(time, time))
+
+
+def how_it_ran(run: Run, outcome: str) -> str:
+    """Return how a run went, in a line; where its duration is not known, without it."""
+    values = {"outcome": outcome, "simulated_s": run.simulated_s, "clock": clock(run.time)}
+    if not run.wall_s:
+        return tr("Run: {outcome}, {simulated_s:.1f} s simulated ({clock} time).", **values)
+    return tr(
+        "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
+        wall_s=run.wall_s,
+        **values,
+    )
 
 
 def isolation(name: str) -> str:
