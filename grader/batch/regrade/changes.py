@@ -79,7 +79,6 @@ class OfCheck:
     title: str
     gain: int
     lose: int
-    changed: int
     points: float
 
 
@@ -174,7 +173,6 @@ class Regrade:
                 each[0].title,
                 sum(one.points >= NO_CHANGE for one in each),
                 sum(one.points <= -NO_CHANGE for one in each),
-                len(each),
                 round(sum(one.points for one in each), 2),
             )
             for name, each in found.items()

@@ -31,13 +31,11 @@ class SampledTrack:
     """One track at the samples of an animation.
 
     Attributes:
-        name: the track's.
         x, y: where it was at each sample [px, y down]; NaN where it was not there.
         theta: its heading at each sample [rad].
         stretches: the track in parts, one for each pen.
     """
 
-    name: str
     x: Floats
     y: Floats
     theta: Floats
@@ -123,7 +121,7 @@ def _sampled(track: Track, times_ns: Times) -> SampledTrack:
     x, y, theta = (np.full(len(times_ns), np.nan) for _ in range(3))
     for sampled, values in ((x, track.x), (y, track.y), (theta, track.theta)):
         sampled[there] = values[at[there]]
-    return SampledTrack(track.name, x, y, theta, _stretches(track, times_ns))
+    return SampledTrack(x, y, theta, _stretches(track, times_ns))
 
 
 def _stretches(track: Track, times_ns: Times) -> tuple[Stretch, ...]:
