@@ -123,7 +123,7 @@ def _try(
                     msg("the process from which a submission's was forked has died")
                 )
             if message["say"] == "refused":
-                its, reason = running[message["program"]], Message.parse(message["reason"])
+                its, reason = running[message.get("program", 0)], Message.parse(message["reason"])
                 reason = reason.map_texts(its.submission.with_original_paths)
                 if len(running) > 1:
                     reason = msg("{why} ({program})", why=reason, program=its.program.name)
