@@ -26,11 +26,6 @@ OPTIONAL = {
         msg("--live serves a page with it"),
         "websockets>=13.1,<18",
     ),
-    "watchdog": (
-        "watchdog.observers",
-        msg("--watch waits for saves with it"),
-        "watchdog>=3.0.0,<7",
-    ),
 }
 
 

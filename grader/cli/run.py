@@ -131,7 +131,6 @@ def main(args: argparse.Namespace) -> int:
     require("rosbags", load=False)  # if it is missing, refuse now, not when a run is saved
     grade = grade_one.grade
     if args.watch:
-        require("watchdog")
         from grader.cli import watch
 
         grade = watch.grade_each_save

@@ -24,7 +24,6 @@ KEYS = {
     "rich": "python3-rich",
     "rosbags": "python3-rosbags-pip",
     "setuptools": "python3-setuptools",
-    "watchdog": "python3-watchdog",
     "websockets": "python3-websockets",
     "xacro": "xacro",
 }

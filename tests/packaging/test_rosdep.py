@@ -190,11 +190,3 @@ def test_without_rosbags_one_line_says_how_to_get_it(shell_of_apt, graded, verb)
     assert "--break-system-packages" in line
     assert call.stdout == ""
     assert not (shell_of_apt.folder / "new").exists()  # it said so before the run
-
-
-def test_watch_says_that_watchdog_is_missing(tmp_path):
-    shell = Shell(hide_all_but(tmp_path / "hiding", KEYS.keys() - {"watchdog"}), tmp_path)
-    (tmp_path / "turtle_controller.py").touch()
-    call = shell.grader("run", "turtle_controller.py", "--watch", code=3)
-    (line,) = call.stderr.splitlines()
-    assert "the Python package watchdog is missing" in line

@@ -12,17 +12,9 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
-from watchdog.events import (
-    DirCreatedEvent,
-    FileClosedEvent,
-    FileCreatedEvent,
-    FileDeletedEvent,
-    FileModifiedEvent,
-    FileMovedEvent,
-    FileOpenedEvent,
-)
 
-from grader.cli.watch import Saves, change, each_save, grade_again
+from grader.cli import watch
+from grader.cli.watch import change, each_save, grade_again
 from grader.errors import UsageError
 from grader.result.result import Result
 from tests.grader.reports import samples
@@ -84,24 +76,22 @@ def test_a_save_while_the_caller_is_busy_is_not_lost(tmp_path):
         next(saves)
 
 
-def test_an_echo_of_a_save_is_none(tmp_path, monkeypatch):
+def test_a_save_is_over_when_the_files_are_the_same_twice(tmp_path, monkeypatch):
     controller = tmp_path / "turtle_controller.py"
     controller.touch()
-    echo = FileModifiedEvent(str(controller))
+    texts = ["one half", "one half, and the other"]
     waited = []
 
-    def wait(self):
-        waited.append(self)
-        if len(waited) == 1:
-            self.on_any_event(echo)  # of what has been told of already
-        else:
-            controller.write_text("saved")
+    def sleep(_):
+        waited.append(controller.read_text())
+        if texts:
+            controller.write_text(texts.pop(0))
 
-    monkeypatch.setattr(Saves, "wait", wait)
+    monkeypatch.setattr(watch.time, "sleep", sleep)
     saves = each_save(controller)
     next(saves)
     next(saves)
-    assert len(waited) == 2
+    assert waited == ["", "one half", "one half, and the other"]
 
 
 def test_an_editor_may_replace_the_file(tmp_path):
@@ -128,61 +118,38 @@ def test_a_folder_that_does_not_exist_cannot_be_watched(tmp_path):
         next(each_save(tmp_path / "missing" / "turtle_controller.py"))
 
 
-@pytest.fixture
-def reported(monkeypatch):
-    """Which of these events make a save: of the submission /home/a/pkg, or of one file in it."""
-
-    def counted(*events, only=None):
-        saves = Saves(Path("/home/a/pkg"), only, Path("/home/a/pkg/graded/turtle.py"))
-        taken = []
-        monkeypatch.setattr(saves, "_seen", type("Queue", (), {"put": taken.append}))
-        for event in events:
-            saves.dispatch(event)
-        return taken
-
-    return counted
+@pytest.mark.parametrize("name", ["pkg/node.py", "setup.cfg", "package.xml", "pkg/inner/new.py"])
+def test_what_can_change_a_verdict_counts(tmp_path, name):
+    assert counted(tmp_path, name) == {tmp_path / name}
 
 
 @pytest.mark.parametrize(
-    "event",
+    "name",
     [
-        FileModifiedEvent("/home/a/pkg/pkg/node.py"),
-        FileCreatedEvent("/home/a/pkg/setup.cfg"),
-        FileDeletedEvent("/home/a/pkg/node.py"),
-        FileMovedEvent("/home/a/pkg/node.py~", "/home/a/pkg/node.py"),
-        FileModifiedEvent(b"/home/a/pkg/node.py"),
+        "graded/pkg/result.json",
+        "graded/pkg/report.html",
+        "graded/pkg/recording/metadata.yaml",
+        "graded/turtle.py/node.py",
+        "pkg/__pycache__/node.py",
+        ".git/hooks/hook.py",
+        "pkg/.node.py.swp",
     ],
 )
-def test_what_can_change_a_verdict_is_a_save(reported, event):
-    assert reported(event) == [event]
+def test_what_grading_writes_and_what_others_leave_do_not_count(tmp_path, name):
+    assert counted(tmp_path, name) == set()
 
 
-@pytest.mark.parametrize(
-    "event",
-    [
-        FileOpenedEvent("/home/a/pkg/node.py"),
-        FileClosedEvent("/home/a/pkg/node.py"),
-        DirCreatedEvent("/home/a/pkg/graded/turtle_controller.py"),
-        FileCreatedEvent("/home/a/pkg/graded/pkg/result.json"),
-        FileCreatedEvent("/home/a/pkg/graded/pkg/report.html"),
-        FileMovedEvent(
-            "/home/a/pkg/graded/pkg/a", "/home/a/pkg/graded/pkg/recording/metadata.yaml"
-        ),
-        FileDeletedEvent("/home/a/pkg/graded/turtle.py"),
-        FileModifiedEvent("/home/a/pkg/graded/turtle.py/node.py"),
-        FileModifiedEvent("/home/a/pkg/__pycache__/node.py"),
-        FileModifiedEvent("/home/a/pkg/.git/hooks/hook.py"),
-        FileModifiedEvent("/home/a/pkg/.node.py.swp"),
-    ],
-)
-def test_what_grading_reads_and_writes_is_no_save(reported, event):
-    assert reported(event) == []
+def test_of_a_single_file_its_neighbours_do_not_count(tmp_path):
+    names = ("node.py", "other.py", "graded/node.py")
+    assert counted(tmp_path, *names, only="node.py") == {tmp_path / "node.py"}
 
 
-def test_of_a_single_file_its_neighbours_do_not_count(reported):
-    own = FileModifiedEvent("/home/a/pkg/node.py")
-    others = [FileModifiedEvent(f"/home/a/pkg/{name}") for name in ("other.py", "graded/node.py")]
-    assert reported(own, *others, only="node.py") == [own]
+def counted(folder: Path, *names: str, only: str | None = None) -> set[Path]:
+    """Which of these files count, of a folder or of one file in it."""
+    for path in (folder / name for name in names):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    return set(watch.state(folder, only, folder / "graded" / "turtle.py"))
 
 
 @pytest.mark.parametrize(
