@@ -8,11 +8,11 @@ from __future__ import annotations
 import ast
 import math
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from grader.submission.scopes import Found, Function, Parents, around, last, scope_nodes
+from grader.submission.scopes import Found, Function, Source, last, scope_nodes
 
 #: The window's side [m], as turtlesim draws it.
 SIZE_M = 11.09
@@ -67,9 +67,9 @@ class Unknown(Exception):
 class Values:
     """What the names in a submission's files stand for."""
 
-    def __init__(self, trees: list[ast.Module]) -> None:
+    def __init__(self, sources: Iterable[Source]) -> None:
         self._assigned: dict[str, list[ast.expr | None]] = {}
-        for node in (node for tree in trees for node in ast.walk(tree)):
+        for node in (node for source in sources for node in source.nodes):
             match node:
                 case ast.Assign(targets=targets, value=value):
                     for target in targets:
@@ -157,10 +157,10 @@ class Values:
         raise Unknown
 
 
-def held(tree: ast.Module, values: Values) -> Iterator[Found]:
+def held(source: Source, values: Values) -> Iterator[Found]:
     """Yield what the names in a file hold, where that may end a program."""
     changed, divisors, seen = set(), set(), set()
-    for node in ast.walk(tree):
+    for node in source.nodes:
         match node:
             case ast.Subscript(value=of, ctx=ast.Store() | ast.Del()):
                 changed.add(last(of))
@@ -168,7 +168,7 @@ def held(tree: ast.Module, values: Values) -> Iterator[Found]:
                 changed.add(last(of))
             case ast.BinOp(op=ast.Div() | ast.FloorDiv() | ast.Mod(), right=right) if last(right):
                 divisors.add(ast.unparse(right))
-    for node in ast.walk(tree):
+    for node in source.nodes:
         match node:
             case ast.Assign(targets=[target], value=value) if last(target):
                 name = ast.unparse(target)
@@ -195,35 +195,35 @@ def held(tree: ast.Module, values: Values) -> Iterator[Found]:
                     yield "ends", node.name, "", min(loops, default=node.lineno)
 
 
-def find(tree: ast.Module, parents: Parents, values: Values) -> Iterator[Found]:
+def find(source: Source, values: Values) -> Iterator[Found]:
     """Yield where the pose is compared with the middle of the window, or tells that a wall is near.
 
     Yields: the kind of `LintFinding`, its name and near, and a line.
     """
     conditions: list[tuple[ast.expr, set[str], str]] = []
-    for node in ast.walk(tree):
+    for node in source.nodes:
         if isinstance(node, ast.Compare):
-            yield from _of_the_middle(node, parents, values)
+            yield from _of_the_middle(node, source, values)
         if not isinstance(node, ast.BoolOp | ast.Compare) or len(conditions) >= MOST:
             continue
-        if not _is_part(node, parents, values) and (told := _walls(node, values)) is not None:
+        if not _is_part(node, source, values) and (told := _walls(node, values)) is not None:
             conditions.append((node, *told))
     all_told = {wall for _, told, _ in conditions for wall in told}
     missing = ", ".join(wall for wall in WALLS if wall not in all_told)
     for node, _, wrong in conditions:
         near = wrong or missing
-        line = node.lineno if near else _where_used(node, tree, parents)
+        line = node.lineno if near else _where_used(node, source)
         yield "at_wall", ast.unparse(node), near, line
 
 
-def _where_used(node: ast.expr, tree: ast.Module, parents: Parents) -> int:
+def _where_used(node: ast.expr, source: Source) -> int:
     """Return the line that decides by a condition; that of the `if` which asks its function."""
-    outer = around(node, parents, ast.FunctionDef, ast.AsyncFunctionDef)
+    outer = source.around(node, ast.FunctionDef, ast.AsyncFunctionDef)
     if not isinstance(outer, Function) or not any(
         isinstance(n, ast.Return) and n.value for n in ast.walk(outer)
     ):
         return node.lineno
-    for each in ast.walk(tree):
+    for each in source.nodes:
         if isinstance(each, ast.If | ast.While):
             asked = (last(n.func) for n in ast.walk(each.test) if isinstance(n, ast.Call))
             if outer.name in asked:
@@ -231,7 +231,7 @@ def _where_used(node: ast.expr, tree: ast.Module, parents: Parents) -> int:
     return node.lineno
 
 
-def _of_the_middle(node: ast.Compare, parents: Parents, values: Values) -> Iterator[Found]:
+def _of_the_middle(node: ast.Compare, source: Source, values: Values) -> Iterator[Found]:
     parts = [node.left, *node.comparators]
     axes = [last(each) for each in parts if last(each) in ("x", "y")]
     for part in parts if axes else []:
@@ -240,16 +240,16 @@ def _of_the_middle(node: ast.Compare, parents: Parents, values: Values) -> Itera
         except Unknown:
             continue
         if 4 < limit < 7 or (limit == 0 and len(parts) == 2):
-            beside = _axes_beside(node, parents)
+            beside = _axes_beside(node, source)
             is_one_axis = len(beside) > 1 and len({*beside}) == 1
             yield "at_middle", "one axis" if is_one_axis else axes[0], str(limit), node.lineno
 
 
-def _axes_beside(node: ast.Compare, parents: Parents) -> list[str]:
+def _axes_beside(node: ast.Compare, source: Source) -> list[str]:
     """Return the axes that the expression around a comparison compares, one for each time."""
     outer: ast.AST = node
-    while isinstance(parents.get(outer), ast.expr):
-        outer = parents[outer]
+    while isinstance(source.parents.get(outer), ast.expr):
+        outer = source.parents[outer]
     return [
         last(part)
         for each in ast.walk(outer)
@@ -259,9 +259,9 @@ def _axes_beside(node: ast.Compare, parents: Parents) -> list[str]:
     ]
 
 
-def _is_part(node: ast.expr, parents: Parents, values: Values) -> bool:
+def _is_part(node: ast.expr, source: Source, values: Values) -> bool:
     """Whether a larger condition is judged as a whole."""
-    outer = parents.get(node)
+    outer = source.parents.get(node)
     while isinstance(outer, ast.BoolOp) or (
         isinstance(outer, ast.UnaryOp) and isinstance(outer.op, ast.Not)
     ):
@@ -271,7 +271,7 @@ def _is_part(node: ast.expr, parents: Parents, values: Values) -> bool:
             return False
         if isinstance(outer, ast.BoolOp):
             return True
-        outer = parents.get(outer)
+        outer = source.parents.get(outer)
     return False
 
 

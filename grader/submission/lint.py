@@ -11,15 +11,15 @@ import ast
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from grader.recording.observations import LintFinding, LintKind, SourceLine
+from grader.recording.observations import LintFinding, SourceLine
 from grader.submission import paths, ros_mistakes, scopes
 from grader.submission.folder import near, read_bounded
 from grader.submission.python_source import parse, seen
-from grader.submission.scopes import Function, Source, last
+from grader.submission.scopes import Found, Function, Source, last
 from grader.text import misspelt
 
 #: So many findings are kept, and so much of a name or a line [characters].
@@ -47,6 +47,7 @@ class Names:
         bound: names that anything is assigned to, or that are arguments.
         kept: names of attributes that anything is assigned to.
         passed: names that any call is given, and functions that a lambda calls.
+        are_all: whether nothing reads or sets attributes by names that are not seen here.
     """
 
     read: set[str] = field(default_factory=set)
@@ -55,10 +56,11 @@ class Names:
     kept: set[str] = field(default_factory=set)
     classes: set[str] = field(default_factory=set)
     passed: set[str] = field(default_factory=set)
+    are_all: bool = True
 
-    def add(self, tree: ast.AST) -> None:
+    def add(self, source: Source) -> None:
         """Add the names in one file."""
-        for node in ast.walk(tree):
+        for node in source.nodes:
             match node:
                 case ast.Attribute(attr=name, ctx=ast.Load()):
                     self.read.add(name)
@@ -74,7 +76,7 @@ class Names:
                     self.passed |= {last(each) for each in (*args, *(w.value for w in words))}
                 case ast.Lambda(body=body):
                     self.passed |= _called_in(body)
-        for node in ast.walk(tree):  # self.x += 1 reads it as well
+        for node in source.nodes:  # self.x += 1 reads it as well
             if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Attribute):
                 self.read.add(node.target.attr)
 
@@ -107,19 +109,15 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
         found = _find(parsed, sources, lies)[:MOST]
         found += _elsewhere(parsed, root, lies)
         steps = ((file, step) for file, source in parsed.items() for step in paths.find(source))
-        found += [_finding(*step[:3], file, step[3]) for file, step in islice(steps, paths.MOST)]
+        found += islice(steps, paths.MOST)
     except (OSError, RecursionError, MemoryError, ValueError):
         return ()
     return tuple(
-        replace(
-            each,
-            name=each.name[:LONGEST],
-            near=each.near[:LONGEST],
-            place=replace(
-                each.place, text=lines[each.place.file][each.place.line - 1].strip()[:LONGEST]
-            ),
+        LintFinding(
+            *(kind, name[:LONGEST], near[:LONGEST]),
+            SourceLine(file, line, text=lines[file][line - 1].strip()[:LONGEST]),
         )
-        for each in found
+        for file, (kind, name, near, line) in found
     )
 
 
@@ -136,7 +134,8 @@ def find(
         RecursionError, MemoryError: too deep for Python.
         ValueError: it holds an integer that is too long for Python to write.
     """
-    return _find(_parse(sources), sources, lies)
+    found = _find(_parse(sources), sources, lies)
+    return [LintFinding(*each[:3], SourceLine(file, each[3])) for file, each in found]
 
 
 def _parse(sources: Mapping[str, str]) -> dict[str, Source]:
@@ -149,47 +148,28 @@ def _parse(sources: Mapping[str, str]) -> dict[str, Source]:
 
 def _find(
     parsed: Mapping[str, Source], sources: Mapping[str, str], lies: Callable[[str], bool]
-) -> list[LintFinding]:
-    names, trees = Names(), {file: source.tree for file, source in parsed.items()}
-    for tree in trees.values():
-        names.add(tree)
+) -> list[tuple[str, Found]]:
+    """Return the findings in some files, each with its file."""
     by_name = re.compile(rf"\b({'|'.join(BY_NAME)})\b")
-    words = any(by_name.search(text) for text in sources.values())
-    found: list[LintFinding] = []
-    for file, tree in trees.items():
-        classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
-        for each in classes:
-            if not words:
-                found += _unread(each, names, file)
-            found += _of_methods(each, file)
-            for method in _methods(each):
-                found += _meant_for_self(each, method, names, file)
-        found += [
-            _finding(kind, name, near, file, line)
-            for kind, name, near, line in scopes.not_declared(tree)
-        ]
-        found += _without_brackets(tree, names, file)
-        found += _passed(tree, names, file)
-    if not names.read & {"call_async", "call"} and not words:
-        found += [finding for file, tree in trees.items() for finding in _unsent(tree, file)]
-    found += [finding for file, tree in trees.items() for finding in _beside(tree, file, lies)]
-    found += _own_modules(trees)
-    callbacks = names.callbacks()
-    found += [
-        finding for file, tree in trees.items() for finding in _swallows(tree, callbacks, file)
-    ]
-    found += [_finding(*each[:3], file, each[3]) for file, each in ros_mistakes.find(parsed)]
+    names = Names(are_all=not any(by_name.search(text) for text in sources.values()))
+    for source in parsed.values():
+        names.add(source)
+    files, callbacks = parsed.items(), names.callbacks()
+    rules = (_of_classes, _not_declared, _without_brackets, _passed)
+    found = [(f, each) for f, source in files for rule in rules for each in rule(source, names)]
+    if names.are_all and not names.read & {"call_async", "call"}:
+        found += ((file, each) for file, source in files for each in _unsent(source))
+    found += ((file, each) for file, source in files for each in _beside(source, file, lies))
+    found += _own_modules(parsed)
+    found += ((file, each) for file, source in files for each in _swallows(source, callbacks))
+    found += ros_mistakes.find(parsed)
     return list(dict.fromkeys(found))
 
 
-def _finding(kind: LintKind, name: str, near: str, file: str, line: int) -> LintFinding:
-    return LintFinding(kind, name, near, SourceLine(file, line))
-
-
-def _beside(tree: ast.AST, file: str, lies: Callable[[str], bool]) -> Iterator[LintFinding]:
+def _beside(source: Source, file: str, lies: Callable[[str], bool]) -> Iterator[Found]:
     """Yield modules of the importing package that are imported as if they lay beside it."""
     folder = file.rpartition("/")[0]
-    for node in ast.walk(tree):
+    for node in source.nodes:
         match node:
             case ast.Import(names=names):
                 modules = [each.name for each in names]
@@ -200,32 +180,32 @@ def _beside(tree: ast.AST, file: str, lies: Callable[[str], bool]) -> Iterator[L
         for name in (each.partition(".")[0] for each in modules):
             if folder and not lies(name) and lies(f"{folder}/{name}"):
                 near = ".".join((*folder.split("/"), name))
-                yield _finding("beside", name, near, file, node.lineno)
+                yield "beside", name, near, node.lineno
 
 
-def _own_modules(trees: Mapping[str, ast.Module]) -> Iterator[LintFinding]:
+def _own_modules(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
     """Yield imports from a module of the submission's that lacks the name, or imports this one."""
     imports = [
         (file, node, other)
-        for file, tree in trees.items()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and (other := _imported_file(file, node, trees))
+        for file, source in sources.items()
+        for node in source.nodes
+        if isinstance(node, ast.ImportFrom) and (other := _imported_file(file, node, sources))
     ][:MOST]
     pairs = {(file, other) for file, _, other in imports}
-    sources = {other: seen(trees[other]) for other in {other for _, other in pairs}}
+    modules = {other: seen(sources[other].tree) for other in {other for _, other in pairs}}
     used = {
-        file: {node.id for node in ast.walk(trees[file]) if isinstance(node, ast.Name)}
+        file: {node.id for node in sources[file].nodes if isinstance(node, ast.Name)}
         for file in {file for file, other in pairs if (other, file) in pairs}
     }
     for file, node, other in imports:
-        source = sources[other]
+        module = modules[other]
         for name in (alias.name for alias in node.names[:MOST]):
-            if name != "*" and source.defined and source.surely_lacks(name):
-                has = ", ".join(near(name, source.defined)[:1] or source.defined)
-                yield _finding("not_defined", name, has, file, node.lineno)
+            if name != "*" and module.defined and module.surely_lacks(name):
+                has = ", ".join(near(name, module.defined)[:1] or module.defined)
+                yield file, ("not_defined", name, has, node.lineno)
         if (other, file) in pairs:
             is_used = used[file] & {alias.asname or alias.name for alias in node.names}
-            yield _finding("circular", other, "" if is_used else "unused", file, node.lineno)
+            yield file, ("circular", other, "" if is_used else "unused", node.lineno)
 
 
 def _imported_file(file: str, node: ast.ImportFrom, files: Iterable[str]) -> str | None:
@@ -242,7 +222,7 @@ def _imported_path(file: str, node: ast.ImportFrom) -> str:
 
 def _elsewhere(
     parsed: Mapping[str, Source], root: Path, lies: Callable[[str], bool]
-) -> Iterator[LintFinding]:
+) -> Iterator[tuple[str, Found]]:
     """Yield imports of modules of a package that lie in another place, or in other letters."""
     missing = [
         (path, file, node.lineno)
@@ -258,7 +238,7 @@ def _elsewhere(
     there = {each.name.lower(): each.relative_to(root).as_posix() for each in files}
     for path, file, line in missing:
         if near := there.get(f"{path.rpartition('/')[2].lower()}.py"):
-            yield _finding("elsewhere", f"{path}.py", near, file, line)
+            yield file, ("elsewhere", f"{path}.py", near, line)
 
 
 # Attributes and methods ---------------------------------------------------------------------------
@@ -288,50 +268,59 @@ def _of_the_start(of: ast.ClassDef) -> set[str]:
     return found
 
 
-def _unread(of: ast.ClassDef, names: Names, file: str) -> Iterator[LintFinding]:
+def _of_classes(source: Source, names: Names) -> Iterator[Found]:
+    for of in source.nodes:
+        if isinstance(of, ast.ClassDef):
+            if names.are_all:
+                yield from _unread(of, names)
+            yield from _of_methods(of)
+            for method in _methods(of):
+                yield from _meant_for_self(of, method, names)
+
+
+def _unread(of: ast.ClassDef, names: Names) -> Iterator[Found]:
     start = _of_the_start(of)
     for name, line in _set_in(of).items():
         if name in start or name in names.read:
             continue
         near = next((o for o in sorted(start & names.read) if misspelt(name, o)), None)
         if near is not None:
-            yield _finding("unread", name, near, file, line)
+            yield "unread", name, near, line
 
 
-def _of_methods(of: ast.ClassDef, file: str) -> Iterator[LintFinding]:
+def _of_methods(of: ast.ClassDef) -> Iterator[Found]:
     kept = _set_in(of)
     for method in _methods(of):
         if method.decorator_list:
             continue
         if method.name in kept:
-            yield _finding("method", method.name, "", file, kept[method.name])
+            yield "method", method.name, "", kept[method.name]
         arguments = [*method.args.posonlyargs, *method.args.args]
         if not method.args.vararg and [each.arg for each in arguments[:1]] not in (
             ["self"],
             ["cls"],
         ):
-            yield _finding("without_self", method.name, "", file, method.lineno)
+            yield "without_self", method.name, "", method.lineno
 
 
-# Variables that were meant as attributes ---------------------------------------------------------
-
-
-def _meant_for_self(
-    of: ast.ClassDef, method: Function, names: Names, file: str
-) -> Iterator[LintFinding]:
+def _meant_for_self(of: ast.ClassDef, method: Function, names: Names) -> Iterator[Found]:
     """Yield variables that are never read, where an attribute has the same name."""
     start = _of_the_start(of)
     for name, line in scopes.unread(method).items():
         if name in start and name in names.read:
-            yield _finding("local", name, f"self.{name}", file, line)
+            yield "local", name, f"self.{name}", line
+
+
+def _not_declared(source: Source, _: Names) -> Iterator[Found]:
+    return scopes.not_declared(source.tree)
 
 
 # Brackets -----------------------------------------------------------------------------------------
 
 
-def _without_brackets(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
+def _without_brackets(source: Source, names: Names) -> Iterator[Found]:
     """Yield functions that are not called where only their result makes sense."""
-    for node in ast.walk(tree):
+    for node in source.nodes:
         asked: Sequence[ast.expr] = ()
         match node:
             case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test):
@@ -339,7 +328,7 @@ def _without_brackets(tree: ast.AST, names: Names, file: str) -> Iterator[LintFi
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 asked = list(_leaves(operand))
             case ast.Expr(value=ast.Attribute(attr=name) as value) if name not in names.kept:
-                yield _finding("uncalled", ast.unparse(value), "", file, node.lineno)
+                yield "uncalled", ast.unparse(value), "", node.lineno
             case ast.Expr(value=ast.Name() as value):
                 asked = [value]
         for each in asked:
@@ -351,7 +340,7 @@ def _without_brackets(tree: ast.AST, names: Names, file: str) -> Iterator[LintFi
                 case _:
                     continue
             if is_function and not names.functions[name].decorator_list:
-                yield _finding("uncalled", ast.unparse(each), "", file, each.lineno)
+                yield "uncalled", ast.unparse(each), "", each.lineno
 
 
 def _leaves(test: ast.expr) -> Iterator[ast.expr]:
@@ -368,9 +357,9 @@ def _leaves(test: ast.expr) -> Iterator[ast.expr]:
             yield test
 
 
-def _passed(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
+def _passed(source: Source, names: Names) -> Iterator[Found]:
     """Yield what a thread or an executor is wrongly given: a call's result, or a class."""
-    for node in ast.walk(tree):
+    for node in source.nodes:
         if not isinstance(node, ast.Call):
             continue
         to = last(node.func)
@@ -383,35 +372,35 @@ def _passed(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
                 is_idle = function is not None and scopes.returns_nothing(function)
                 if is_idle or last(inner.func) in SPINS:
                     name = ast.unparse(inner.func)
-                    yield _finding("called", name, f"{to}({word.arg}=", file, inner.lineno)
+                    yield "called", name, f"{to}({word.arg}=", inner.lineno
         if to in SPINS:
             for each in node.args:
                 if isinstance(each, ast.Name) and each.id in names.classes - names.bound:
-                    yield _finding("class", each.id, ast.unparse(node.func), file, node.lineno)
+                    yield "class", each.id, ast.unparse(node.func), node.lineno
 
 
 def _called_in(node: ast.AST) -> set[str]:
     return {last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
 
 
-def _unsent(tree: ast.AST, file: str) -> Iterator[LintFinding]:
+def _unsent(source: Source) -> Iterator[Found]:
     """Yield requests that are made, where nothing ever calls a service."""
-    for node in ast.walk(tree):
+    for node in source.nodes:
         match node:
             case ast.Call(func=ast.Attribute(value=made, attr="Request")):
-                yield _finding("unsent", ast.unparse(made), "", file, node.lineno)
+                yield "unsent", ast.unparse(made), "", node.lineno
 
 
 # Errors that are never shown ----------------------------------------------------------------------
 
 
-def _swallows(tree: ast.AST, callbacks: set[str], file: str) -> Iterator[LintFinding]:
+def _swallows(source: Source, callbacks: set[str]) -> Iterator[Found]:
     """Yield each `except` in a callback that catches all errors, and neither raises nor shows."""
-    for function in ast.walk(tree):
+    for function in source.nodes:
         if isinstance(function, Function) and function.name in callbacks:
             for node in scopes.scope_nodes(function):
                 if isinstance(node, ast.ExceptHandler) and _catches_all(node) and _is_silent(node):
-                    yield _finding("swallows", function.name, "", file, node.lineno)
+                    yield "swallows", function.name, "", node.lineno
 
 
 def _catches_all(handler: ast.ExceptHandler) -> bool:

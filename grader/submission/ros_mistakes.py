@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
+from itertools import chain
 from typing import TypeGuard
 
 from grader.submission import conditions, python_mistakes, scopes
@@ -60,19 +61,13 @@ def find(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
         for file, source in sources.items():
             yield from ((file, found) for found in rule(source))
     for file, source in sources.items():
-        yield from ((file, found) for found in _forgotten(source, whole))
-        yield from ((file, found) for found in _attributes(source, whole))
-        yield from ((file, found) for found in scopes.misplaced(source.tree, source.parents))
+        of_the_class = (_forgotten(source, whole), _attributes(source, whole))
+        yield from ((file, found) for found in chain(*of_the_class, scopes.misplaced(source)))
     yield from python_mistakes.own_calls(sources)
-    values = conditions.Values([source.tree for source in whole])
+    values = conditions.Values(whole)
+    by_values = (python_mistakes.find, conditions.find, conditions.held, _stays, _waits, _numbers)
     for file, source in sources.items():
-        yield from ((file, found) for found in python_mistakes.find(source, values))
-        places = conditions.find(source.tree, source.parents, values)
-        yield from ((file, found) for found in places)
-        yield from ((file, found) for found in conditions.held(source.tree, values))
-        yield from ((file, found) for found in _stays(source, values))
-        yield from ((file, found) for found in _waits(source))
-        yield from ((file, found) for found in _numbers(source, values))
+        yield from ((file, found) for rule in by_values for found in rule(source, values))
     for rule in (_colours, _imports, _constants, _fields):
         for file, source in sources.items():
             yield from ((file, found) for found in rule(source))
@@ -319,7 +314,7 @@ def _is_plain(value: ast.expr | None) -> bool:
     return isinstance(value, ast.Constant | ast.UnaryOp)
 
 
-def _waits(source: Source) -> Iterator[Found]:
+def _waits(source: Source, _: conditions.Values) -> Iterator[Found]:
     """Calls in callbacks, and in what these call, that wait for another callback."""
     for function in source.called_back():
         for node in ast.walk(function):

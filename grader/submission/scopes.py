@@ -31,14 +31,6 @@ def is_read(node: ast.AST) -> bool:
     return isinstance(getattr(node, "ctx", None), ast.Load)
 
 
-def around(node: ast.AST, parents: Parents, *kinds: type[ast.AST]) -> ast.AST | None:
-    """Return the nearest of these kinds that a node is in."""
-    found = parents.get(node)
-    while found is not None and not isinstance(found, kinds):
-        found = parents.get(found)
-    return found
-
-
 #: Calls that take a callback -> its position, and that of a keyword of this name.
 CALLBACKS = {
     "create_subscription": (2, "callback"),
@@ -83,7 +75,10 @@ class Source:
 
     def around(self, node: ast.AST, *kinds: type[ast.AST]) -> ast.AST | None:
         """Return the nearest of these kinds that a node is in."""
-        return around(node, self.parents, *kinds)
+        found = self.parents.get(node)
+        while found is not None and not isinstance(found, kinds):
+            found = self.parents.get(found)
+        return found
 
     @cached_property
     def imported(self) -> list[tuple[ast.ImportFrom, ast.alias]]:
@@ -226,10 +221,10 @@ def _is_read_first(function: Function, name: str) -> bool:
 # Functions ----------------------------------------------------------------------------------------
 
 
-def misplaced(tree: ast.Module, parents: Parents) -> Iterator[Found]:
+def misplaced(source: Source) -> Iterator[Found]:
     """Yield what looks like a method, and is defined in a function or outside of all classes."""
-    for node in ast.walk(tree):
-        outer = parents.get(node)
+    for node in source.nodes:
+        outer = source.parents.get(node)
         if not isinstance(node, Function) or not isinstance(outer, Function | ast.Module):
             continue
         if [each.arg for each in node.args.args[:1]] == ["self"]:
