@@ -167,8 +167,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # what was handed in is looked at before it is opened, and archives of a class are unpacked
     "grader.batch.find": GROUND
     | {"grader.batch"}
-    | below("grader.submission", "folder", "unpacking", "archive", "safe_members")
-    | below("grader.submission", "archive_members"),
+    | below("grader.submission", "folder", "unpacking", "archive", "safe_members"),
     "grader.batch.store": GROUND
     | {"grader.batch"}
     | below("grader", "exercise.exercise", "recording.recording", "submission.folder"),

@@ -21,8 +21,7 @@ from grader import limited, strict_json
 from grader.batch.find.attempt import short
 from grader.errors import UsageError
 from grader.message import NOTHING, Message, as_message, msg
-from grader.submission import archive_members
-from grader.submission.archive import DAMAGED
+from grader.submission.archive import DAMAGED, opened_tar, opened_zip
 from grader.submission.folder import MAX_BYTES, is_junk, listed, marks_generated, shown
 from grader.submission.safe_members import Budget, ListTooLong, Member
 
@@ -223,10 +222,10 @@ class _Unpacking:
 @contextmanager
 def _members(archive: Path, plain: Path) -> Iterator[Sequence[Member]]:
     if archive.suffix.lower() == ".zip":
-        with archive_members.opened_zip(archive, MAX_LIST_BYTES) as members:
+        with opened_zip(archive, MAX_LIST_BYTES) as members:
             yield members
     else:
-        with archive_members.opened_tar(archive, plain, MAX_FILES, _Room()) as members:
+        with opened_tar(archive, plain, MAX_FILES, _Room()) as members:
             yield members
 
 

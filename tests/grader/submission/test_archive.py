@@ -262,7 +262,7 @@ def test_a_bomb_in_a_tar_is_stopped_while_it_is_read(
 def test_a_bomb_around_a_tar_is_stopped_while_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("grader.submission.archive_members.Budget", lambda: Budget(100_000))
+    monkeypatch.setattr("grader.submission.archive.Budget", lambda: Budget(100_000))
     (tmp_path / "a.tgz").write_bytes(gzip.compress(bytes(200_000)))
     assert "a.tgz unpacks to more than 0.1 MB" in refused(tmp_path / "a.tgz")
 
@@ -278,7 +278,7 @@ def test_headers_without_end_are_refused(tmp_path: Path, monkeypatch: pytest.Mon
     info.pax_headers = {"comment": "x" * 200_000}
     long = "a.tar lists too many files, or too long names: one of its headers has more than 100 kB"
     assert long in refused(tar(tmp_path / "a.tar", info))
-    monkeypatch.setattr("grader.submission.archive_members.MAX_HEADERS", 2)
+    monkeypatch.setattr("grader.submission.archive.MAX_HEADERS", 2)
     many = tar(tmp_path / "b.tar", "a", "b", "c")
     assert "it has more than 2 entries" in refused_in(tmp_path / "again", many)
 
