@@ -312,10 +312,10 @@ class LaunchRecord:
         if path.endswith(".py"):
             walk(_python(path, read), self.context)
         else:
-            from grader.inspection.examining import xml_launch, yaml_launch
+            from grader.inspection.examining import frontend
 
             is_yaml = path.endswith((".yaml", ".yml"))
-            walk((yaml_launch if is_yaml else xml_launch).entities(read), self.context)
+            walk(frontend.entities(read, is_yaml=is_yaml), self.context)
         self.context.locals_["current_launch_file_path"] = before
 
     def xacro(self, words: list[str]) -> commands.Ended:
