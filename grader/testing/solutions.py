@@ -33,7 +33,7 @@ same way:
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -44,6 +44,9 @@ from grader.exercise.exercise import Exercise
 from grader.message import reason
 from grader.yaml_file import Keys, Mistake, read_yaml
 
+FILE_NAME = "mutants.yaml"
+#: What is left of a check's points: a share from 0 to 1, or some of them.
+Left = float | Literal["some"]
 #: The keys of a solution that is made of the first one.
 MADE = frozenset(("replace", "files", "put"))
 
@@ -61,90 +64,6 @@ class Change:
     old: str | None
     new: str | None
     file: str = ""
-
-
-def read(words: Mapping[str, Any], program: str, folder: Path) -> tuple[Change, ...]:
-    """Parse the changes of `put`, `files` and `replace`, in this order.
-
-    Args:
-        program: the file in a folder whose passages are replaced without `in`.
-        folder: the paths of `put` are relative to it.
-
-    Raises:
-        TypeError, KeyError, AttributeError: they do not have the expected form.
-        OSError: a file of `put` cannot be read.
-    """
-    put = {
-        file: places.locate(folder, str(where)).read_text(encoding="utf-8")
-        for file, where in words.get("put", {}).items()
-    }
-    written = {**put, **words.get("files", {})}
-    return (
-        *(Change(None, None if t is None else str(t), str(f)) for f, t in written.items()),
-        *(
-            Change(str(each["old"]), str(each["new"]), str(each.get("in", program)))
-            for each in words.get("replace", ())
-        ),
-    )
-
-
-def changed(name: str, path: Path, changes: Sequence[Change]) -> Mapping[str, str | None]:
-    """Apply changes: file -> its new text, None if it is removed; '' is the solution itself.
-
-    Raises:
-        ExerciseError: a passage does not occur exactly once, or there is no such file.
-    """
-    texts: dict[str, str | None] = {}
-    for change in changes:
-        file = path / change.file if change.file else path
-        is_there = texts[change.file] is not None if change.file in texts else file.is_file()
-        if not is_there and (change.old is not None or change.new is None):
-            raise ExerciseError(
-                "mutants: {name}: there is no file {file!r} in {path}",
-                name=name,
-                file=change.file,
-                path=str(path),
-            )
-        if change.old is None:
-            texts[change.file] = change.new
-            continue
-        text = texts.get(change.file)
-        if text is None:
-            text = file.read_text(encoding="utf-8")
-        if text.count(change.old) != 1:
-            raise ExerciseError(
-                "mutants: {name}: {old!r} stands {count} times in {in_file}; expected once",
-                name=name,
-                old=change.old,
-                count=text.count(change.old),
-                in_file=file.name,
-            )
-        texts[change.file] = text.replace(change.old, change.new or "")
-    return texts
-
-
-def lay_out(name: str, path: Path, changes: Sequence[Change], folder: Path) -> Path:
-    """Write a changed copy into a new folder, and return its path."""
-    copy = folder / name / path.name
-    texts = changed(name, path, changes)
-    if path.is_dir():
-        shutil.copytree(path, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    else:
-        copy.parent.mkdir(parents=True)
-    for file, text in texts.items():
-        target = copy / file if file else copy
-        if text is None:
-            target.unlink()
-        else:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text, encoding="utf-8")
-    return copy
-
-
-FILE_NAME = "mutants.yaml"
-
-#: What is left of a check's points: a share from 0 to 1, or some of them.
-Left = float | Literal["some"]
 
 
 @dataclass(frozen=True)
@@ -167,18 +86,63 @@ class Solution:
     leaves: Mapping[str, Left] | None = None
     first_line: str = ""
 
-    def text(self) -> str:
-        """Return the source of a solution that is a file, with its changes.
+    def texts(self) -> Mapping[str, str | None]:
+        """Apply its changes: file -> its new text, None if it is removed; '' is the path itself.
 
         Raises:
-            ExerciseError: a passage does not occur exactly once.
+            ExerciseError: a passage does not occur exactly once, or there is no such file.
         """
-        text = changed(self.name, self.path, self.changes).get("")
+        texts: dict[str, str | None] = {}
+        for change in self.changes:
+            file = self.path / change.file
+            is_there = texts[change.file] is not None if change.file in texts else file.is_file()
+            if not is_there and (change.old is not None or change.new is None):
+                raise ExerciseError(
+                    "mutants: {name}: there is no file {file!r} in {path}",
+                    name=self.name,
+                    file=change.file,
+                    path=str(self.path),
+                )
+            if change.old is None:
+                texts[change.file] = change.new
+                continue
+            text = texts.get(change.file)
+            if text is None:
+                text = file.read_text(encoding="utf-8")
+            if text.count(change.old) != 1:
+                raise ExerciseError(
+                    "mutants: {name}: {old!r} stands {count} times in {in_file}; expected once",
+                    name=self.name,
+                    old=change.old,
+                    count=text.count(change.old),
+                    in_file=file.name,
+                )
+            texts[change.file] = text.replace(change.old, change.new or "")
+        return texts
+
+    def text(self) -> str:
+        """Return the source of a solution that is a file, with its changes; see `texts`."""
+        text = self.texts().get("")
         return self.path.read_text(encoding="utf-8") if text is None else text
 
     def lay_out(self, folder: Path) -> Path:
         """Return the path of the submission: the original, or a changed copy in a new folder."""
-        return lay_out(self.name, self.path, self.changes, folder) if self.changes else self.path
+        if not self.changes:
+            return self.path
+        copy = folder / self.name / self.path.name
+        texts = self.texts()
+        if self.path.is_dir():
+            shutil.copytree(self.path, copy, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            copy.parent.mkdir(parents=True)
+        for file, text in texts.items():
+            target = copy / file
+            if text is None:
+                target.unlink()
+            else:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_text(text, encoding="utf-8")
+        return copy
 
 
 def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solution]:
@@ -198,7 +162,7 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
         except Mistake as mistake:
             raise ExerciseError(file.describe(mistake)) from None
         for solution in found:
-            changed(solution.name, solution.path, solution.changes)
+            solution.texts()
     except OSError as error:
         raise ExerciseError(
             "cannot read the solutions of {name!r}, {path}: {why}. Expected a "
@@ -242,7 +206,13 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
 
 @dataclass(frozen=True)
 class _Made:
-    """The origin of made solutions: the first one, its program, and the folder of mutants.yaml."""
+    """The origin of made solutions.
+
+    Attributes:
+        of: the first one.
+        program: the file in a folder whose passages are replaced without `in`.
+        folder: that of mutants.yaml, to which the paths of `put` are relative.
+    """
 
     of: Path
     program: str
@@ -250,7 +220,18 @@ class _Made:
 
     def changes(self, words: Mapping[str, Any], keys: Keys) -> tuple[Change, ...]:
         try:
-            changes = read(words, self.program, self.folder)
+            put = {
+                file: places.locate(self.folder, str(where)).read_text(encoding="utf-8")
+                for file, where in words.get("put", {}).items()
+            }
+            written = {**put, **words.get("files", {})}
+            changes = (
+                *(Change(None, None if t is None else str(t), str(f)) for f, t in written.items()),
+                *(
+                    Change(str(each["old"]), str(each["new"]), str(each.get("in", self.program)))
+                    for each in words.get("replace", ())
+                ),
+            )
         except (TypeError, KeyError, AttributeError):
             raise Mistake((*keys, "replace"), "expected a list of old and new") from None
         is_folder = self.of.is_dir()
