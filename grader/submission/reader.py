@@ -7,23 +7,21 @@ and reaches nothing else.
 
 from __future__ import annotations
 
-import mmap
 import os
 import signal
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
 from grader import limited, strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
-from grader.submission import folder, python_source, unpacking, whole
+from grader.submission import folder, python_source, whole
 from grader.submission.finding import find, find_inspected, may_be_node
 from grader.submission.folder import is_source, shown
 from grader.submission.imports import read_imports
@@ -175,11 +173,10 @@ def read(
             started = find_inspected(*again, name, executable, scratch, programs, launch)
         return _with_its_source(started, path, interfaces)
 
-    with mmap.mmap(-1, mmap.PAGESIZE) as place:  # shared with the copy
-        try:
-            answer = decoded(limited.call(lambda: _answered(found, path, scratch, place), LIMITS))
-        except limited.LimitHit as hit:
-            answer = _of_hit(hit, name, place)
+    try:
+        answer = decoded(limited.call(lambda: _answered(found, path), LIMITS))
+    except limited.LimitHit as hit:
+        answer = _of_hit(hit, name)
     return answer.submission()
 
 
@@ -196,18 +193,16 @@ def read_marks(path: Path, scratch: Path) -> Marks:
         return Marks()
 
 
-def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> _Answer:
+def _of_hit(hit: limited.LimitHit, name: str) -> _Answer:
     """Make the answer for a copy that reached a limit and gave none."""
     too_much = _too_much(hit)
     if not too_much:
         return _Answer(failed=f"the process for it {hit.why!s}")
-    at = bytes(place).rstrip(b"\0").decode("utf-8", "replace")
     return _Answer.of_refusal(
         SubmissionError(
-            "{name} cannot be read: {too_much}{place}. {plain}",
+            "{name} cannot be read: {too_much}. {plain}",
             name=shown(name),
             too_much=too_much,
-            place=msg(" (it got as far as {place})", place=shown(at)) if at else NOTHING,
             plain=_PLAIN,
         )
     )
@@ -233,12 +228,8 @@ def _too_much(hit: limited.LimitHit) -> Message:
 # In the copy ----------------------------------------------------------------------------------
 
 
-def _answered(
-    found: Callable[[], Submission], path: Path, scratch: Path, place: mmap.mmap
-) -> bytes:
+def _answered(found: Callable[[], Submission], path: Path) -> bytes:
     _be_confined()
-    base = path if path.is_dir() else path.parent
-    _note_what_is_read(place, base, *unpacking.places(scratch))
     return strict_json.line(_answer(found, path))
 
 
@@ -311,17 +302,3 @@ def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -
         imports.perhaps.pop(name, None)
     found = replace(found, imports=imports, interfaces=interfaces, defined=defined)
     return replace(found, notes=tuple(notes), lint_findings=shows)
-
-
-def _note_what_is_read(place: mmap.mmap, *folders: Path) -> None:
-    """Record which file of these folders is opened, before it is: it may be the last."""
-    bases = [str(folder.resolve()) + os.sep for folder in folders]
-
-    def note(event: str, arguments: tuple[Any, ...]) -> None:
-        if event == "open" and isinstance(arguments[0], str):
-            for base in bases:
-                if arguments[0].startswith(base):
-                    name = os.fsencode(arguments[0].removeprefix(base))[: len(place)]
-                    place[:] = name.ljust(len(place), b"\0")
-
-    sys.addaudithook(note)

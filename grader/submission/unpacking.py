@@ -22,17 +22,12 @@ def is_archive(path: Path) -> bool:
     return path.name.lower().endswith(_ENDINGS)
 
 
-def places(scratch: Path) -> list[Path]:
-    """Return the folders to unpack archives into, the outermost first."""
-    return [scratch / f"unpacked{level or ''}" for level in range(MAX_LEVELS)]
-
-
 class Unpacking:
     """The archives of a submission, as they are unpacked; together they have one limit."""
 
     def __init__(self, scratch: Path) -> None:
         self.scratch = scratch
-        self._places = places(scratch)
+        self._places = [scratch / f"unpacked{level or ''}" for level in range(MAX_LEVELS)]
         self._budget: Budget | None = None
 
     def unpack(self, archive: Path) -> Path:

@@ -86,7 +86,7 @@ def test_what_takes_too_long_is_refused_by_the_time_that_it_takes(
     (tmp_path / "node.py").write_text("x = 1\n" * 150_000)
     with pytest.raises(SubmissionError) as error, open_submission(tmp_path / "node.py"):
         pass
-    assert f"{words} (it got as far as node.py)" in str(error.value)
+    assert f"{words}. " in str(error.value)
 
 
 @pytest.mark.parametrize(
