@@ -12,7 +12,6 @@ import importlib.metadata
 import os
 import runpy
 import sys
-import tomllib
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -92,7 +91,7 @@ def run_setup(folder: Path) -> Any:
         setup()
     if not made:
         raise RuntimeError("setup.py never calls setup()")
-    return strict_json.to_json(_of_poetry(facts_of(made[-1]), folder / "pyproject.toml"))
+    return strict_json.to_json(facts_of(made[-1]))
 
 
 def _no_entry_points(**_: object) -> Any:
@@ -115,24 +114,6 @@ def facts_of(of: Any) -> SetUpFacts:
         package_folders=tuple(f"{name}={at}" for name, at in (of.package_dir or {}).items()),
         scripts_folder=str(scripts_folder).strip().removeprefix("$base/"),
         has_commands=bool(of.cmdclass),
-    )
-
-
-def _of_poetry(facts: SetUpFacts, file: Path) -> SetUpFacts:
-    """What Poetry has in pyproject.toml, which setuptools passes over."""
-    if facts.scripts or not paths.is_file(file):
-        return facts
-    poetry = tomllib.loads(file.read_text("utf-8-sig")).get("tool", {}).get("poetry", {})
-    scripts = {}
-    for name, target in poetry.get("scripts", {}).items():
-        is_file = isinstance(target, dict) and target.get("type") == "file"
-        if not is_file:
-            scripts[name] = target.get("reference") if isinstance(target, dict) else target
-    lie_in = [each["from"] for each in poetry.get("packages", ()) if "from" in each]
-    return replace(
-        facts,
-        scripts=tuple(f"{name} = {target}" for name, target in scripts.items()),
-        package_folders=(*facts.package_folders, *(f"={at}" for at in lie_in)),
     )
 
 

@@ -169,20 +169,6 @@ where = ["src"]
     assert found.package_folders == ("=src",)
 
 
-def test_poetry_has_a_table_of_its_own(tmp_path):
-    project = """
-[tool.poetry]
-packages = [{include = "pkg", from = "lib"}]
-[tool.poetry.scripts]
-a = "pkg.node:main"
-b = {reference = "pkg.node:main", type = "console"}
-c = {reference = "c.sh", type = "file"}
-"""
-    found = told(tmp_path, pyproject_toml=project)
-    assert found.scripts == ("a = pkg.node:main", "b = pkg.node:main")
-    assert found.package_folders == ("=lib",)
-
-
 @pytest.mark.parametrize(
     ("name", "text"), [("pyproject.toml", "[project\n"), ("setup.cfg", "no section\n")]
 )
