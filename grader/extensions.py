@@ -13,7 +13,6 @@ import sys
 from collections.abc import Mapping
 from functools import cache, lru_cache
 from importlib.metadata import EntryPoint, PackageNotFoundError, distribution, entry_points
-from pathlib import Path
 from typing import Any, Final, Literal
 
 from grader.errors import UsageError
@@ -32,8 +31,7 @@ def points(group: Group) -> Mapping[str, list[EntryPoint]]:
 
     A distribution that is found twice on the path counts once.
     """
-    # an installation changes the folder
-    return _points(group, tuple((folder, _changed_ns(folder)) for folder in sys.path))
+    return _points(group, tuple(sys.path))
 
 
 def find(group: Group, name: str) -> EntryPoint:
@@ -93,21 +91,14 @@ def _ours(group: Group) -> Mapping[str, EntryPoint]:
     return {point.name: point for point in found if point.group == group}
 
 
-def _changed_ns(folder: str) -> int:
-    try:
-        return Path(folder).stat().st_mtime_ns
-    except OSError:
-        return 0
-
-
 @lru_cache(maxsize=1)
-def _installed(_path: tuple[tuple[str, int], ...]) -> Any:
+def _installed(_path: tuple[str, ...]) -> Any:
     """Read the entry points of all groups, which takes tens of milliseconds; see `select`."""
     return entry_points()
 
 
 @lru_cache(maxsize=8)
-def _points(group: Group, path: tuple[tuple[str, int], ...]) -> Mapping[str, list[EntryPoint]]:
+def _points(group: Group, path: tuple[str, ...]) -> Mapping[str, list[EntryPoint]]:
     found: dict[str, dict[str, EntryPoint]] = {}
     for point in (*_ours(group).values(), *_installed(path).select(group=group)):
         found.setdefault(point.name, {}).setdefault(described(point), point)

@@ -16,7 +16,6 @@ from fnmatch import fnmatchcase
 from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import Protocol
 
 from grader import content, system
 from grader.errors import ExerciseError, GraderFailure, UsageError
@@ -53,21 +52,11 @@ Finished = tuple[int, Recording]
 Runner = Callable[[Submission, Plan, Progress | None], Recording]
 
 
-class ClockedRunner(Protocol):
-    """A runner with an optional audience."""
-
-    def __call__(
-        self,
-        submission: Submission,
-        plan: Plan,
-        progress: Progress | None = None,
-        *,
-        audience: Audience | None = None,
-    ) -> Recording:
-        """Return the recording of the run."""
-
-
-RUNNERS: Mapping[Clock, ClockedRunner] = {"real": real_time.run, "virtual": virtual_time.run}
+#: Each takes an `audience` besides.
+RUNNERS: Mapping[Clock, Callable[..., Recording]] = {
+    "real": real_time.run,
+    "virtual": virtual_time.run,
+}
 
 
 def runner(exercise: Exercise, time: Clock, audience: Audience | None = None) -> Runner:

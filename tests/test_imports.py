@@ -106,7 +106,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # would generate, and what of that parses
     "grader.submission": GROUND
     | below("grader.inspection", "answer", "error_texts", "trace", "examining.cmake")
-    | {"grader.inspection.examining.known"}
+    | below("grader.inspection.examining", "known", "paths")
     | below("grader", "recording.observations", "recording.recording", "rosidl.definitions"),
     "grader.run": GROUND
     | below("grader", "submission", "recording", "scenes", "inspection", "run", "rosidl.compiler")

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
+from grader.inspection.examining import paths
 from grader.message import Message, msg
 from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.imports import read_imports
@@ -188,10 +189,7 @@ def _may_be_there(folder: Path, name: str) -> bool:
     """Whether a file exists; one outside of the submission is not checked."""
     if name.startswith("/") or ".." in PurePosixPath(name).parts:
         return True
-    try:
-        return (folder / name).is_file()
-    except (OSError, ValueError):
-        return False
+    return paths.is_file(folder / name)
 
 
 def _no(file: str, submitted: SubmissionFolder, folder: Path) -> Message:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from grader.inspection.examining import paths
 from grader.submission.folder import read_bounded, shown
 from grader.submission.python_source import parse
 from grader.submission.start import Imports, Program, Script
@@ -96,15 +97,8 @@ def _files(root: Path, module: str) -> list[tuple[Path, str]]:
     for part in module.split("."):
         inner = f"{package}.{part}" if package else part
         candidates = ((folder / part / "__init__.py", inner), (folder / f"{part}.py", package))
-        files += [candidate for candidate in candidates if _is(candidate[0], Path.is_file)][:1]
+        files += [candidate for candidate in candidates if paths.is_file(candidate[0])][:1]
         folder, package = folder / part, inner
-        if not _is(folder, Path.is_dir):
+        if not paths.is_folder(folder):
             break
     return files
-
-
-def _is(path: Path, kind: Callable[[Path], bool]) -> bool:
-    try:
-        return kind(path)
-    except OSError:  # a name that is too long
-        return False
