@@ -199,14 +199,14 @@ class LaunchFile:
 
     file: str
     problem: Obstacle | None
-    nodes: tuple[LaunchedNode, ...]
-    processes: tuple[str, ...]
-    includes: tuple[Include, ...]
-    declared: tuple[str, ...]
-    packages: tuple[str, ...]
-    lacking: tuple[Lacking, ...]
-    remarks: tuple[Message, ...]
-    moved: str
+    nodes: tuple[LaunchedNode, ...] = ()
+    processes: tuple[str, ...] = ()
+    includes: tuple[Include, ...] = ()
+    declared: tuple[str, ...] = ()
+    packages: tuple[str, ...] = ()
+    lacking: tuple[Lacking, ...] = ()
+    remarks: tuple[Message, ...] = ()
+    moved: str = ""
     skipped: tuple[Skipped, ...] = ()
 
 

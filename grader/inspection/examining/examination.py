@@ -22,7 +22,6 @@ from grader.inspection.trace import (
     Lacking,
     LaunchedNode,
     LaunchFile,
-    Obstacle,
     PackageTrace,
     Setup,
 )
@@ -142,7 +141,7 @@ class Examination:
         try:
             launch, found = self._evaluate(file)
         except Ended as ended:
-            return _ended(file, self.shown(ended.problem))
+            return LaunchFile(file, self.shown(ended.problem))
         self.evaluated.append((launch, found))
         named = {f"{of.name}/{own}": name for name, (of, own) in self._files.items()}
         included = (named[each] for each in found.order.included if each in named)
@@ -259,10 +258,6 @@ def _renumbered(node: LaunchedNode, numbers: list[int]) -> LaunchedNode:
         for each in node.parameters
     )
     return replace(node, parameters=tuple(parameters))
-
-
-def _ended(file: str, problem: Obstacle) -> LaunchFile:
-    return LaunchFile(file, problem, (), (), (), (), (), (), (), "")
 
 
 def _unwrapped(file: str, nodes: Sequence[LaunchedNode]) -> list[Message]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -75,18 +76,8 @@ class LaunchRecord:
     def __init__(self, place: Workspace) -> None:
         self._place = place
         self.context: Any = None
-        self._nodes: list[LaunchedNode] = []
-        self._processes: list[str] = []
-        self._includes: list[Include] = []
-        self._declared: list[str] = []
-        self._lacking: list[Lacking] = []
-        self._remarks: list[Message] = []
-        self._refused: list[str] = []
-        self._borrowed: list[str] = []
-        self._skipped: list[Skipped] = []
-        self._delays_s: list[float] = []
-        self._included: list[str] = []
-        self._ignored: list[str] = []
+        #: entries of the fields of `LaunchFile` and `Evaluated`, by their names
+        self._found: dict[str, list[Any]] = defaultdict(list)
         self._texts: list[str] = []
         self._depth = 0
         #: descriptions that were read, in their order
@@ -96,28 +87,18 @@ class LaunchRecord:
         self, file: str, problem: Obstacle | None, there: Sequence[str], missing: Sequence[str]
     ) -> Evaluated:
         """All of it; with packages that were asked for, those that are there and the others."""
-        launch = LaunchFile(
-            file=file,
-            problem=problem,
-            nodes=tuple(self._nodes),
-            processes=tuple(self._processes),
-            includes=tuple(self._includes),
-            declared=tuple(self._declared),
-            packages=tuple(there),
-            lacking=tuple(self._lacking),
-            remarks=tuple(self._remarks),
-            moved="",
-            skipped=tuple(self._skipped),
-        )
-        return Evaluated(
-            launch,
-            tuple(self._texts),
-            tuple(self.sources[:20]),
-            tuple(self._refused),
-            tuple(self._borrowed),
-            tuple(missing),
-            LaunchOrder(tuple(self._delays_s), tuple(self._included), tuple(self._ignored)),
-        )
+        found: dict[str, Any] = {name: tuple(each) for name, each in self._found.items()}
+        ordered = {name: found.pop(name, ()) for name in ("delays_s", "included", "ignored")}
+        of_all = {name: found.pop(name, ()) for name in ("refused", "borrowed")}
+        order = LaunchOrder(**ordered)
+        launch = LaunchFile(file, problem, packages=tuple(there), **found)
+        texts, sources = tuple(self._texts), tuple(self.sources[:20])
+        return Evaluated(launch, texts, sources, missing=tuple(missing), order=order, **of_all)
+
+    def _add(self, field: str, entry: Any) -> None:
+        to = self._found[field]
+        if entry not in to and len(to) < _MOST:
+            to.append(entry)
 
     # Called by the doubles ----------------------------------------------------------------------
 
@@ -127,14 +108,14 @@ class LaunchRecord:
         parameters = tuple(self._parameter(each) for each in given)
         self._look_for_paths(node["arguments"])
         words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
-        if len(self._nodes) < _MOST:
-            made = {**self._from_where(node), **words, "parameters": parameters}
-            self._nodes.append(LaunchedNode(**made))
-            self._delays_s.append(self.context.delay_s)
+        made = {**self._from_where(node), **words, "parameters": parameters}
+        if len(self._found["nodes"]) < _MOST:  # one may be there twice
+            self._found["nodes"].append(LaunchedNode(**made))
+            self._found["delays_s"].append(self.context.delay_s)
 
     def skipped(self, node: dict[str, Any]) -> None:
         """A node that would start on a condition that is not met."""
-        _add(self._skipped, Skipped(**self._from_where(node)))
+        self._add("skipped", Skipped(**self._from_where(node)))
 
     def _from_where(self, node: dict[str, Any]) -> dict[str, Any]:
         """A node with the file and line that say that it starts."""
@@ -156,7 +137,7 @@ class LaunchRecord:
 
     def ignored(self, what: str) -> None:
         """An action or an option that changes what is started, and is not followed."""
-        _add(self._ignored, what[:LONG])
+        self._add("ignored", what[:LONG])
 
     def process(self, words: list[str]) -> None:
         """Another program that would start; a node, where it is plainly one."""
@@ -174,15 +155,15 @@ class LaunchRecord:
             self.node({**described, "later": self.context.is_later})
             return
         self._look_for_paths(words)
-        _add(self._processes, " ".join(words)[:1000])
+        self._add("processes", " ".join(words)[:1000])
 
     def declared(self, name: str) -> None:
         """An argument."""
-        _add(self._declared, name)
+        self._add("declared", name)
 
     def remark(self, remark: Message) -> None:
         """What works, and need not."""
-        _add(self._remarks, remark)
+        self._add("remarks", remark)
 
     def executable(self, package: str, name: str) -> None:
         """A program of a package is wanted."""
@@ -201,7 +182,7 @@ class LaunchRecord:
             programs_of = (self._place.prefix / "lib" / each / name for each in ours)
             is_known = self._place.knows(package)
             if not is_known and any(map(paths.is_file, programs_of)):
-                _add(self._borrowed, package)
+                self._add("borrowed", package)
         if not there:
             self.lack("executable", f"{package} {name}", "")
 
@@ -215,7 +196,7 @@ class LaunchRecord:
             return wanted
         package, own = self._place.borrowed(wanted)
         if package:
-            _add(self._borrowed, package)
+            self._add("borrowed", package)
             return self.path(own)
         if wanted.startswith(f"{self._place.stubs}/"):
             name = self._place.shown(wanted)
@@ -237,7 +218,7 @@ class LaunchRecord:
         self.context.launch_configurations.update(arguments)
         for each in self._place.all:
             if own := each.own(path, self._place.prefix):
-                _add(self._included, f"{each.name}/{own}"[:LONG])
+                self._add("included", f"{each.name}/{own}"[:LONG])
         self.run(path)
         self._depth -= 1
         return True
@@ -249,7 +230,7 @@ class LaunchRecord:
         given = [f"{name}:={value}"[:1000] for name, value in arguments.items()]
         if file not in known.FILES.get(package, (file,)):
             self.lack("file", path, "")
-        _add(self._includes, Include(package, file, tuple(given)))
+        self._add("includes", Include(package, file, tuple(given)))
 
         def expand(model: str) -> str:
             return self.command(["xacro", model], "fail")
@@ -260,7 +241,7 @@ class LaunchRecord:
 
     def add_external(self, package: str, name: str) -> None:
         """An action of another package, of which no more is known."""
-        _add(self._includes, Include(package, f"{name}()"[:1000], ()))
+        self._add("includes", Include(package, f"{name}()"[:1000], ()))
 
     def command(self, words: list[str], on_stderr: str) -> str:
         """What a `Command` prints.
@@ -286,7 +267,7 @@ class LaunchRecord:
         if words and os.path.basename(words[0]) == "xacro":
             code, out, errors = self.xacro(words[1:])
             if code:  # the launch file has done what it should
-                _add(self._refused, f"xacro: {_end(errors)}")
+                self._add("refused", f"xacro: {_end(errors)}")
                 return ""
         else:
             code, out, errors = commands.other(words, self.path)
@@ -369,12 +350,7 @@ class LaunchRecord:
     def lack(self, kind: str, name: str, source: str) -> None:
         """Something is named that is not there; `source` is where the file lies that was meant."""
         own = self._place.own(source) if source else ""
-        _add(self._lacking, Lacking(kind, name, own, ""))
-
-
-def _add(to: list[Any], entry: Any) -> None:
-    if entry not in to and len(to) < _MOST:
-        to.append(entry)
+        self._add("lacking", Lacking(kind, name, own, ""))
 
 
 def _python(path: str, read: str) -> Any:
