@@ -105,8 +105,8 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
             lines[file.relative_to(root).as_posix()] = text.splitlines()
         sources = {file: "\n".join(text) for file, text in lines.items()}
         is_short = sum(map(len, sources.values())) <= MOST_SOURCE
-        parsed = _parse(sources) if is_short else {}
-        found = _find(parsed, sources, lies)[:MOST]
+        parsed = parsed_of(sources) if is_short else {}
+        found = find(parsed, sources, lies)[:MOST]
         found += _elsewhere(parsed, root, lies)
         steps = ((file, step) for file, source in parsed.items() for step in paths.find(source))
         found += islice(steps, paths.MOST)
@@ -121,24 +121,8 @@ def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
     )
 
 
-def find(
-    sources: Mapping[str, str], lies: Callable[[str], bool] = lambda _: False
-) -> list[LintFinding]:
-    """Return the findings in some files.
-
-    Args:
-        sources: file -> its text; what cannot be parsed is left out.
-        lies: whether there is a module of this name, as 'folder/name', in the submission.
-
-    Raises:
-        RecursionError, MemoryError: too deep for Python.
-        ValueError: it holds an integer that is too long for Python to write.
-    """
-    found = _find(_parse(sources), sources, lies)
-    return [LintFinding(*each[:3], SourceLine(file, each[3])) for file, each in found]
-
-
-def _parse(sources: Mapping[str, str]) -> dict[str, Source]:
+def parsed_of(sources: Mapping[str, str]) -> dict[str, Source]:
+    """Parse files, by their texts; what cannot be parsed is left out."""
     parsed = {}
     for file, text in sources.items():
         with suppress(SyntaxError):
@@ -146,10 +130,15 @@ def _parse(sources: Mapping[str, str]) -> dict[str, Source]:
     return parsed
 
 
-def _find(
+def find(
     parsed: Mapping[str, Source], sources: Mapping[str, str], lies: Callable[[str], bool]
 ) -> list[tuple[str, Found]]:
-    """Return the findings in some files, each with its file."""
+    """Return the findings in some files, each with its file.
+
+    Args:
+        sources: the texts of all files.
+        lies: whether there is a module of this name, as 'folder/name', in the submission.
+    """
     by_name = re.compile(rf"\b({'|'.join(BY_NAME)})\b")
     names = Names(are_all=not any(by_name.search(text) for text in sources.values()))
     for source in parsed.values():

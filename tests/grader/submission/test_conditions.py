@@ -34,19 +34,22 @@ CONDITIONS = {
 }
 
 
+def found_in(source, kind):
+    """Name and near of the findings of a kind."""
+    files = {"a.py": source}
+    found = lint.find(lint.parsed_of(files), files, lambda _: False)
+    return [(name, near) for _, (of_kind, name, near, _) in found if of_kind == kind]
+
+
 @pytest.mark.parametrize("body", CONDITIONS)
 def test_a_condition_is_judged_by_where_it_is_true(body):
-    found = [
-        finding.near
-        for finding in lint.find({"a.py": f"{HEAD}    {body}\n"})
-        if finding.kind == "at_wall"
-    ]
+    found = [near for _, near in found_in(f"{HEAD}    {body}\n", "at_wall")]
     assert (found[0] if found else None) == CONDITIONS[body]
 
 
 def test_a_condition_on_one_axis_alone_is_told_from_one_on_both():
     source = f"{HEAD}    n = 2 * int(pose.x > 5.54) + int(pose.x > 5.54)\n"
-    (finding,) = (each for each in lint.find({"a.py": source}) if each.kind == "at_middle")
-    assert finding.name == "one axis"
+    ((name, _),) = found_in(source, "at_middle")
+    assert name == "one axis"
     source = source.replace("+ int(pose.x", "+ int(pose.y")
-    assert {f.name for f in lint.find({"a.py": source}) if f.kind == "at_middle"} == {"x", "y"}
+    assert {name for name, _ in found_in(source, "at_middle")} == {"x", "y"}
