@@ -120,12 +120,9 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
         for state, what in _STATES.items()
         if states[state]
     )
-    if counts:
-        summary = tr_many(
-            "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", len(entries), counts=counts
-        )
-    else:
-        summary = tr_many("{n:,} hand-in.", "{n:,} hand-ins.", len(entries))
+    summary = tr_many(
+        "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", len(entries), counts=counts
+    )
     console.print(summary)
     scores = [
         entry.score for entry in entries if entry.state == "judged" and entry.score is not None

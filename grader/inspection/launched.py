@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grader import text
-from grader.inspection.error_texts import described
+from grader.inspection.error_texts import described, placed
 from grader.inspection.trace import (
     PREFIX,
     Lacking,
@@ -63,16 +63,9 @@ def _is_named(launch: LaunchFile, lacking: Lacking) -> bool:
 def _note(launch: LaunchFile, rows: int) -> Message:
     notes = []
     if launch.problem is not None:
-        where = msg(
-            " ({file}, line {line})", file=_clip(launch.problem.file), line=launch.problem.line
-        )
-        notes.append(
-            msg(
-                "It ends with {error}{place}.",
-                error=launch.problem.text.map_texts(_clip),
-                place=where if launch.problem.line else "",
-            )
-        )
+        where = _clipped(placed(launch.problem)) if launch.problem.line else ""
+        error = launch.problem.text.map_texts(_clip)
+        notes.append(msg("It ends with {error}{place}.", error=error, place=where))
     elif not rows:
         notes.append(msg("It starts nothing."))
     if launch.declared:

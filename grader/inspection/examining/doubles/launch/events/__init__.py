@@ -33,38 +33,33 @@ class EventHandler:
         self.entities = entities
 
 
-class _OfAction(EventHandler):
-    def __init__(self, entities: Any, handle_once: bool = False) -> None:
-        super().__init__(matcher=None, entities=entities, handle_once=handle_once)
-
-
-class OnProcessExit(_OfAction):
+class OnProcessExit(EventHandler):
     def __init__(
         self, *, target_action: Any = None, on_exit: Any, handle_once: Any = False
     ) -> None:
-        super().__init__(on_exit, handle_once)
+        super().__init__(matcher=None, entities=on_exit)
 
 
-class OnProcessStart(_OfAction):
+class OnProcessStart(EventHandler):
     def __init__(
         self, *, target_action: Any = None, on_start: Any, handle_once: Any = False
     ) -> None:
-        super().__init__(on_start, handle_once)
+        super().__init__(matcher=None, entities=on_start)
 
 
-class OnExecutionComplete(_OfAction):
+class OnExecutionComplete(EventHandler):
     def __init__(
         self, *, target_action: Any = None, on_completion: Any, handle_once: Any = False
     ) -> None:
-        super().__init__(on_completion, handle_once)
+        super().__init__(matcher=None, entities=on_completion)
 
 
-class OnShutdown(_OfAction):
+class OnShutdown(EventHandler):
     def __init__(self, *, on_shutdown: Any, handle_once: Any = False) -> None:
-        super().__init__(on_shutdown, handle_once)
+        super().__init__(matcher=None, entities=on_shutdown)
 
 
-class OnProcessIO(_OfAction):
+class OnProcessIO(EventHandler):
     def __init__(
         self,
         *,
@@ -74,7 +69,7 @@ class OnProcessIO(_OfAction):
         on_stderr: Any = None,
         handle_once: Any = False,
     ) -> None:
-        super().__init__(None, handle_once)
+        super().__init__(matcher=None)
 
 
 process = module(
