@@ -10,26 +10,32 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from grader.errors import (
-        ExerciseError,
-        GraderError,
-        GraderFailure,
-        RecordingError,
-        SubmissionError,
-        UsageError,
-    )
-    from grader.exercise.check import Checks, Tolerances
-    from grader.exercise.driven_path import DrivenPath
-    from grader.exercise.exercise import Exercise
-    from grader.exercise.loading import load_exercise
-    from grader.exercise.verdict import Evidence, Expected, Finding, Verdict
-    from grader.grading import grade, record
-    from grader.judging import judge, load_recordings, save_recordings
-    from grader.recording.recording import Recording, Recordings
-    from grader.result.result import Result
-    from grader.result.visible import student_view
-    from grader.run.opening import open_submission
+if TYPE_CHECKING:  # where type checkers find what `__getattr__` loads
+    from grader.errors import ExerciseError as ExerciseError
+    from grader.errors import GraderError as GraderError
+    from grader.errors import GraderFailure as GraderFailure
+    from grader.errors import RecordingError as RecordingError
+    from grader.errors import SubmissionError as SubmissionError
+    from grader.errors import UsageError as UsageError
+    from grader.exercise.check import Checks as Checks
+    from grader.exercise.check import Tolerances as Tolerances
+    from grader.exercise.driven_path import DrivenPath as DrivenPath
+    from grader.exercise.exercise import Exercise as Exercise
+    from grader.exercise.loading import load_exercise as load_exercise
+    from grader.exercise.verdict import Evidence as Evidence
+    from grader.exercise.verdict import Expected as Expected
+    from grader.exercise.verdict import Finding as Finding
+    from grader.exercise.verdict import Verdict as Verdict
+    from grader.grading import grade as grade
+    from grader.grading import record as record
+    from grader.judging import judge as judge
+    from grader.judging import load_recordings as load_recordings
+    from grader.judging import save_recordings as save_recordings
+    from grader.recording.recording import Recording as Recording
+    from grader.recording.recording import Recordings as Recordings
+    from grader.result.result import Result as Result
+    from grader.result.visible import student_view as student_view
+    from grader.run.opening import open_submission as open_submission
 
 #: module -> its public names
 _PUBLIC = {
@@ -51,33 +57,7 @@ _PUBLIC = {
 }
 _MODULES = {name: module for module, names in _PUBLIC.items() for name in names}
 
-__all__ = [
-    "Checks",
-    "DrivenPath",
-    "Evidence",
-    "Exercise",
-    "ExerciseError",
-    "Expected",
-    "Finding",
-    "GraderError",
-    "GraderFailure",
-    "Recording",
-    "RecordingError",
-    "Recordings",
-    "Result",
-    "SubmissionError",
-    "Tolerances",
-    "UsageError",
-    "Verdict",
-    "grade",
-    "judge",
-    "load_exercise",
-    "load_recordings",
-    "open_submission",
-    "record",
-    "save_recordings",
-    "student_view",
-]
+__all__ = list(_MODULES)
 
 
 def __getattr__(name: str) -> Any:
