@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
+from typing import Final
 
 from grader.inspection.examining import paths
 from grader.message import Message, msg
@@ -18,6 +19,10 @@ from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 from grader.submission.start import EntryPoint, Program
+
+_NOT_BUILT: Final = msg("colcon would not build this: {why}")
+_NOT_FOUND: Final = msg("ros2 run would not find this: {why}")
+_NOT_STARTED: Final = msg("ros2 run would not start this: {why}")
 
 
 def shortcomings(
@@ -31,17 +36,18 @@ def shortcomings(
     """
     folder = package.folder
     if problem := package.problem:
-        yield _not_built(problem)
+        yield _NOT_BUILT.given(why=problem)
     if (folder / "CMakeLists.txt").is_file():
         return  # ament_cmake_python, by other rules
     setup_py = folder / "setup.py"
     if not setup_py.is_file():
-        yield _not_built(_no("setup.py", submitted, folder))
+        yield _NOT_BUILT.given(why=_no("setup.py", submitted, folder))
         return
     manifest = None
     if not (folder / FILE).is_file():
         why = msg("no {file} beside {other}", file=FILE, other=submitted.called(setup_py))
-        yield _not_built(why) if FILE in _installed(package) else _not_found(why)
+        sentence = _NOT_BUILT if FILE in _installed(package) else _NOT_FOUND
+        yield sentence.given(why=why)
     elif (manifest := read_manifest(folder / FILE)) is not None:
         yield from _of_manifest(manifest, submitted.called(folder / FILE))
     yield from _of_setup(submitted, package, script)
@@ -51,8 +57,8 @@ def shortcomings(
 
 def _of_manifest(manifest: Manifest, called: str) -> Iterator[Message]:
     if manifest.fault:
-        yield _not_found(
-            msg(
+        yield _NOT_FOUND.given(
+            why=msg(
                 "{file} {fault}, so that colcon takes it for no ROS package",
                 file=called,
                 fault=manifest.fault,
@@ -62,8 +68,8 @@ def _of_manifest(manifest: Manifest, called: str) -> Iterator[Message]:
         named = msg("no build type")
         if manifest.build_type:
             named = msg("the build type {name}", name=shown(manifest.build_type))
-        yield _not_built(
-            msg(
+        yield _NOT_BUILT.given(
+            why=msg(
                 "{file} names {named}; expected <build_type>ament_python</build_type> in <export>",
                 file=called,
                 named=named,
@@ -78,8 +84,8 @@ def _of_setup(
     called = submitted.called(package.folder / "setup.py")
     named = (name for name in _installed(package) if name != FILE)
     if missing := [name for name in named if not _may_be_there(package.folder, name)]:
-        yield _not_built(
-            msg(
+        yield _NOT_BUILT.given(
+            why=msg(
                 "{file} installs {names}, and there is no such file",
                 file=called,
                 names=listed(missing),
@@ -92,8 +98,8 @@ def _of_setup(
         name for name in packages or () if not package.folder.joinpath(*name.split(".")).is_dir()
     ]
     if absent:
-        yield _not_built(
-            msg(
+        yield _NOT_BUILT.given(
+            why=msg(
                 "{file} lists the package {names}, and there is no such folder",
                 file=called,
                 names=listed(absent),
@@ -120,7 +126,7 @@ def _of_setup(
         )
         if missing:
             why = msg("{why}: there is no {missing}", why=why, missing=listed(missing))
-        yield _not_started(why)
+        yield _NOT_STARTED.given(why=why)
 
 
 def _of_place(submitted: SubmissionFolder, package: PackageFolder, name: str) -> Iterator[Message]:
@@ -136,13 +142,13 @@ def _of_place(submitted: SubmissionFolder, package: PackageFolder, name: str) ->
         lacking = msg("install_scripts={expected} below [install]", expected=expected)
         if setup_cfg.is_file():
             file = submitted.called(setup_cfg)
-            yield _not_found(msg("{file} has no {lacking}", file=file, lacking=lacking))
+            yield _NOT_FOUND.given(why=msg("{file} has no {lacking}", file=file, lacking=lacking))
         else:
             why = _no("setup.cfg", submitted, package.folder)
-            yield _not_found(msg("{none} with {lacking}", none=why, lacking=lacking))
+            yield _NOT_FOUND.given(why=msg("{none} with {lacking}", none=why, lacking=lacking))
     elif declared.scripts_folder.rstrip("/") == f"lib/{declared.name}" != f"lib/{name}":
-        yield _not_found(
-            msg(
+        yield _NOT_FOUND.given(
+            why=msg(
                 "{manifest} calls the package {name}, and {setup} and setup.py call it {other}: "
                 "expected <name>{other}</name>",
                 manifest=submitted.called(package.folder / FILE),
@@ -161,18 +167,6 @@ def _of_place(submitted: SubmissionFolder, package: PackageFolder, name: str) ->
             manifest=FILE,
             expected=expected,
         )
-
-
-def _not_built(why: Message) -> Message:
-    return msg("colcon would not build this: {why}", why=why)
-
-
-def _not_found(why: Message) -> Message:
-    return msg("ros2 run would not find this: {why}", why=why)
-
-
-def _not_started(why: Message) -> Message:
-    return msg("ros2 run would not start this: {why}", why=why)
 
 
 def _installed(package: PackageFolder) -> list[str]:
