@@ -13,7 +13,7 @@ import traceback
 from argparse import Namespace
 from collections.abc import Sequence
 from io import TextIOWrapper
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from grader.message import Text, msg
 
@@ -31,6 +31,9 @@ try:  # Ctrl-C may come as early as this
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
     sys.exit(130)
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 #: Each verb with the first line of its module, which is imported only when the verb is called.
 VERBS = {
@@ -129,6 +132,14 @@ def _heading(error: GraderError, verb: str) -> Text:
 
 def _who(verb: str) -> str:
     return tr("{who}:", who=f"grader {verb}")
+
+
+def say(console: Console, what: Text, style: str = "") -> None:
+    """Print a text, of whatever origin, that the terminal may wrap; nothing where it is empty."""
+    from rich import text
+
+    if what:
+        console.print(text.Text(for_terminal(translate(what)), style), soft_wrap=True)
 
 
 def _print_error(heading: Text, message: Text = "") -> None:

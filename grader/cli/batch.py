@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -12,15 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.text import Text
 
-from grader.cli import GRADER_FAILED, JUDGED, options
+from grader.cli import GRADER_FAILED, JUDGED, options, say
 from grader.cli.run import LEVELS, add_of_runs
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.message import NOTHING, Message, joined, msg, msg_many
-from grader.text import for_terminal
-from grader.translations import tr, translate
+from grader.message import NOTHING, joined, msg, msg_many
+from grader.translations import tr
 
 if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
@@ -131,7 +129,8 @@ def main(args: argparse.Namespace) -> int:
             _grade(args, order, found, store, messages)
             graded = entries(args.out)
             written = batch.write_outputs(args.out, graded, exercise, view, args.assignment)
-            _print_notes(messages, written)
+            for note in written:
+                say(messages, note)
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
 
@@ -159,7 +158,7 @@ def _named(found: Found, messages: Console) -> str:
             "--exercise. Nothing was changed.",
             who=joined(list(who), "; "),
         )
-    _print_notes(messages, [said] if said else [])
+    say(messages, said)
     return next(iter(named), DEFAULT)
 
 
@@ -177,7 +176,8 @@ def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
             submissions=args.submissions,
         )
     with find(args.submissions, args.pattern, args.roster) as found:
-        _print_notes(messages, found.notes)
+        for note in found.notes:
+            say(messages, note)
         yield found
 
 
@@ -207,7 +207,7 @@ def _grade(
             aside=store.out / ASIDE,
             names=listed(aside),
         )
-        _print_notes(messages, [note])
+        say(messages, note)
     with class_progress.shown(messages, planned, store) as show:
         for hand_in in batch.carry_out(planned, order, store, work):
             show(hand_in)
@@ -232,17 +232,9 @@ def _jobs_of(args: argparse.Namespace) -> int:
 def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> Work:
     from grader.batch import class_file, cluster
 
-    def note(text: Message) -> None:
-        _print_notes(messages, [text])
-
     settle = partial(class_file.note, args.out)
     isolation = class_file.OfCluster(order.isolation, args.isolation or "", settle)
-    return lambda tasks: cluster.work(tasks, args.scheduler, note, isolation)
-
-
-def _print_notes(console: Console, notes: Sequence[Message]) -> None:
-    for note in notes:
-        console.print(Text(for_terminal(translate(note))), soft_wrap=True)
+    return lambda tasks: cluster.work(tasks, args.scheduler, partial(say, messages), isolation)
 
 
 def processes(text: str) -> int:

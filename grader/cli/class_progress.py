@@ -13,11 +13,11 @@ from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.text import Text
 
 from grader.batch.batch import Planned
 from grader.batch.entry import Entry, HandIn, State
 from grader.batch.store import Store
+from grader.cli import say
 from grader.message import Message, msg
 from grader.reports.wording import points
 from grader.text import clip, for_terminal
@@ -61,8 +61,7 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
         nonlocal over
         over += 1
         outcome = _outcome(Entry.read(store.student(hand_in.id)))
-        said = for_terminal(f"[{over}/{total}] {hand_in.known_as}: {outcome}")
-        console.print(Text(said), soft_wrap=True)
+        say(console, f"[{over}/{total}] {hand_in.known_as}: {outcome}")
 
     yield line
 
@@ -143,10 +142,10 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
                 id=entry.hand_in.known_as,
                 message=entry.message,
             )
-            console.print(Text(for_terminal(text), "red"), soft_wrap=True)
+            say(console, text, "red")
     if states["failed"]:
         console.print(tr("Once more for these: the same call with --again failed"))
-    console.print(Text(tr("The class: {out}", out=out)), soft_wrap=True)
+    say(console, tr("The class: {out}", out=out))
 
 
 def _outcome(entry: Entry) -> str:

@@ -18,10 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.text import Text
 
 from grader import files, grading, judging
-from grader.cli import options
+from grader.cli import options, say
 from grader.errors import SubmissionError, UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
@@ -43,8 +42,7 @@ from grader.run.processes import cores
 from grader.submission.launching import LaunchAsked
 from grader.submission.reader import Marks
 from grader.submission.start import Submission
-from grader.text import for_terminal
-from grader.translations import tr, translate
+from grader.translations import tr
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
@@ -70,7 +68,7 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
     marks = None if args.exercise else marks_of(args.submission)
     if marks is not None:
         args.named, said = grading.exercise_for(args.submission, marks)
-        _say(messages, said)
+        say(messages, said)
     exercise = load_exercise(args.exercise or args.named)
     with ExitStack() as held:
         opening = exercise.opening
@@ -84,7 +82,7 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
             raise
         report = _report(args, result, recordings, out)
         if not result.score:
-            _say(messages, _advice(args.submission, marks, recordings))
+            say(messages, _advice(args.submission, marks, recordings))
         if live is not None:
             live.know(report)
     return result
@@ -114,11 +112,6 @@ def _advice(path: Path, marks: Marks | None, recordings: Recordings | None) -> M
     return msg("This looks like {name}: {command}", name=name, command=command)
 
 
-def _say(messages: Console, what: Message) -> None:
-    if what:
-        messages.print(Text(for_terminal(translate(what))), soft_wrap=True)
-
-
 def out_of(args: argparse.Namespace) -> Path:
     """Return the folder of the result.
 
@@ -142,7 +135,7 @@ def _run_and_judge(
 ) -> tuple[Result, Recordings]:
     """Run a submission, judge it, and save its recordings; `held` keeps the folder locked."""
     messages = Console(stderr=True, highlight=False)
-    _say(messages, msg("Found: {found}", found=submission.found))
+    say(messages, msg("Found: {found}", found=submission.found))
     secret, seed = options.secret_of(args), args.seed
     if secret:
         seed = exercise.seed_for(Path(os.path.abspath(args.submission)).stem, secret)  # noqa: PTH100
@@ -162,7 +155,7 @@ def _run_and_judge(
         known = judging.judge_nominal(nominal, exercise, submission=submission.name)
         if live is None:  # the others will take as long
             if known.diagnosis is not None:
-                _say(messages, msg("Seen so far: {cause}", cause=known.diagnosis.cause))
+                say(messages, msg("Seen so far: {cause}", cause=known.diagnosis.cause))
             return
         live.know_of_nominal(Report.of(known, out, Recordings(nominal)))
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.progress import TimeRemainingColumn
-from rich.text import Text
 
 from grader import files
 from grader.batch.class_file import ClassFile
@@ -18,7 +17,7 @@ from grader.batch.regrade import judging, shown
 from grader.batch.regrade.changes import Regrade
 from grader.batch.regrade.judging import CHANGES_CSV, CHANGES_PAGE
 from grader.batch.store import BEFORE, Store
-from grader.cli import GRADER_FAILED, JUDGED, class_progress
+from grader.cli import GRADER_FAILED, JUDGED, class_progress, say
 from grader.result.visible import View
 from grader.translations import tr, tr_many
 
@@ -55,9 +54,7 @@ def run(args: Namespace, jobs: int, view: View) -> int:
             return GRADER_FAILED if found.failures else JUDGED
         with _progress(messages, len(found.entries), tr("writing")) as show:
             judging.apply(found, store, show, view, args.assignment)
-    console.print(
-        Text(tr("Written. What was before: {before}", before=out / BEFORE)), soft_wrap=True
-    )
+    say(console, tr("Written. What was before: {before}", before=out / BEFORE))
     return GRADER_FAILED if found.failures else JUDGED
 
 
@@ -68,7 +65,7 @@ def _write(found: Regrade, into: Path, console: Console) -> None:
     files.make_folder(into)
     files.put(into / CHANGES_CSV, shown.table(found).encode("utf-8"))
     files.put(into / CHANGES_PAGE, shown.page(found, to_class.as_posix()).encode("utf-8"))
-    console.print(Text(tr("Table and page: {into}", into=into)), soft_wrap=True)
+    say(console, tr("Table and page: {into}", into=into))
 
 
 @contextmanager

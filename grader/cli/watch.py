@@ -12,15 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.text import Text
 
-from grader.cli import grade_one, options
+from grader.cli import grade_one, options, say
 from grader.errors import GraderError, UsageError
 from grader.reports.wording import points as shown
 from grader.result.result import Result
 from grader.result.visible import student_view
-from grader.text import for_terminal
-from grader.translations import tr, translate
+from grader.translations import tr
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
@@ -106,10 +104,10 @@ def grade_again(
     try:
         seen = student_view(grade_one.graded(args, live))
         line = f"{time.strftime('%H:%M:%S')}  {change(last, seen)}"
-        console.print(Text(line, "bold"), soft_wrap=True)
+        say(console, line, "bold")
         last = seen
     except GraderError as error:
-        messages.print(Text(for_terminal(translate(error.message))), soft_wrap=True)
+        say(messages, error.message)
         options.write(error, args)
     messages.print(tr("Waiting for the next save; Ctrl-C ends."), style="dim")
     return last
