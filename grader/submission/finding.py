@@ -59,7 +59,7 @@ from grader.submission.launching import (
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
 from grader.submission.python_source import read_source
-from grader.submission.refusals import CPP, advice, missing, no_python, readable
+from grader.submission.refusals import CPP, advice, missing, no_python
 from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, PackageFolder
 from grader.submission.start import EntryPoint, Launch, Program, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
@@ -88,10 +88,9 @@ def find(
         NotInspected: it is a package; `find_inspected` goes on.
         SubmissionError: there is nothing to start, or no way to tell what.
         UsageError: there is no such path; or a choice is asked for where there is none.
-        OSError: something is wrong with the machine.
+        OSError: a file cannot be read, or something is wrong with the machine.
     """
-    with readable(path):
-        found = _find(path, executable, scratch, tuple(programs))
+    found = _find(path, executable, scratch, tuple(programs))
     if launch is not None:
         raise SubmissionError(
             "{name} is no package with launch files, and {file} was asked for",
@@ -111,10 +110,9 @@ def find_inspected(
     launch: LaunchAsked | None = None,
 ) -> Submission:
     """Find what to start of a package that was inspected; see `find`."""
-    with readable(asked.base):
-        submitted = SubmissionFolder(shown(name), asked.base, tuple(programs))
-        file = launch.file if launch else ""
-        found = _in_folder(submitted, executable, Unpacking(scratch), inspection, file)
+    submitted = SubmissionFolder(shown(name), asked.base, tuple(programs))
+    file = launch.file if launch else ""
+    found = _in_folder(submitted, executable, Unpacking(scratch), inspection, file)
     for archive in asked.inside:
         found = _with_archive(found, archive)
     return found
@@ -153,6 +151,22 @@ def _find(
     unpacking = Unpacking(scratch)
     submitted = SubmissionFolder(name, unpacking.unpack(path), programs)
     return _in_folder(submitted, executable, unpacking)
+
+
+def find_inspected(
+    asked: NotInspected,
+    inspection: Inspection,
+    name: str,
+    executable: str | None,
+    scratch: Path,
+    usual: str,
+) -> Submission:
+    """Find what to start of a package that was inspected; see `find`."""
+    submitted = SubmissionFolder(shown(name), asked.base, usual)
+    found = _in_folder(submitted, executable, Unpacking(scratch), inspection)
+    for archive in asked.inside:
+        found = _with_archive(found, archive)
+    return found
 
 
 def _in_folder(

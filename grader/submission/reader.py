@@ -30,6 +30,7 @@ from grader.submission.launching import LaunchAsked
 from grader.submission.lint import lint
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
+from grader.submission.refusals import readable
 from grader.submission.set_ups import NotInspected
 from grader.submission.start import Imports, Submission, Whole
 from grader.text import clip
@@ -165,12 +166,13 @@ def read(
     name = path.name or path.resolve().name
 
     def found() -> Submission:
-        if not is_started:
-            return whole.find(path, executable, scratch)
-        if again is None:
-            started = find(path, executable, scratch, programs, launch)
-        else:
-            started = find_inspected(*again, name, executable, scratch, programs, launch)
+        with readable(again[0].base if again else path):
+            if not is_started:
+                return whole.find(path, executable, scratch)
+            if again is None:
+                started = find(path, executable, scratch, programs, launch)
+            else:
+                started = find_inspected(*again, name, executable, scratch, programs, launch)
         return _with_its_source(started, path, interfaces)
 
     try:

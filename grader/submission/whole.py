@@ -10,7 +10,7 @@ from grader.errors import SubmissionError
 from grader.message import msg, msg_many
 from grader.submission.folder import SubmissionFolder, files_below, listed, near, shown, top_of
 from grader.submission.manifest import FILE, read_manifest
-from grader.submission.refusals import missing, readable
+from grader.submission.refusals import missing
 from grader.submission.set_ups import SETUP_FILES
 from grader.submission.start import Submission, Whole
 from grader.submission.unpacking import Unpacking, is_archive
@@ -29,9 +29,34 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
     Raises:
         SubmissionError: there is none, or none of this name.
         UsageError: there is no such path.
+        OSError: a file cannot be read.
     """
-    with readable(path):
-        return _find(path, package, scratch)
+    submitted, files = opened(path, scratch, lambda file: file.name in _MARKS)
+    name = submitted.name
+    folders = sorted({file.parent for file in files if file.name in _MARKS})
+    if not folders:
+        names = [submitted.called(file) for file in files]
+        raise SubmissionError(
+            "{name} holds no ROS 2 package: no package.xml, setup.py or "
+            "CMakeLists.txt (it holds: {names}). {hand_in}",
+            name=name,
+            names=listed(names) or msg("only folders that are not searched"),
+            hand_in=_HAND_IN,
+        )
+    manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
+    names = sorted({shown(each.name) for each in manifests if each is not None and each.name})
+    if package is not None and package not in names:
+        meant = near(package, names) or names
+        raise SubmissionError(
+            "{name} has no package {package}; there is: {names}.",
+            name=name,
+            package=shown(package),
+            names=listed(meant) or msg("none"),
+        )
+    found = msg("a package without {file}", file=FILE)
+    if names:
+        found = msg_many("the package {names}", "packages {names}", len(names), names=listed(names))
+    return Submission(name, submitted.base, Whole(package or ""), found)
 
 
 def opened(
@@ -68,32 +93,3 @@ def opened(
         submitted = SubmissionFolder(name, unpacking.unpack(archives[0]))
         files = files_below(top_of(submitted.base))
     return submitted, files
-
-
-def _find(path: Path, package: str | None, scratch: Path) -> Submission:
-    submitted, files = opened(path, scratch, lambda file: file.name in _MARKS)
-    name = submitted.name
-    folders = sorted({file.parent for file in files if file.name in _MARKS})
-    if not folders:
-        names = [submitted.called(file) for file in files]
-        raise SubmissionError(
-            "{name} holds no ROS 2 package: no package.xml, setup.py or "
-            "CMakeLists.txt (it holds: {names}). {hand_in}",
-            name=name,
-            names=listed(names) or msg("only folders that are not searched"),
-            hand_in=_HAND_IN,
-        )
-    manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
-    names = sorted({shown(each.name) for each in manifests if each is not None and each.name})
-    if package is not None and package not in names:
-        meant = near(package, names) or names
-        raise SubmissionError(
-            "{name} has no package {package}; there is: {names}.",
-            name=name,
-            package=shown(package),
-            names=listed(meant) or msg("none"),
-        )
-    found = msg("a package without {file}", file=FILE)
-    if names:
-        found = msg_many("the package {names}", "packages {names}", len(names), names=listed(names))
-    return Submission(name, submitted.base, Whole(package or ""), found)

@@ -42,10 +42,9 @@ class SourcePackage:
     def is_cmake(self) -> bool:
         """Whether CMake builds it."""
         if self.build_type:
-            return self.build_type not in ("ament_python",)
-        return (self.folder / "CMakeLists.txt").is_file() and not (
-            self.folder / "setup.py"
-        ).is_file()
+            return self.build_type != "ament_python"
+        is_python = (self.folder / "setup.py").is_file()
+        return not is_python and (self.folder / "CMakeLists.txt").is_file()
 
     @property
     def descriptions(self) -> list[str]:
@@ -83,13 +82,15 @@ def find(root: Path) -> list[SourcePackage]:
     """All packages, in the order of their paths."""
     found: list[SourcePackage] = []
     for at, folders, files in os.walk(root):
-        folders[:] = sorted(
-            each for each in folders if each not in _SKIPPED and not each.startswith(".")
-        )
+        folders[:] = _searched(folders)
         is_one = MANIFEST in files or "setup.py" in files or "CMakeLists.txt" in files
         if is_one and not any(Path(at).is_relative_to(each.folder) for each in found):
             found.append(read(Path(at)))
     return found
+
+
+def _searched(folders: list[str]) -> list[str]:
+    return sorted(each for each in folders if each not in _SKIPPED and not each.startswith("."))
 
 
 def read(folder: Path) -> SourcePackage:
@@ -148,9 +149,7 @@ def _files(folder: Path) -> tuple[str, ...]:
         if is_one and MANIFEST in files and Path(at) != folder:
             folders.clear()
             continue
-        folders[:] = sorted(
-            each for each in folders if each not in _SKIPPED and not each.startswith(".")
-        )
+        folders[:] = _searched(folders)
         found += [os.path.relpath(Path(at, name), folder) for name in sorted(files)]
         if len(found) > _MOST_FILES:
             break

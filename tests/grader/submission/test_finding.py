@@ -8,6 +8,7 @@ import pytest
 from grader.errors import SubmissionError
 from grader.inspection.answer import Inspection, SetUp, SetUpFacts
 from grader.submission.finding import find, find_inspected
+from grader.submission.refusals import readable
 from grader.submission.set_ups import NotInspected
 from tests.files import lay
 from tests.grader.submission.test_opening import NODE, PACKAGE
@@ -21,7 +22,7 @@ def scratch(tmp_path: Path) -> Path:
 
 
 def refused(path: Path, scratch: Path) -> str:
-    with pytest.raises(SubmissionError) as error:
+    with pytest.raises(SubmissionError) as error, readable(path):
         find(path, None, scratch)
     return str(error.value)
 
@@ -43,7 +44,8 @@ def test_an_unreadable_file_of_a_package_is_named(
     assert asked.value.folders == (".",)
     forbid(monkeypatch, handed_in / "spiral/node.py")
     said = SetUp(".", SetUpFacts(scripts=("turtle_controller = spiral.node:main",)), None)
-    with pytest.raises(SubmissionError, match=r"^spiral/node\.py cannot be read: Permission"):
+    words = r"^spiral/node\.py cannot be read: Permission"
+    with pytest.raises(SubmissionError, match=words), readable(handed_in):
         find_inspected(asked.value, Inspection((said,)), "in", None, scratch, "a")
 
 
@@ -67,7 +69,7 @@ def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(
 
     monkeypatch.setattr("grader.submission.archive.unpack", full)
     (tmp_path / "a.zip").touch()
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(OSError, match="No space left"), readable(tmp_path):
         find(tmp_path / "a.zip", None, scratch)
 
 
