@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from grader import files
+from grader.cli import say
 from grader.cli.batch import processes
 from grader.exercise.loading import load_exercise
 from grader.testing.checking import Progress, check_exercise
@@ -66,23 +67,19 @@ def _print(examination: Examination, console: Console) -> None:
     console.print(table)
     for trial in examination.trials:
         for remark in trial.remarks:
-            console.print(
-                f"{trial.solution.name}: {translate(remark)}", markup=False, soft_wrap=True
-            )
+            say(console, f"{trial.solution.name}: {translate(remark)}")
     for problem in examination.problems:
-        console.print(tr("To fix: {problem}", problem=problem.text), markup=False, soft_wrap=True)
+        say(console, tr("To fix: {problem}", problem=problem.text))
     count = tr(
         "{checks} checks, {mutants} mutants",
         checks=len(examination.checks),
         mutants=len(examination.mutants),
     )
     if examination.is_fine:
-        console.print(tr("All is fine: {count}, each caught.", count=count), soft_wrap=True)
+        say(console, tr("All is fine: {count}, each caught.", count=count))
     else:
-        console.print(
-            tr("{problems} to fix; {count}.", problems=len(examination.problems), count=count),
-            soft_wrap=True,
-        )
+        problems = len(examination.problems)
+        say(console, tr("{problems} to fix; {count}.", problems=problems, count=count))
 
 
 @contextmanager
@@ -100,6 +97,4 @@ def _shown(console: Console, name: str) -> Iterator[Progress]:
                 )
             )
         return
-    yield lambda count, total, last: console.print(
-        f"{count}/{total} {last}", markup=False, soft_wrap=True
-    )
+    yield lambda count, total, last: say(console, f"{count}/{total} {last}")

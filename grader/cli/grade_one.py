@@ -265,9 +265,6 @@ def _shown(console: Console, what: str) -> Iterator[Callable[[float], None]]:
         nonlocal due
         if seconds >= due:
             due = seconds + LINE_EVERY_S
-            console.print(
-                tr("{what}: {seconds:.0f} s simulated", what=what, seconds=seconds),
-                soft_wrap=True,
-            )
+            say(console, tr("{what}: {seconds:.0f} s simulated", what=what, seconds=seconds))
 
     yield line
