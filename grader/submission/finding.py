@@ -153,22 +153,6 @@ def _find(
     return _in_folder(submitted, executable, unpacking)
 
 
-def find_inspected(
-    asked: NotInspected,
-    inspection: Inspection,
-    name: str,
-    executable: str | None,
-    scratch: Path,
-    usual: str,
-) -> Submission:
-    """Find what to start of a package that was inspected; see `find`."""
-    submitted = SubmissionFolder(shown(name), asked.base, usual)
-    found = _in_folder(submitted, executable, Unpacking(scratch), inspection)
-    for archive in asked.inside:
-        found = _with_archive(found, archive)
-    return found
-
-
 def _in_folder(
     submitted: SubmissionFolder,
     executable: str | None,
