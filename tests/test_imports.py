@@ -140,6 +140,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("turtlesim_py.world", "trajectory", "turtle"),
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes.turtlesim", "exercise", "cast.trace")
+    | below("grader", "inspection.trace")
     | {"turtlesim_py.world"},
     "grader.diagnosis": GROUND | below("grader", "recording", "exercise.verdict"),
     "grader.result": GROUND

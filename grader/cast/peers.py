@@ -117,12 +117,16 @@ class PeerNode:
         """Record what a peer cannot do with what the program has sent."""
         self._recorder.event("refused", peer=self.name, what=what[:200], why=why)
 
-    def serve(self, has_unread: Callable[[], bool]) -> None:
-        """Call back for what has arrived, and for what is due then."""
+    def serve(self, has_unread: Callable[[str], bool]) -> None:
+        """Call back for what has arrived, and for what is due then.
+
+        Args:
+            has_unread: whether something waits for a node.
+        """
         quiet = 0
         for _ in range(MOST_SPINS):
             self._executor.spin_once(timeout_sec=0)
-            quiet = 0 if has_unread() else quiet + 1
+            quiet = 0 if has_unread(self.name) else quiet + 1
             if quiet > LAST_SPINS:
                 break
 

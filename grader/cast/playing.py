@@ -28,8 +28,8 @@ class Wire(Protocol):
     def heard(self) -> Iterable[tuple[str, str, int, bytes]]:
         """Return what was recorded since: topic, type, when [ns from the start], CDR."""
 
-    def has_unread(self) -> bool:
-        """Whether something waits for the peers."""
+    def has_unread(self, node: str) -> bool:
+        """Whether something waits for a peer's node."""
 
     now_ns: int
 
@@ -98,13 +98,12 @@ class Playing:
     def act(self) -> None:
         """Let the peers be served, and do what is due, in a tick."""
         self.record()
-        has_unread = self._wire.has_unread
-        if has_unread():
-            for peer in self._peers:
-                peer.serve(has_unread)
+        for peer in self._peers:
+            if self._wire.has_unread(peer.name):
+                peer.serve(self._wire.has_unread)
         for peer in self._peers:
             if peer.act():
-                peer.serve(has_unread)
+                peer.serve(self._wire.has_unread)
 
     def quiet_ticks(self) -> int:
         """Return for how many ticks no peer will do anything by itself."""

@@ -60,6 +60,12 @@ _IN_THREAD = re.compile(
 _LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run/", "<frozen ")
 
 
+_OFFERED: Mapping[str, EndpointKind] = {
+    **{"publisher": "publisher", "subscription": "subscription"},
+    **{"service": "service", "action_server": "action"},
+}
+
+
 @dataclass(frozen=True)
 class Case:
     """All that is known of one run.
@@ -139,6 +145,18 @@ class Case:
         """The endpoints of the scene and the peers: topics, services and actions."""
         scene = load_subject(self.recording.scene)
         return (*scene.endpoints(self.recording.trace, self.run.interfaces), *self.peers_have)
+
+    @cached_property
+    def all_have(self) -> Sequence[Endpoint]:
+        """Those, and of several programs what they have for each other."""
+        own = self.observed.ends if len(self.run.programs) > 1 else ()
+        ends = (Endpoint(_OFFERED[e.kind], e.name, e.type) for e in own if e.kind in _OFFERED)
+        return (*self.scene_has, *ends)
+
+    def whose(self, endpoint: Endpoint) -> str | Message:
+        """Return a name for the node of an endpoint."""
+        is_known = endpoint in self.scene_has
+        return endpoint.node or (self.the_thing if is_known else msg("another node"))
 
     @cached_property
     def the_thing(self) -> Message:

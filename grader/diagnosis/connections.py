@@ -63,7 +63,7 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
     for wait in case.observed.waits:
         if wait.lasted_s is not None or "/msg/" in wait.type:
             continue
-        there = [e for e in case.scene_has if e.kind in ("service", "action")]
+        there = [e for e in case.all_have if e.kind in ("service", "action")]
         kind: EndKind = "action_client" if "/action/" in wait.type else "client"
         end = End(kind, wait.name, wait.type, False, 0)
         near = nearest(end, case)
@@ -251,7 +251,7 @@ def _first(
             name=excerpt(end.name),
             type=excerpt(end.type),
             what=_served(kind, end.name),
-            the_thing=near.node or case.the_thing,
+            the_thing=case.whose(near),
             wanted=near.type if end.name == near.name else _near(end, near),
         )
     return None
@@ -264,7 +264,7 @@ def has_unfit_qos(case: Case) -> Diagnosis | None:
         topic = f"/{found['topic'].lstrip('~/')}"  # as the program wrote it
         named = (e.name for e in case.ends if e.kind == kind and e.name.endswith(topic))
         topic = next(named, topic)
-        others = [e for e in case.scene_has if e.kind == OPPOSITE[kind] and e.name == topic]
+        others = [e for e in case.all_have if e.kind == OPPOSITE[kind] and e.name == topic]
         if not others:
             continue
         mine = [end for end in case.observed.ends if (end.kind, end.name) == (kind, topic)]
@@ -279,7 +279,7 @@ def has_unfit_qos(case: Case) -> Diagnosis | None:
             policy=found["policy"],
             sends=sends,
             wants=wants,
-            the_thing=others[0].node or case.the_thing,
+            the_thing=case.whose(others[0]),
         )
     return None
 
@@ -296,7 +296,7 @@ def _fitting(policy: str, right: str) -> Message:
 
 def nearest(end: End, case: Case) -> Endpoint | None:
     """Return the endpoint that was meant; None where the end is right, or nothing is near."""
-    there = [each for each in case.scene_has if each.kind == OPPOSITE[end.kind]]
+    there = [each for each in case.all_have if each.kind == OPPOSITE[end.kind]]
     same = [each for each in there if each.name == end.name]
     if same:
         return None if any(each.type == end.type for each in same) else same[0]

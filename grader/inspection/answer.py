@@ -65,7 +65,7 @@ class LaunchOrder:
     """How a launch file starts its nodes.
 
     Attributes:
-        delays_s: when each starts, in their order [s].
+        delays_s: when each starts, in their order [s]; below 0 where nobody knows.
         included: the submission's own launch files that it includes.
         ignored: actions and options that are not followed, by their names.
     """

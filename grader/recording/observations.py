@@ -8,7 +8,8 @@ Times are those of the clock that the run lived by [s], from the start of the su
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Literal, Self
 
 from grader.strict_json import Bounds, from_json, not_negative
@@ -386,6 +387,14 @@ class Observations:
     stop: Standstill | None = None
     raised: Raised | None = None
     returned_s: Seconds | None = None
+
+    def joined(self, others: Iterable[Observations]) -> Observations:
+        """Return them with what other programs beside this one have made and done."""
+        made: dict[str, Any] = {}
+        for name in ("ends", "waits", "slow", "timers", "caught", "lint_findings"):
+            listed = [*getattr(self, name), *(e for each in others for e in getattr(each, name))]
+            made[name] = tuple(dict.fromkeys(listed))
+        return replace(self, **made)
 
     def to_json(self) -> dict[str, Any]:
         """Return the observations as `from_json` reads them."""

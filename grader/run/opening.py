@@ -130,7 +130,7 @@ def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
     from grader.inspection.launched import not_installed, not_read, unlike_launched
 
     if not isinstance(submission.start, EntryPoint):
-        return []
+        return not_installed(trace)
     target = submission.start.module, submission.start.function
     unlike = unlike_launched(trace, *target)
     return [*not_installed(trace), *not_read(trace, *target), *unlike]

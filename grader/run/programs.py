@@ -7,11 +7,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from grader.message import Message
+from grader.recording.observations import Observations
 from grader.recording.recording import LONGEST_OUTPUT, Clock, Outcome, ProgramRun
 from grader.run.evidence import EvidencePage
 from grader.run.finish import Ending, ended
 from grader.run.processes.started_process import SubmissionProcess
 from grader.submission.start import Program, Submission
+from grader.text import plain
 
 
 class RunningProgram(NamedTuple):
@@ -56,6 +58,26 @@ def blamed(ends: Sequence[ProgramEnd]) -> int:
     return next((number for number, end in enumerate(ends) if end.exit_code is None), 0)
 
 
+def observations_of(
+    running: Sequence[RunningProgram], ends: Sequence[ProgramEnd], computes: Sequence[bool]
+) -> Observations:
+    """Return what is known of the program that a run's outcome is due to.
+
+    Where none has failed, what they lack may be between them: then it is what is known of all.
+
+    Args:
+        computes: of each, whether it would have gone on without waiting for anything.
+    """
+    number = blamed(ends)
+    known = [
+        each.account.observations(each.submission, end.at_s, computes=is_busy)
+        for each, end, is_busy in zip(running, ends, computes, strict=True)
+        if not ends[number].has_failed or each is running[number]
+    ]
+    its = known.pop(number if len(known) > 1 else 0)
+    return its.joined(known)
+
+
 def ending_of(
     clock: Clock,
     running: Sequence[RunningProgram],
@@ -79,7 +101,7 @@ def ending_of(
     programs = tuple(
         ProgramRun(
             *(each.program.name, each.program.package, each.program.executable),
-            *(end.outcome, end.exit_code, text[-LONGEST_OUTPUT:]),
+            *(end.outcome, end.exit_code, plain(text)[-LONGEST_OUTPUT:]),
         )
         for each, end, text in zip(running, ends, texts, strict=True)
     )

@@ -23,7 +23,7 @@ from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, not_run, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import FIRST_NODE_S
-from grader.run.programs import ProgramEnd, RunningProgram, blamed, ending_of
+from grader.run.programs import ProgramEnd, RunningProgram, ending_of, observations_of
 from grader.run.run_context import RunContext
 from grader.run.simulator_process import (
     Audience,
@@ -158,22 +158,20 @@ class _Programs:
         return not self.waiting and len(self._ended) == len(self.running)
 
     def ends(self, reason: Reason) -> tuple[list[ProgramEnd], Observations]:
-        """Return how they have ended, with the account of the one that a run's outcome is due to.
+        """Return how they have ended, and what is known of it.
 
         Those that still run are asked where they are.
         """
         now_s = time.monotonic() - self.began_s
-        ends = []
-        for number in range(len(self.running)):
+        ends, computes = [], []
+        for number, each in enumerate(self.running):
             code, at_s = self._ended.get(number, (None, now_s))
             ends.append(ProgramEnd(outcome(reason, code), code, at_s, has_failed=bool(code)))
-        number = blamed(ends)
-        its, at_s = self.running[number], ends[number].at_s
-        computes = linux.process_stat(its.process.pid).cpu_s > COMPUTES * at_s
-        if ends[number].exit_code is None:
-            its.account.request_dump(its.process.pid)
-        its.account.close()  # later entries are only about the end that we ask for
-        return ends, its.account.observations(its.submission, at_s, computes=computes)
+            computes.append(linux.process_stat(each.process.pid).cpu_s > COMPUTES * at_s)
+            if code is None:
+                each.account.request_dump(each.process.pid)
+            each.account.close()  # later entries are only about the end that we ask for
+        return ends, observations_of(self.running, ends, computes)
 
 
 def command(
@@ -186,7 +184,8 @@ def command(
     """Return the command of a program's process."""
     heard = [] if plan.cast is None else script.heard(script.parse(plan.cast), plan.hears)
     topics = [*introduction.topics, *heard]
-    introduced = json.dumps([topics, introduction.services, arguments])
+    beside = list(map(str, submission.beside))
+    introduced = json.dumps([topics, introduction.services, arguments, beside])
     words = [introduced, str(page), *run_context.start_arguments(submission)]
     return [sys.executable, str(STUDENT / "main.py"), *words]
 

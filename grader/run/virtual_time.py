@@ -27,7 +27,7 @@ from grader.run.handover import Plan
 from grader.run.limits import END_S, SIMULATOR_S, CpuBudget, Patience
 from grader.run.processes import cores
 from grader.run.processes.started_process import SubmissionProcess
-from grader.run.programs import ProgramEnd, RunningProgram, blamed, ending_of
+from grader.run.programs import ProgramEnd, RunningProgram, blamed, ending_of, observations_of
 from grader.run.real_time import Progress
 from grader.run.run_context import RunContext
 from grader.run.simulator_process import (
@@ -147,10 +147,9 @@ def _try(
         for (how, _), program, code in zip(judged, message["programs"], codes, strict=True)
     ]
     number = blamed(ends)
-    its, program = running[number], message["programs"][number]
     flags = (*judged[number][1], *map(Message.parse, message["flags"]))
-    computes = program["silence"] in COMPUTES
-    observations = its.account.observations(its.submission, program["reached_s"], computes=computes)
+    computes = [program["silence"] in COMPUTES for program in message["programs"]]
+    observations = observations_of(running, ends, computes)
     ending = ending_of("virtual", running, ends, context.isolation, started, flags)
     return record(plan, trace, topics, ending, observations), NOTHING
 
@@ -233,7 +232,13 @@ def command(
     known = json.dumps(
         [
             *(introduction.compares_stamps, own.texts, list(own.unlike)),
-            *(plan.cast is not None, number, start_ns, arguments),
+            *(
+                plan.cast is not None,
+                number,
+                start_ns,
+                arguments,
+                list(map(str, submission.beside)),
+            ),
         ]
     )
     words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]

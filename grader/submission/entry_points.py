@@ -60,10 +60,12 @@ class Packages:
         return every[0] if every else None
 
     def together(self, names: Sequence[str]) -> list[Choice]:
-        """Return the scripts of these names; none unless each is there once."""
+        """Return the scripts of these names, or of several just as many others; else none."""
         every = [(package, script) for package in self.readable for script in package.scripts]
         found = [[choice for choice in every if choice[1].name == name] for name in names]
-        return [each[0] for each in found] if all(len(each) == 1 for each in found) else []
+        if all(len(each) == 1 for each in found):
+            return [each[0] for each in found]
+        return every if len(every) == len(names) > 1 else []
 
     def others(self, started: Sequence[ConsoleScript]) -> list[str]:
         """The names of the scripts that start something else than those that are started."""

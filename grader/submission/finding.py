@@ -7,9 +7,10 @@ The rules, in order:
 0. An archive is unpacked first; so is the only one in a folder that holds no source beside it.
 1. A `.py` file is itself what to start.
 2. In a folder, console scripts of packages (setup.py, setup.cfg, pyproject.toml, by their
-   inspection): the one that is asked for, or those of the launch file that is; else all that the
-   exercise names, where they are there; else those of the only launch file that starts several;
-   else the usual one (`turtle_controller`), else the only one.
+   inspection): the one that is asked for, or those of the launch file that is; else the one that
+   the exercise names, where it is there; else those of the only launch file that starts several;
+   else all that the exercise names, or as many; else the usual one (`turtle_controller`), else the
+   only one.
 3. Else a Python file that starts itself or has a function `main`: the one that is asked for, else
    the usual one, else `main.py`, else the only one. So in a package whose setup.py
    names no console script.
@@ -90,14 +91,7 @@ def find(
         UsageError: there is no such path; or a choice is asked for where there is none.
         OSError: a file cannot be read, or something is wrong with the machine.
     """
-    found = _find(path, executable, scratch, tuple(programs))
-    if launch is not None:
-        raise SubmissionError(
-            "{name} is no package with launch files, and {file} was asked for",
-            name=found.name,
-            file=shown(launch.file),
-        )
-    return found
+    return _find(path, executable, scratch, tuple(programs), launch.file if launch else "")
 
 
 def find_inspected(
@@ -119,14 +113,14 @@ def find_inspected(
 
 
 def _find(
-    path: Path, executable: str | None, scratch: Path, programs: tuple[str, ...]
+    path: Path, executable: str | None, scratch: Path, programs: tuple[str, ...], launch: str
 ) -> Submission:
     name = shown(path.name or path.resolve().name)
     if not path.exists():
         raise missing(path)
     if path.is_dir():
         submitted = SubmissionFolder(name, path.resolve(), programs)
-        return _in_folder(submitted, executable, Unpacking(scratch))
+        return _in_folder(submitted, executable, Unpacking(scratch), launch=launch)
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
@@ -146,11 +140,13 @@ def _find(
                 executable=executable,
                 name=name,
             )
+        if launch:
+            raise _no_launch_files(name, launch)
         folder = path.parent.resolve()
         return _from_file(SubmissionFolder(name, folder, programs), folder / path.name)
     unpacking = Unpacking(scratch)
     submitted = SubmissionFolder(name, unpacking.unpack(path), programs)
-    return _in_folder(submitted, executable, unpacking)
+    return _in_folder(submitted, executable, unpacking, launch=launch)
 
 
 def _in_folder(
@@ -168,9 +164,11 @@ def _in_folder(
     files = files_below(top)
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
-        return _in_archive(submitted, archives, executable, unpacking)
+        return _in_archive(submitted, archives, executable, unpacking, launch)
     if inspection is None and (folders := _set_ups(submitted, files)):
         raise NotInspected(submitted.base, tuple(folders))
+    if inspection is None and launch:
+        raise _no_launch_files(submitted.name, launch)
     found = _among(submitted, files, executable, unpacking, inspection, launch)
     interfaces, notes = find_interfaces(submitted, files)
     return replace(found, interfaces=interfaces, notes=(*found.notes, *notes))
@@ -185,15 +183,15 @@ def _among(
     launch: str,
 ) -> Submission:
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
-    together = () if executable or launch else packages.together(submitted.programs)
-    if len(together) > 1:
-        started = [StartedScript.alone(*choice) for choice in together]
-        return _from_scripts(submitted, packages, started, unpacking.scratch)
-    if inspection and executable is None and not together:
+    together = [] if executable or launch else packages.together(submitted.programs)
+    if inspection and executable is None and len(together) != 1:
         launched = find_launched(submitted, packages, inspection, launch)
         if launched is not None:
             found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
             return replace(found, found=launched.found, notes=(*launched.notes, *found.notes))
+    if len(together) > 1:
+        started = [StartedScript.alone(*choice) for choice in together]
+        return _from_scripts(submitted, packages, started, unpacking.scratch)
     if choice := packages.choose(executable):
         started = [StartedScript.alone(*choice)]
         return _from_scripts(submitted, packages, started, unpacking.scratch)
@@ -216,8 +214,21 @@ def _among(
     return replace(found, notes=tuple(notes))
 
 
+def _no_launch_files(name: str, launch: str) -> SubmissionError:
+    return SubmissionError(
+        "{name} is no package with launch files, and {file} was asked for. Hand in the folder with "
+        "package.xml and setup.py.",
+        name=name,
+        file=shown(launch),
+    )
+
+
 def _in_archive(
-    submitted: SubmissionFolder, archives: list[Path], executable: str | None, unpacking: Unpacking
+    submitted: SubmissionFolder,
+    archives: list[Path],
+    executable: str | None,
+    unpacking: Unpacking,
+    launch: str,
 ) -> Submission:
     """Unpack the one archive that a folder holds, as folders from a course's server do."""
     if len(archives) > 1:
@@ -231,7 +242,7 @@ def _in_archive(
     submitted.must_hold(archive)
     inside = replace(submitted, base=unpacking.unpack(archive))
     try:
-        found = _in_folder(inside, executable, unpacking)
+        found = _in_folder(inside, executable, unpacking, launch=launch)
     except NotInspected as asks:
         asks.inside = (*asks.inside, submitted.called(archive))
         raise
@@ -305,6 +316,11 @@ def _from_scripts(
         notes=(*short, *not_started("console script", others), *notes),
         added=tuple(each.relative_to(root) for each in added),
         package=placed(started[0].package.folder),
+        beside=tuple(
+            dict.fromkeys(
+                placed(each.roots(each.name)[0]) for each in packages.readable if each.has_setup_py
+            )
+        ),
         of_package=first.package,
         executable=first.executable,
     )

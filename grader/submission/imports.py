@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -19,7 +19,12 @@ _ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)
 _BODIES: Final = (ast.stmt, ast.ExceptHandler, ast.match_case)
 
 
-def read_imports(root: Path, programs: Iterable[Program], only: Path | None = None) -> Imports:
+def read_imports(
+    root: Path,
+    programs: Iterable[Program],
+    only: Path | None = None,
+    beside: Sequence[Path] = (),
+) -> Imports:
     """Read what is started, and what of the submission that imports in turn.
 
     A file that cannot be read or parsed is skipped: the run shows what is wrong with it. So is a
@@ -28,10 +33,12 @@ def read_imports(root: Path, programs: Iterable[Program], only: Path | None = No
     Args:
         root: of the submission.
         only: the one file that is the submission, if it is one: its neighbours are no part of it.
+        beside: folders of other packages in it.
     """
 
     def files(module: str, base: Path) -> list[tuple[Path, str, Path]]:
-        found = ((*each, base) for each in _files(base, module))
+        places = (base, *beside)
+        found = ((*each, place) for place in places for each in _files(place, module))
         return [each for each in found if only is None or each[0] == only]
 
     found = Imports()
@@ -53,7 +60,8 @@ def read_imports(root: Path, programs: Iterable[Program], only: Path | None = No
                 pending.extend((*loaded, surely) for loaded in files(module, base))
                 top = module.partition(".")[0]
                 if not files(top, base):
-                    where = f"{file.relative_to(root)}, line {node.lineno}"
+                    called = file.relative_to(root) if file.is_relative_to(root) else file.name
+                    where = f"{called}, line {node.lineno}"
                     names = found.surely if surely else found.perhaps
                     names.setdefault(top, shown(where))
     return replace(found, files=tuple(sorted({file for file, _ in seen})))

@@ -93,6 +93,8 @@ def find_launched(
 ) -> Launched | None:
     """Find the launch file that is asked for, or the one that starts several programs.
 
+    Where the exercise is about several, it may be one that starts a single one.
+
     Raises:
         SubmissionError: there is no such file, or it starts nothing, or more than `MOST_PROGRAMS`;
             or none is asked for and several start several.
@@ -111,7 +113,8 @@ def find_launched(
             for each in launches
             if each.file in inspection.orders and each.file not in included
         ]
-        several = {each.scripts: each for each in reversed(every) if len(each.scripts) > 1}
+        least = 1 if len(submitted.programs) > 1 else 2
+        several = {each.scripts: each for each in reversed(every) if len(each.scripts) >= least}
         if len(several) > 1:
             commands = [f"--launch {shown(each.file)}" for each in reversed(several.values())]
             raise SubmissionError(
@@ -170,7 +173,7 @@ def _launched(
     for number, (node, delay_s) in enumerate(zip(launch.nodes, order.delays_s, strict=False), 1):
         package = own.get(node.package)
         named = {} if package is None else {each.name: each for each in package.scripts}
-        if node.later:
+        if delay_s < 0:
             later.append(node.executable)
         elif package is not None and node.executable in named:
             words, lacking = _arguments(node)

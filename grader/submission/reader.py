@@ -291,9 +291,10 @@ def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -
     """Add to a submission what its source shows: imports, interfaces, faults, lint findings."""
     only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
     assert not isinstance(found.start, Whole)
-    imports = read_imports(found.root, found.programs, only)
-    refused = python_source.byte_faults(imports.files, found.root)
-    notes, shows = [*refused, *found.notes], lint(found.root, imports.files)
+    imports = read_imports(found.root, found.programs, only, found.beside)
+    files = [each for each in imports.files if each.is_relative_to(found.root)]
+    refused = python_source.byte_faults(files, found.root)
+    notes, shows = [*refused, *found.notes], lint(found.root, files)
     defined = completed(found.interfaces, theirs)
     known = {*imports.surely, *imports.perhaps} & defined.packages
     interfaces = defined if known else OwnInterfaces()

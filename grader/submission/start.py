@@ -113,6 +113,8 @@ class Submission:
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none
     package: Path | None = field(default=None, compare=False)
+    #: the folders of other packages in it, from which it can import, absolute
+    beside: tuple[Path, ...] = field(default=(), compare=False)
     #: the package and the console script of its program; '' and the file of a script
     of_package: str = field(default="", compare=False)
     executable: str = field(default="", compare=False)
@@ -165,8 +167,9 @@ class Submission:
                 return replace(start, entry=placed(start.entry), root=there(start.root))
             return start
 
-        package = self.package and there(self.package)
-        return replace(self, root=there(self.root), start=placed(self.start), package=package)
+        package, beside = self.package and there(self.package), tuple(map(there, self.beside))
+        moved = replace(self, root=there(self.root), start=placed(self.start), package=package)
+        return replace(moved, beside=beside)
 
     def with_original_paths(self, text: str) -> str:
         """Replace the copy's paths in a run's output by the original ones."""

@@ -161,7 +161,8 @@ def _seconds(time_ns: int) -> str:
 def _node(trace: CastTrace, wanted: e.ExpectedNode, _: Recording) -> Message:
     name = absolute(wanted.node)
     nodes = _nodes(trace)
-    if name not in nodes:
+    is_full = wanted.node.startswith("/")  # else it may be in any namespace
+    if not any(node == name or (not is_full and node.endswith(name)) for node in nodes):
         raise Lacks(
             msg("There is no node {name}; there is {nodes}.", name=name, nodes=_listed(nodes)),
             msg("The name is what Node's __init__ gets."),

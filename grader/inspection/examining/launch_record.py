@@ -33,6 +33,8 @@ _MOST: Final = 200
 _LONGEST_SAID: Final = 1000
 #: Actions that decide what is started, and are followed.
 FOLLOWED: Final = (
+    # each of these is named, or known
+    *("ExecuteProcess", "ExecuteLocal", "RegisterEventHandler"),
     *("DeclareLaunchArgument", "GroupAction", "IncludeLaunchDescription", "LaunchDescription"),
     *("LogInfo", "Node", "OpaqueFunction", "PushROSNamespace", "PushRosNamespace"),
     *("ROSTimer", "ResetLaunchConfigurations", "SetLaunchConfiguration", "SetParameter"),

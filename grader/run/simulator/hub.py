@@ -247,9 +247,10 @@ class Hub:
         heard = self._registry.pop_heard()
         return [(topic, kind, time_ns - EPOCH_NS, data) for topic, kind, time_ns, data in heard]
 
-    def has_unread(self) -> bool:
-        """Whether something waits for the peers."""
-        return self._registry.has_unread()
+    def has_unread(self, node: str) -> bool:
+        """Whether something waits for a node of the cast's."""
+        readers = self._registry.readers
+        return any(reader.items for reader in readers if reader.node == node)
 
     # A program's turn -------------------------------------------------------------------------
 
@@ -359,7 +360,10 @@ class Hub:
             self._registry.receive(ours, member.since_ns, self._time_ns)
             others = [p for p in parcels if p.endpoint >> SHIFT]
             for each in self._alive():
+                before = len(each.inbox)
                 self._put(each, others)
+                if len(each.inbox) > before:  # what it has waited for may have come
+                    each.link.waits = ""
         if self._cast is not None:
             self._cast.record()
 

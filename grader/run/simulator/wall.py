@@ -37,7 +37,7 @@ class WallWire:
         self.ticks = self._looks = 0
         self._began_ns = time.time_ns()
         self._heard_ns = 0
-        self._is_new_tick = False
+        self._served = set[str]()  # in this tick
         #: DDS has one type a topic for each process, unless it takes part several times
         self._others: list[Node] = []
         self._taps: list[tuple[str, str, Any]] = []
@@ -81,9 +81,10 @@ class WallWire:
                 yield topic, kind, min(max(sent_ns, self._heard_ns), now_ns), bytes(data)
         self._heard_ns = now_ns
 
-    def has_unread(self) -> bool:
-        """Whether something may wait for the peers: once in a tick."""
-        is_new, self._is_new_tick = self._is_new_tick, False
+    def has_unread(self, node: str) -> bool:
+        """Whether something may wait for a peer's node: once in a tick."""
+        is_new = node not in self._served
+        self._served.add(node)
         return is_new
 
     def endpoints(self, ours: set[str]) -> tuple[EndpointInfo, ...] | None:
@@ -92,7 +93,7 @@ class WallWire:
         Args:
             ours: names of nodes that are not the program's.
         """
-        self._is_new_tick = True
+        self._served.clear()
         self._looks += 1
         if self._looks % EVERY_TICKS:
             return None

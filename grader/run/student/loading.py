@@ -162,11 +162,17 @@ def check_origin(module: types.ModuleType, root: str) -> None:
         )
 
 
-def hide_the_grader(root: str, target: str, arguments: Sequence[str] = ()) -> None:
-    """Make the interpreter look as it would on a student's machine."""
+def hide_the_grader(
+    root: str, target: str, arguments: Sequence[str] = (), beside: Sequence[str] = ()
+) -> None:
+    """Make the interpreter look as it would on a student's machine.
+
+    Args:
+        beside: folders of other packages of the submission, which are installed there, too.
+    """
     name = Path(target).name if target.endswith(".py") else target.partition(":")[0]
     sys.argv = [name, *arguments]
-    sys.path[0] = root
+    sys.path[:1] = [root, *(folder for folder in beside if folder != root)]
     sys.meta_path.insert(0, OnlyFromSubmission(root))
     for name in [name for name in sys.modules if name.partition(".")[0] in OURS]:
         del sys.modules[name]

@@ -3,8 +3,9 @@
     python main.py INTRODUCTION EVIDENCE ROOT module:function
     python main.py INTRODUCTION EVIDENCE ROOT path/to/script.py [function]
 
-INTRODUCTION is a JSON list of three lists: topics and services that have to be connected when the
-submission gets them, see `Introduced`; and the program's arguments. EVIDENCE is the page of its
+INTRODUCTION is a JSON list of four lists: topics and services that have to be connected when the
+submission gets them, see `Introduced`; the program's arguments; and the folders of other packages
+of the submission. EVIDENCE is the page of its
 account, -1 for none.
 
 Started by path, not with -m, and of the grader it imports only what loads and observes a program,
@@ -43,7 +44,7 @@ def start(introduction: str, page: int, root: str, target: str, function: str | 
     witness = Witness(page, root, lambda: now_s() - started_s, hooks.is_met)
     hooks.install_in_threads(witness)
     time.sleep = hooks.timed(witness, time.sleep)
-    topics, services, arguments = json.loads(introduction)
+    topics, services, arguments, beside = json.loads(introduction)
     introduced = Introduced(topics, services)
     code: int | None = None
 
@@ -53,7 +54,7 @@ def start(introduction: str, page: int, root: str, target: str, function: str | 
         if code is not None:
             witness.ending.returned(code)
 
-    loading.hide_the_grader(root, target, arguments)
+    loading.hide_the_grader(root, target, arguments, beside)
     sys.meta_path.insert(
         0,
         loading.AfterImport(

@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from grader.message import msg, plain_text
-from grader.recording.recording import Outcome, PublishedTopic, Run
+from grader.recording.recording import Outcome, ProgramRun, PublishedTopic, Run
 from grader.recording.subject import Start
 from grader.run.finish import Ending, outcome, record
 from grader.run.handover import Plan
@@ -35,6 +35,7 @@ EXPECTED = {
 }
 A, B, C = msg("a"), plain_text("b"), msg("c {n}", n=1)
 RUN = Run("virtual", "crashed", -11, wall_s=1.23456, isolation="ROS domain 77", flags=(A, B))
+RUN = replace(RUN, programs=(ProgramRun("a-1", "b", "a", "crashed", -11),))
 ENDING = Ending(RUN, "printed\n")
 KNOWN = (Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, (C,), "turtlesim")
 PLAN = Plan(*KNOWN, case="late")
@@ -72,6 +73,7 @@ def test_a_recording_has_everything_about_its_run(trace):
         seed=42,
         interfaces="turtlesim",
         case="late",
+        programs=RUN.programs,
     )
     assert (made.topics, made.output) == (TOPICS, "printed\n")
     assert (made.start, made.scene) == (Start(1.0, 2.0, 3.0), "turtlesim")

@@ -25,8 +25,8 @@ from launch._core import (
 from grader.inspection.examining.steps import not_known
 from grader.message import msg
 
-#: Nothing starts later [s].
-_LONGEST_S = 1e6
+#: Nothing starts later [s]; and where nobody knows when it does.
+_LONGEST_S, NEVER = 1e6, -1.0
 
 
 class DeclareLaunchArgument(Action):
@@ -144,7 +144,8 @@ class TimerAction(Action):
         seconds = float(given if isinstance(given, int | float) else text_of(context, given))
         if not 0 <= seconds <= _LONGEST_S:
             raise ValueError(f"a period of {seconds} s")
-        before, context.delay_s = context.delay_s, context.delay_s + seconds
+        before = context.delay_s
+        context.delay_s = before + seconds if before != NEVER else NEVER
         walk(self.actions, context)
         context.delay_s = before
 
@@ -170,12 +171,17 @@ class OpaqueFunction(Action):
         return function(context, *args, **kwargs)
 
 
-def _walk_later(entities: Any, context: LaunchContext) -> None:
-    """Visit what happens only when something else does; what a function decides is not known."""
+def _walk_later(entities: Any, context: LaunchContext, delay_s: float = NEVER) -> None:
+    """Visit what happens only when something else does; what a function decides is not known.
+
+    Args:
+        delay_s: when that is; `NEVER` where nobody knows [s].
+    """
     if entities is not None and not callable(entities):
-        before, context.is_later = context.is_later, True
+        before = context.is_later, context.delay_s
+        context.is_later, context.delay_s = True, delay_s
         walk(entities, context)
-        context.is_later = before
+        context.is_later, context.delay_s = before
 
 
 class RegisterEventHandler(Action):
@@ -184,7 +190,9 @@ class RegisterEventHandler(Action):
         self.event_handler = event_handler
 
     def execute(self, context: LaunchContext) -> None:
-        _walk_later(self.event_handler.entities, context)
+        is_at_start = type(self.event_handler).__name__ == "OnProcessStart"
+        delay_s = context.delay_s if is_at_start else NEVER
+        _walk_later(self.event_handler.entities, context, delay_s)
 
 
 class ExecuteLocal(Action):

@@ -1,0 +1,1 @@
+"""Turtles are spawned, and turtle1 catches them."""

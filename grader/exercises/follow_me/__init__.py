@@ -1,0 +1,1 @@
+"""A turtle that follows another."""

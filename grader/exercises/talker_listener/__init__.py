@@ -1,0 +1,1 @@
+"""Two nodes of one package, and the launch file that starts them."""

@@ -1,0 +1,27 @@
+from setuptools import find_packages, setup
+
+package_name = 'turtle_game'
+
+setup(
+    name=package_name,
+    version='0.0.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages',
+            ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+        ('share/' + package_name + '/launch', ['launch/game.launch.py']),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    maintainer='student',
+    maintainer_email='student@example.org',
+    description='Catch them all',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'spawner = turtle_game.spawner:main',
+            'player = turtle_game.player:main',
+        ],
+    },
+)

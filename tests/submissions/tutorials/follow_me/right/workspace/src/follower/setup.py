@@ -1,0 +1,26 @@
+from setuptools import find_packages, setup
+
+package_name = 'follower'
+
+setup(
+    name=package_name,
+    version='0.0.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages',
+            ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    maintainer='student',
+    maintainer_email='student@example.org',
+    description='A turtle that follows another',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'spawner = follower.spawner:main',
+            'follower = follower.follower_node:main',
+        ],
+    },
+)

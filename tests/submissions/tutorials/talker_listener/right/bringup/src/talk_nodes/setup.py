@@ -1,0 +1,26 @@
+from setuptools import find_packages, setup
+
+package_name = 'talk_nodes'
+
+setup(
+    name=package_name,
+    version='0.0.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages',
+            ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    maintainer='student',
+    maintainer_email='student@example.org',
+    description='Two nodes and a launch file',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'publisher_node = talk_nodes.publisher_node:main',
+            'subscriber_node = talk_nodes.subscriber_node:main',
+        ],
+    },
+)
