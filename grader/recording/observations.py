@@ -8,7 +8,7 @@ Times are those of the clock that the run lived by [s], from the start of the su
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Literal, Self
 
@@ -388,12 +388,11 @@ class Observations:
     raised: Raised | None = None
     returned_s: Seconds | None = None
 
-    def joined(self, others: Iterable[Observations]) -> Observations:
+    def joined(self, others: Sequence[Observations]) -> Observations:
         """Return them with what other programs beside this one have made and done."""
         made: dict[str, Any] = {}
         for name in ("ends", "waits", "slow", "timers", "caught", "lint_findings"):
-            listed = [*getattr(self, name), *(e for each in others for e in getattr(each, name))]
-            made[name] = tuple(dict.fromkeys(listed))
+            made[name] = tuple(e for each in (self, *others) for e in getattr(each, name))
         return replace(self, **made)
 
     def to_json(self) -> dict[str, Any]:

@@ -42,7 +42,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
         elif lacking:
             text = msg("{file} starts what is not there: {name}.", file=each.file, name=lacking[0])
             worst = Finding(0, text, msg("Compare the names with those in setup.py."))
-        elif len(started) < 2 and not (started and len(nodes) > 1):
+        elif len({node.executable for node in started}) < 2 and not (started and len(nodes) > 1):
             text = msg("{file} starts {n} of the package's programs, expected 2.",
                        file=each.file, n=len(started))  # fmt: skip
             worst = Finding(0, text, msg("It needs a Node for each: look at their names."))

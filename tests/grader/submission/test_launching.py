@@ -30,6 +30,11 @@ TWO = PACKAGE | {
 }
 
 
+NOT_INSTALLED = (
+    "`ros2 launch` would not find launch/{}: setup.py does not install it; list it in data_files"
+)
+
+
 def opened(
     path: Path,
     executable: str | None = None,
@@ -193,7 +198,7 @@ def test_several_nodes_of_a_launch_file_are_started(tmp_path: Path) -> None:
     assert (
         str(submission.found) == "launch/both.launch.py, which starts turtle_controller, pen_node"
     )
-    assert submission.notes == ()
+    assert notes(submission) == [NOT_INSTALLED.format("both.launch.py")]
     assert "rclpy" in submission.imports.surely
 
 
@@ -219,10 +224,11 @@ def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path: Pa
     other = "Node(package='rqt_graph', executable='rqt_graph')"
     text = LIST.format(f"{simulator}, {DRIVE}, {other}, {PENS}")
     submission = opened(lay(tmp_path, TWO | {"launch/all_launch.py": text}))
-    assert tuple(map(str, submission.notes)) == (
+    assert notes(submission) == [
         "launch/all_launch.py starts programs of other packages, and these were not: "
         "rqt_graph rqt_graph",
-    )
+        NOT_INSTALLED.format("all_launch.py"),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -294,11 +300,15 @@ def test_a_launch_file_that_is_asked_for_and_not_there_is_told(tmp_path: Path) -
 
 def test_the_programs_of_an_exercise_are_started_where_they_are_there(tmp_path: Path) -> None:
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH})
-    both = opened(tmp_path, programs=("pen_node", "turtle_controller"))
-    assert names(both) == ["pen_node-1", "turtle_controller-1"]
     assert names(opened(tmp_path, programs=("pen_node",))) == ["pen_node-1"]
+    pair = ("pen_node", "turtle_controller")
+    assert names(opened(tmp_path, programs=pair)) == ["turtle_controller-1", "pen_node-2"]
+    (tmp_path / "launch/a.launch.py").write_text(LIST.format(PENS))
+    assert names(opened(tmp_path, programs=pair)) == ["pen_node-1"]  # as it is launched
+    (tmp_path / "launch/a.launch.py").unlink()
+    assert names(opened(tmp_path, programs=pair)) == ["pen_node-1", "turtle_controller-1"]
     others = opened(tmp_path, programs=("talker", "listener"))
-    assert names(others) == ["turtle_controller-1", "pen_node-2"]  # by the launch file
+    assert names(others) == ["turtle_controller-1", "pen_node-1"]  # as many
 
 
 def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path: Path) -> None:
