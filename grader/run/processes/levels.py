@@ -128,7 +128,7 @@ def prepare(
     """Prepare a submission's confinement in a run, with the copy that this run may write into.
 
     At `namespaces` the process makes that copy itself, in memory, under the same path. Elsewhere it
-    lies in the folder of the run.
+    lies in the folder of the run, the same for all of its programs.
 
     Args:
         submission: all of it, without symbolic links in its path; it is only read.
@@ -136,14 +136,16 @@ def prepare(
         is_apart: whether the run has a network of its own.
         more: folders that this process may read besides.
     """
-    uid, user, copy, written = random.choice(USERS), level.user, submission, "/tmp"
+    uid = random.Random(folder.name).choice(USERS)  # one for all programs of a run
+    user, copy, written, is_to_copy = level.user, submission, "/tmp", False
     if level.level != NAMESPACES:
         copy, written = folder / "submission" / submission.name, str(folder / "tmp")
-        copy.mkdir(parents=True)
+        is_to_copy = not copy.exists()  # else another program of the run has it
+        copy.mkdir(parents=True, exist_ok=True)
         if user == SEPARATE and not all(map(_is_reachable, (copy, *more))):
             user = SAME
     owner = uid if user == SEPARATE else -1
-    if level.level != NAMESPACES:
+    if is_to_copy:
         filesystem.copy_tree(str(submission), str(copy), owner)
     if not level.level:
         return Confinement(None, {}, copy)

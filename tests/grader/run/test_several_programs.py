@@ -12,6 +12,8 @@ from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
+from grader.run.processes import levels
+from grader.run.processes.levels import LANDLOCK, LIMITS
 from grader.scenes.scene import Limits
 from tests.runs import SUBMISSIONS
 from turtlesim_py.world.events import CmdVel, SetPen
@@ -265,6 +267,19 @@ def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_p
     flag = "graded in real time, because the submission starts another program (true) (starts-2)"
     assert str(run.flags[0]) == flag
     assert [each.name for each in run.programs] == ["drives-1", "starts-2"]
+
+
+@pytest.mark.parametrize("level", [LANDLOCK, LIMITS])
+def test_they_run_at_a_lower_level_of_isolation_too(level: str) -> None:
+    with open_submission(LAUNCHED / "spiral") as submission:
+        levels.only(level)
+        try:
+            run = virtual_time.run(submission, PLAN).run
+        except levels.NotOffered:
+            pytest.skip("not offered here")
+        finally:
+            levels.only("")
+    assert [(each.outcome, each.exit_code) for each in run.programs] == [("time_limit", None)] * 2
 
 
 def test_a_program_alone_is_in_the_result_too() -> None:
