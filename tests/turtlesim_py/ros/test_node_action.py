@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
@@ -21,11 +21,17 @@ from tests.programs import Program
 
 @dataclass
 class Goal:
-    """A goal that a node has accepted, with what its client hears."""
+    """A goal that a node has accepted, with the feedback of all goals."""
 
     handle: Any
     result: Future
-    remaining: list[float] = field(default_factory=list)
+    feedback: list[Any]
+
+    @property
+    def remaining(self) -> list[float]:
+        """What its feedback says."""
+        own = self.handle.goal_id
+        return [each.feedback.remaining for each in self.feedback if each.goal_id == own]
 
 
 class Rotation:
@@ -34,16 +40,15 @@ class Rotation:
     def __init__(self, graph: Graph, turtle: str) -> None:
         self.graph = graph
         self.client = graph.action(RotateAbsolute, f"/{turtle}/rotate_absolute")
+        # by itself: rclpy's client drops what comes together with the result
+        topic = f"/{turtle}/rotate_absolute/_action/feedback"
+        self.feedback = graph.listen(RotateAbsolute.Impl.FeedbackMessage, topic)
 
     def send(self, theta: float) -> Goal:
-        remaining: list[float] = []
-        sent = self.client.send_goal_async(
-            RotateAbsolute.Goal(theta=theta),
-            feedback_callback=lambda message: remaining.append(message.feedback.remaining),
-        )
+        sent = self.client.send_goal_async(RotateAbsolute.Goal(theta=theta))
         handle = self.graph.done(sent, "acceptance")
         assert handle.accepted
-        return Goal(handle, handle.get_result_async(), remaining)
+        return Goal(handle, handle.get_result_async(), self.feedback)
 
     def outcome(self, goal: Goal) -> tuple[int, float]:
         """Wait for the end of a goal: its status and delta."""
