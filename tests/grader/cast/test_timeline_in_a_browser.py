@@ -281,7 +281,9 @@ def test_nobody_is_kept_from_looking_on(live: TimelinePage, visit: Any, width: i
     assert obstacles(page) == []
     assert clipped(page) == {}
     page.select_option("#language", "fr")
-    page.wait_for_selector("html[lang=fr]")
+    page.wait_for_selector(
+        "html[lang=fr] #counted:has-text('jusqu')"
+    )  # shown with the next picture
     assert english(page, "fr", "#hops, #checks, #grading-score, #grading-first, #state") == []
 
 
