@@ -113,6 +113,15 @@ def test_each_style_keeps_every_point_three_times_with_one_hash(name, style):
 
 @pytest.mark.timeout(3600)
 @pytest.mark.more
+@pytest.mark.parametrize("name", ["talker_listener", "catch_them_all", "follow_me"])
+def test_ten_gradings_of_several_programs_are_one(name):
+    """`scripts/repeat.py` makes a hundred, on a busy machine."""
+    results = [grader.grade(reference(name), name) for _ in range(10)]
+    assert len({tuple(r.trace_sha256 for r in (x.run, *x.varied_runs)) for x in results}) == 1
+
+
+@pytest.mark.timeout(3600)
+@pytest.mark.more
 def test_of_all_mistakes_nearly_each_costs_what_it_must():
     missed = []
     for name, key in MUTANTS:
