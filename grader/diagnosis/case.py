@@ -153,6 +153,14 @@ class Case:
         ends = (Endpoint(_OFFERED[e.kind], e.name, e.type) for e in own if e.kind in _OFFERED)
         return (*self.scene_has, *ends)
 
+    @cached_property
+    def near_misses(self) -> Sequence[Endpoint]:
+        """Those that may have been meant: of the programs' own, what meets nobody."""
+        own = self.observed.ends if len(self.run.programs) > 1 else ()
+        met = {(each.name, each.type) for each in own if each.is_met}
+        known = {*self.scene_has}
+        return [e for e in self.all_have if e in known or (e.name, e.type) not in met]
+
     def whose(self, endpoint: Endpoint) -> str | Message:
         """Return a name for the node of an endpoint."""
         is_known = endpoint in self.scene_has

@@ -302,6 +302,7 @@ def nearest(end: End, case: Case) -> Endpoint | None:
         return None if any(each.type == end.type for each in same) else same[0]
     if len(end.name) > _LONGEST_NAME:
         return None
+    there = [each for each in there if each in case.near_misses]
     by_name = [(_likeness(end, each), each) for each in there]
     best = max(by_name, key=lambda found: found[0], default=None)
     if best is not None and best[0] >= _ALIKE:

@@ -13,6 +13,7 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, replace
+from itertools import chain
 from typing import Any
 
 from grader import linux
@@ -47,6 +48,7 @@ STOPPED = msg("the node's process was stopped (SIGSTOP), and nobody let it go on
 FLOODING = msg(
     "the node sent so much that the simulator used more than {seconds} s of processor time"
 )
+NEVER_STARTED = msg("{program} was to start at {at:g} s, when the run was over")
 #: The silences of a program that still runs, and can be asked to dump where it is.
 COMPUTES = ("stalled", "slow")
 PATIENCE = Patience()
@@ -140,14 +142,17 @@ def _try(
             raise SimulatorLost(failure, killed) from failure
     judged = [
         _judge({**message, **program}, code, patience)
-        for program, code in zip(message["programs"], codes, strict=True)
+        if not program["is_new"]
+        else ("not_run", [NEVER_STARTED.given(program=its.program.name, at=its.program.delay_s)])
+        for its, program, code in zip(running, message["programs"], codes, strict=True)
     ]
     ends = [
         ProgramEnd(how, code, program["reached_s"], _has_failed(program, code))
         for (how, _), program, code in zip(judged, message["programs"], codes, strict=True)
     ]
     number = blamed(ends)
-    flags = (*judged[number][1], *map(Message.parse, message["flags"]))
+    late = [flags for how, flags in judged if how == "not_run"]
+    flags = (*judged[number][1], *chain(*late), *map(Message.parse, message["flags"]))
     computes = [program["silence"] in COMPUTES for program in message["programs"]]
     observations = observations_of(running, ends, computes)
     ending = ending_of("virtual", running, ends, context.isolation, started, flags)

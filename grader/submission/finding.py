@@ -56,6 +56,7 @@ from grader.submission.launching import (
     StartedScript,
     find_launched,
     is_launch_file,
+    undeclared,
 )
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
@@ -107,6 +108,8 @@ def find_inspected(
     submitted = SubmissionFolder(shown(name), asked.base, tuple(programs))
     file = launch.file if launch else ""
     found = _in_folder(submitted, executable, Unpacking(scratch), inspection, file)
+    if launch is not None:
+        found = replace(found, notes=(*undeclared(inspection, launch), *found.notes))
     for archive in asked.inside:
         found = _with_archive(found, archive)
     return found
@@ -185,10 +188,12 @@ def _among(
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
     together = [] if executable or launch else packages.together(submitted.programs)
     if inspection and executable is None and len(together) != 1:
-        launched = find_launched(submitted, packages, inspection, launch)
+        is_needed = not together
+        launched = find_launched(submitted, packages, inspection, launch, is_needed=is_needed)
         if launched is not None:
             found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
-            return replace(found, found=launched.found, notes=(*launched.notes, *found.notes))
+            found = replace(found, start=Launch(found.programs), found=launched.found)
+            return replace(found, notes=(*launched.notes, *found.notes))
     if len(together) > 1:
         started = [StartedScript.alone(*choice) for choice in together]
         return _from_scripts(submitted, packages, started, unpacking.scratch)

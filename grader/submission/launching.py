@@ -89,11 +89,19 @@ def is_launch_file(file: Path) -> bool:
 
 
 def find_launched(
-    submitted: SubmissionFolder, packages: Packages, inspection: Inspection, asked: str = ""
+    submitted: SubmissionFolder,
+    packages: Packages,
+    inspection: Inspection,
+    asked: str = "",
+    *,
+    is_needed: bool = True,
 ) -> Launched | None:
     """Find the launch file that is asked for, or the one that starts several programs.
 
     Where the exercise is about several, it may be one that starts a single one.
+
+    Args:
+        is_needed: else there is none where one would have to be chosen.
 
     Raises:
         SubmissionError: there is no such file, or it starts nothing, or more than `MOST_PROGRAMS`;
@@ -115,6 +123,8 @@ def find_launched(
         ]
         least = 1 if len(submitted.programs) > 1 else 2
         several = {each.scripts: each for each in reversed(every) if len(each.scripts) >= least}
+        if len(several) > 1 and not is_needed:
+            return None
         if len(several) > 1:
             commands = [f"--launch {shown(each.file)}" for each in reversed(several.values())]
             raise SubmissionError(
@@ -136,13 +146,31 @@ def find_launched(
     return found
 
 
+def undeclared(inspection: Inspection, asked: LaunchAsked) -> Iterator[Message]:
+    """Yield a note on each argument that the launch file asked for does not declare."""
+    for each in inspection.trace.launches:
+        names = sorted(asked.given.keys() - {*each.declared})
+        for name in names if _is_called(each, asked.file) else ():
+            yield msg(
+                "{file} declares no argument {name}, only {known}",
+                file=shown(each.file),
+                name=shown(name),
+                known=listed(each.declared) or msg("none"),
+            )
+
+
+def _is_called(launch: LaunchFile, asked: str) -> bool:
+    """Whether a launch file has a path, or ends with a name."""
+    return f"/{launch.file}".endswith(f"/{asked.removeprefix('./')}")
+
+
 def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: str) -> LaunchFile:
     """Return the launch file of a path or a name.
 
     Raises:
         SubmissionError: there is none, or several are; or it could not be evaluated.
     """
-    named = [each for each in launches if f"/{each.file}".endswith(f"/{asked.removeprefix('./')}")]
+    named = [each for each in launches if _is_called(each, asked)]
     if len(named) != 1:
         text = msg("{name} has no launch file {file}; it has: {names}")
         if named:
@@ -181,6 +209,8 @@ def _launched(
             name = f"{node.executable}-{number}"
             script = StartedScript(package, named[node.executable], name, words, delay_s)
             scripts.append(script)
+        elif package is judged is not None:
+            continue  # which its set-up does not install: `not_installed` says so
         elif (node.package, node.executable) != _SIMULATOR:
             others.append(f"{node.package} {node.executable}")
     file = shown(launch.file)

@@ -61,7 +61,11 @@ def add_checks(
         what = "expected some of {known}, found {found}"
         expect(not unknown, (*at, "cases"), what, unknown, known=", ".join(named))
         _check_fit(expectation, casts, known, at)
-        check_time(getattr(expectation, "begin", 0.0), end_s, (*at, "begin"))
+        begin_s, until_s = (getattr(expectation, key, 0.0) for key in ("begin", "end"))
+        check_time(begin_s, end_s, (*at, "begin"))
+        if begin_s > until_s > 0:
+            raise Mistake((*at, "end"), "{end:g} s is before `begin`, {begin:g} s",
+                          end=until_s, begin=begin_s)  # fmt: skip
         check = _check(str(name), expectation)
         try:
             checks(after=expectation.after)(check)

@@ -202,6 +202,7 @@ class Hub:
             "reason": self._reason,
             "programs": [
                 {
+                    "is_new": member.is_new,
                     "silence": member.link.silence,
                     "waits": member.link.waits,
                     "reached_s": min(member.link.reached(), self._tick) * TICK_NS / 1e9,

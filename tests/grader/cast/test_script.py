@@ -173,6 +173,7 @@ FILES = {
     (CAST, "  it: {topic: t, type: std_msgs/msg/Text}"): (8, "std_msgs has no std_msgs/msg/Text"),
     (CAST, "  it: {topic: t, count: {at_least: 3, at_most: 2}}"): (8, "at_least is 3, more than"),
     (CAST, "  it: {topic: t, begin: 60}"): (8, "60 s is after the end of a run"),
+    (CAST, "  it: {topic: t, begin: 1, end: 0.5}"): (8, "0.5 s is before `begin`, 1 s"),
     (CAST, "  it: {served: y}"): (8, "among its services, none; found 'y'"),
     (CAST, "  it: {got: t, by: a}"): (8, "among its subscriptions, none; found 't'"),
     (CAST, "  it: {got: t, by: b}"): (8, "a node of the cast, a; found 'b'"),

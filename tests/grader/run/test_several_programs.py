@@ -235,6 +235,14 @@ def test_what_is_to_start_later_runs_from_then_on_and_what_came_before_is_known(
     assert recording.output == again.output
 
 
+def test_what_was_to_start_after_the_end_was_not_run(tmp_path: Path) -> None:
+    folder = package(tmp_path, stamps=STAMPS, drives=DRIVES)
+    (folder / "launch/all.launch.py").write_text(LATER.replace("1.25", "60.0"))
+    run = recorded(folder).run
+    assert (run.programs[0].name, run.programs[0].outcome) == ("stamps-1", "not_run")
+    assert "stamps-1 was to start at 60 s, when the run was over" in map(str, run.flags)
+
+
 @pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
 def test_each_program_is_in_the_result_with_how_it_has_ended(tmp_path: Path, clock: str) -> None:
     folder = package(tmp_path, raises=RAISES, stamps=STAMPS, drives=DRIVES)

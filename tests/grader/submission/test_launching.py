@@ -290,6 +290,24 @@ def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_argument
         opened(tmp_path, launch=LaunchAsked("a.launch.py"))
 
 
+def test_an_argument_that_is_not_declared_is_told(tmp_path: Path) -> None:
+    text = "from launch.actions import *\n" + LIST.format(
+        f"DeclareLaunchArgument('speed', default_value='1'), {DRIVE}, {PENS}"
+    )
+    lay(tmp_path, TWO | {"launch/a.launch.py": text})
+    found = opened(tmp_path, launch=LaunchAsked("a.launch.py", {"sped": "2"}))
+    assert "launch/a.launch.py declares no argument sped, only speed" in notes(found)
+    assert names(found) == ["turtle_controller-1", "pen_node-2"]
+
+
+def test_of_two_launch_files_none_is_needed_where_the_exercise_names_the_programs(
+    tmp_path: Path,
+) -> None:
+    lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER})
+    found = opened(tmp_path, programs=("pen_node", "turtle_controller"))
+    assert names(found) == ["pen_node-1", "turtle_controller-1"]
+
+
 def test_a_launch_file_that_is_asked_for_and_not_there_is_told(tmp_path: Path) -> None:
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH})
     with pytest.raises(SubmissionError, match=r"no launch file c.launch.py; it has: launch/a"):
