@@ -58,11 +58,12 @@ _IN_THREAD = re.compile(
 )
 #: Parts of the paths of Python's, ROS's and the grader's files; no submission's.
 _LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run/", "<frozen ")
-
-
+#: Of the submission's ends those that others can meet.
 _OFFERED: Mapping[str, EndpointKind] = {
-    **{"publisher": "publisher", "subscription": "subscription"},
-    **{"service": "service", "action_server": "action"},
+    "publisher": "publisher",
+    "subscription": "subscription",
+    "service": "service",
+    "action_server": "action",
 }
 
 
@@ -149,17 +150,21 @@ class Case:
     @cached_property
     def all_have(self) -> Sequence[Endpoint]:
         """Those, and of several programs what they have for each other."""
-        own = self.observed.ends if len(self.run.programs) > 1 else ()
-        ends = (Endpoint(_OFFERED[e.kind], e.name, e.type) for e in own if e.kind in _OFFERED)
-        return (*self.scene_has, *ends)
+        ends = self._each_others
+        own = (Endpoint(_OFFERED[e.kind], e.name, e.type) for e in ends if e.kind in _OFFERED)
+        return (*self.scene_has, *own)
 
     @cached_property
     def near_misses(self) -> Sequence[Endpoint]:
         """Those that may have been meant: of the programs' own, what meets nobody."""
-        own = self.observed.ends if len(self.run.programs) > 1 else ()
-        met = {(each.name, each.type) for each in own if each.is_met}
+        met = {(each.name, each.type) for each in self._each_others if each.is_met}
         known = {*self.scene_has}
         return [e for e in self.all_have if e in known or (e.name, e.type) not in met]
+
+    @property
+    def _each_others(self) -> Sequence[End]:
+        """The ends that several programs may have for each other; a single one has none."""
+        return self.observed.ends if len(self.run.programs) > 1 else ()
 
     def whose(self, endpoint: Endpoint) -> str | Message:
         """Return a name for the node of an endpoint."""

@@ -32,6 +32,7 @@ from grader.exercise.exercise import (
 from grader.exercise.places import DESCRIPTION, Place
 from grader.extensions import SCENES
 from grader.message import authored, msg
+from grader.recording.recording import MOST_PROGRAMS
 from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
 from grader.yaml_file import Mistake, check_known, expect, is_amount
@@ -57,8 +58,6 @@ RUNS = "runs"
 #: A turtle that drives so many times as fast crosses the window in a tick or two.
 MOST_FACTOR = 100
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
-#: So many programs of a submission are started together.
-MOST_PROGRAMS = 8
 #: Of an exercise, a program, a package.
 NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 

@@ -70,13 +70,9 @@ class KnownTypes:
         Args:
             part: of a service or an action: `request`, `response`, `goal`, `result`, `feedback`.
         """
-        package, kind, own = name.split("/")
-        text = self._definitions.get(name)
-        if text is None and (folder := script.interfaces_folder(package, kind)) is not None:
-            file = folder / f"{own}.{kind}"
-            text = file.read_text("utf-8", "replace") if file.is_file() else None
+        own = self._definitions.get(name)
         parts: list[dict[str, str]] = [{}]
-        for line in OwnInterfaces.fields(text or ""):
+        for line in OwnInterfaces.fields(_definition(name) if own is None else own):
             if line == "---":
                 parts.append({})
             elif " " in line:
@@ -227,6 +223,15 @@ def _installed(package: str, kind: str) -> list[str]:
     folder = script.interfaces_folder(package, kind)
     files = folder.glob(f"*.{kind}") if folder else ()
     return sorted(f"{package}/{kind}/{file.stem}" for file in files)
+
+
+@cache
+def _definition(name: str) -> str:
+    """Return the definition of a type of an installed package; '' where there is none."""
+    package, kind, own = name.split("/")
+    folder = script.interfaces_folder(package, kind)
+    file = folder / f"{own}.{kind}" if folder is not None else None
+    return file.read_text("utf-8", "replace") if file is not None and file.is_file() else ""
 
 
 def _is_open(value: Any, *, is_expected: bool) -> bool:

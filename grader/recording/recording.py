@@ -25,6 +25,8 @@ Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "kil
 Clock = Literal["virtual", "real"]
 #: Of what each program has printed, a run keeps so much beside the output of all [characters].
 LONGEST_OUTPUT: Final = 4_000
+#: So many programs a run may have at once: they share its limits.
+MOST_PROGRAMS: Final = 8
 
 
 @dataclass(frozen=True)

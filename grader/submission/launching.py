@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg
+from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.set_ups import ConsoleScript, PackageFolder
@@ -22,8 +23,6 @@ if TYPE_CHECKING:  # what only a package needs takes time to import
 _ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
 _SIMULATOR: Final = ("turtlesim", "turtlesim_node")
-#: So many programs a run may have at once: they share its limits.
-MOST_PROGRAMS: Final = 8
 #: What ROS takes as a name, in the arguments of a program.
 _NAME: Final = re.compile(r"[A-Za-z_~/{}][\w~/{}.]*")
 
