@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -34,6 +35,8 @@ class RunContext:
         namespaces: the namespaces of both processes: kind -> descriptor.
         level: how the submission's process is confined.
         budget: what the submission's process and all that it starts spend of.
+        meeting: the ends of a socket, by which its programs share one view of the files: that of
+            the first, and that of the others.
     """
 
     folder: Path
@@ -44,6 +47,7 @@ class RunContext:
     namespaces: Mapping[str, int]
     level: levels.Level
     budget: CpuBudget
+    meeting: tuple[socket.socket, socket.socket]
 
     def start(
         self,
@@ -66,16 +70,26 @@ class RunContext:
             more: folders that it may read besides.
             beside: another of the submission's, with which it shares the limits.
         """
-        is_apart = bool(self.namespaces)
+        meeting = self.meeting[0 if beside is None else 1]
         confinement = levels.prepare(
-            self.level, submission.folder, self.folder, is_apart=is_apart, more=more
+            self.level,
+            submission.folder,
+            self.folder,
+            is_apart=bool(self.namespaces),
+            more=more,
+            meeting=meeting.fileno(),
+            is_first=beside is None,
         )
         submission = submission.moved(confinement.copy)
         env = {**self.env, **env, **confinement.env}
+        fds = (*fds, meeting.fileno())
         command = ProcessCommand(
             words(submission), env, submission.root, fds, self.namespaces, confinement.order
         )
-        return submission, SubmissionProcess(command, server, self.budget, beside)
+        process = SubmissionProcess(command, server, self.budget, beside)
+        if beside is None:
+            meeting.close()  # the others notice its end
+        return submission, process
 
 
 @contextmanager
@@ -97,9 +111,12 @@ def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
             stack.callback(os.close, simulator_folder)
             recording = os.memfd_create("recording")
             stack.callback(os.close, recording)
+            ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            stack.callback(theirs.close)
+            stack.callback(ours.close)
             yield RunContext(
                 *(folder, simulator_folder, recording, isolation_name, env),
-                *(isolated.namespaces, level, budget or CpuBudget()),
+                *(isolated.namespaces, level, budget or CpuBudget(), (ours, theirs)),
             )
 
 

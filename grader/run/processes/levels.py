@@ -123,18 +123,27 @@ class Confinement:
 
 
 def prepare(
-    level: Level, submission: Path, folder: Path, *, is_apart: bool, more: Sequence[Path] = ()
+    level: Level,
+    submission: Path,
+    folder: Path,
+    *,
+    is_apart: bool,
+    more: Sequence[Path] = (),
+    meeting: int = -1,
+    is_first: bool = True,
 ) -> Confinement:
     """Prepare a submission's confinement in a run, with the copy that this run may write into.
 
-    At `namespaces` the process makes that copy itself, in memory, under the same path. Elsewhere it
-    lies in the folder of the run, the same for all of its programs.
+    At `namespaces` the first of its programs makes that copy itself, in memory, under the same
+    path, and the others join it there. Elsewhere it lies in the folder of the run.
 
     Args:
         submission: all of it, without symbolic links in its path; it is only read.
         folder: that of the run; `tmp` is in it.
         is_apart: whether the run has a network of its own.
         more: folders that this process may read besides.
+        meeting: of the socket by which its programs share their view of the files; -1: it is alone.
+        is_first: whether this is the first of them.
     """
     uid = random.Random(folder.name).choice(USERS)  # one for all programs of a run
     user, copy, written, is_to_copy = level.user, submission, "/tmp", False
@@ -152,7 +161,8 @@ def prepare(
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
     order["rlimits"] = rlimits(is_alone=user != SAME)
     if level.level == NAMESPACES:
-        order["steps"] = view.steps(submission, uid, owner, more)
+        order["steps"] = view.steps(submission, uid, owner, more) if is_first else []
+        order["meeting"] = meeting
     elif level.level == LANDLOCK:
         settings = [str(path) for path in folder.glob("*.xml")]
         read, listed = view.readable(copy, more)

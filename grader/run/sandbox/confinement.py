@@ -8,7 +8,8 @@ An order is a dictionary that fits JSON, made by `grader.run.processes.levels`:
 | `rlimits` | limits of resources; see `grader.run.limits` |
 | `uid` | the user that it is to be |
 | `user` | `separate`: as root can; `mapped`: in a user namespace of its own; `same`: not at all |
-| `steps` | for `.filesystem` |
+| `steps` | for `.filesystem`; none where another program of the submission has made it |
+| `meeting` | a socket: whose one end gives that view, and whose other end gets it; or -1 |
 | `read`, `write`, `listed` | for `.landlock` |
 | `is_apart` | whether the run has a network of its own |
 
@@ -28,6 +29,8 @@ from grader.run.sandbox import filesystem, landlock, seccomp
 
 NAMESPACES, LANDLOCK, LIMITS = "namespaces", "landlock", "limits"
 SEPARATE, MAPPED, SAME = "separate", "mapped", "same"
+#: So many programs may come to the view of the first.
+OTHERS = 7
 #: More than the kernel has.
 CAPABILITIES = range(64)
 #: Root has no special rights, no capability survives or is raised; all of it locked.
@@ -48,7 +51,12 @@ def confine(order: Mapping[str, Any]) -> None:
     # the new user is mapped there, and the new root's /proc cannot be written to
     proc = os.open("/proc/self", os.O_PATH | os.O_CLOEXEC)
     if order["level"] == NAMESPACES:
-        filesystem.enter(order["steps"])
+        if order["steps"]:
+            filesystem.enter(order["steps"])
+            if order["meeting"] >= 0:
+                filesystem.share(order["meeting"], OTHERS)
+        else:
+            filesystem.join(order["meeting"])
     else:
         landlock.restrict(order["read"], order["write"], order["listed"])
     if user == MAPPED:

@@ -16,6 +16,9 @@ a word, a path and perhaps something more.
 
 All is read-only but `copy` and `scratch`; there are no devices but in /dev; no program gets rights
 of its owner. It works without capabilities in the first user namespace.
+
+Of several programs of a submission the first builds it, and the others join it (`share`, `join`):
+they have the same files, and each the processes of its own namespace.
 """
 
 # ruff: noqa: PTH101, PTH102, PTH109, PTH115, PTH123, PTH211
@@ -25,6 +28,7 @@ from __future__ import annotations
 
 import errno
 import os
+import socket
 import stat
 from collections.abc import Sequence
 
@@ -58,6 +62,37 @@ def enter(steps: Sequence[Sequence[str]]) -> None:
     linux.change_root()
     _limit(steps)
     os.umask(mask)
+    os.chdir(folder)
+
+
+def share(meeting: int, others: int) -> None:
+    """Hand this process's view to so many others at the other end of a socket; close this end.
+
+    Raises:
+        OSError: the system does not allow it.
+    """
+    view = os.open("/proc/self/ns/mnt", os.O_RDONLY | os.O_CLOEXEC)
+    with socket.socket(fileno=meeting) as ours:
+        for _ in range(others):
+            socket.send_fds(ours, [b"."], [view])
+    os.close(view)
+
+
+def join(meeting: int) -> None:
+    """Wait for the view that another process shares, and change to it; see `share`.
+
+    Raises:
+        OSError: the other has ended before; or the system does not allow it.
+    """
+    folder = os.getcwd()
+    with socket.socket(fileno=meeting) as ours:
+        _, views, _, _ = socket.recv_fds(ours, 1, 1)
+    if not views:
+        raise OSError(errno.ECONNRESET, "the first of its programs has ended", "join")
+    linux.enter(views[0], linux.CLONE_NEWNS)
+    os.close(views[0])
+    linux.unshare(linux.CLONE_NEWNS)
+    linux.mount("proc", "/proc", _QUIET | linux.MS_NOEXEC | linux.MS_RDONLY)
     os.chdir(folder)
 
 
