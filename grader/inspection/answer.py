@@ -61,16 +61,46 @@ class SetUp:
 
 
 @dataclass(frozen=True)
-class LaunchOrder:
-    """How a launch file starts its nodes.
+class LaunchStart:
+    """A program that a launch file starts.
 
     Attributes:
-        delays_s: when each starts, in their order [s]; below 0 where nobody knows.
+        name: as `ros2 launch` prints it: 'talker-1'.
+        package: '' for a command.
+        executable: of the package; of a command all of it.
+        script: the submission's file that a command runs; '' for none.
+        words: its arguments, and ROS's.
+        lacking: of these, what it cannot get.
+        after: the number of the one at whose end it starts; None: it starts with the launch; -1:
+            nobody knows when.
+        delay_s: how long after that [s].
+        respawns: how often it is started again when it ends; below 0: always.
+        respawn_s: how long after its end [s].
+    """
+
+    name: str
+    package: str
+    executable: str
+    script: str = ""
+    words: tuple[str, ...] = ()
+    lacking: tuple[str, ...] = ()
+    after: int | None = None
+    delay_s: float = 0.0
+    respawns: int = 0
+    respawn_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class LaunchOrder:
+    """What a launch file starts, and when.
+
+    Attributes:
+        starts: in the order in which it does.
         included: the submission's own launch files that it includes.
         ignored: actions and options that are not followed, by their names.
     """
 
-    delays_s: tuple[float, ...] = ()
+    starts: tuple[LaunchStart, ...] = ()
     included: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
 

@@ -74,7 +74,7 @@ def observations_of(
         for each, end, is_busy in zip(running, ends, computes, strict=True)
         if not ends[number].has_failed or each is running[number]
     ]
-    its = known.pop(number if len(known) > 1 else 0)
+    its = known.pop(0 if ends[number].has_failed else number)
     return its.joined(known)
 
 
@@ -91,13 +91,12 @@ def ending_of(
     Args:
         since_s: when the run began, on the machine's monotonic clock [s].
     """
-    number = blamed(ends)
+    number, texts = blamed(ends), [each.output() for each in running]
     its, end = running[number], ends[number]
     made = ended(
         *(clock, its.submission, its.process, isolation, since_s),
         *(end.outcome, end.exit_code, flags),
     )
-    texts = [each.output() for each in running]
     programs = tuple(
         ProgramRun(
             *(each.program.name, each.program.package, each.program.executable),
@@ -114,3 +113,9 @@ def ending_of(
         for line in text.splitlines()
     ]
     return made._replace(output="".join(lines))
+
+
+def lost(clock: Clock, running: Sequence[RunningProgram], isolation: str, since_s: float) -> Ending:
+    """Return the ending of a run whose simulator has died beside its programs; see `ending_of`."""
+    ends = [ProgramEnd("killed", None, 0.0, has_failed=True) for _ in running]
+    return ending_of(clock, running, ends, isolation, since_s)

@@ -23,7 +23,7 @@ from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, not_run, outcome, record
 from grader.run.handover import Plan
 from grader.run.limits import FIRST_NODE_S
-from grader.run.programs import ProgramEnd, RunningProgram, ending_of, observations_of
+from grader.run.programs import ProgramEnd, RunningProgram, ending_of, lost, observations_of
 from grader.run.run_context import RunContext
 from grader.run.simulator_process import (
     Audience,
@@ -34,7 +34,7 @@ from grader.run.simulator_process import (
 )
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction, Reason
-from grader.submission.start import Submission
+from grader.submission.start import Program, Submission
 
 #: Called with the simulated time [s] now and then.
 Progress = Callable[[float], None]
@@ -91,11 +91,11 @@ def run(
         except (NotNow, SceneFailure):  # it was never started, or is not to blame
             raise
         except GraderFailure as failure:
-            lost = [ProgramEnd("killed", None, 0.0, has_failed=True) for _ in programs.running]
-            killed = ending_of("real", programs.running, lost, context.isolation, started)
+            killed = lost("real", [*programs.running.values()], context.isolation, started)
             raise SimulatorLost(failure, killed) from failure
         flags = tuple(map(Message.parse, done["flags"]))
-        ending = ending_of("real", programs.running, ends, context.isolation, started, flags)
+        running = [*programs.running.values()]
+        ending = ending_of("real", running, ends, context.isolation, started, flags)
     return record(plan, trace, topics, ending, observations)
 
 
@@ -103,8 +103,7 @@ class _Programs:
     """The programs of a submission, each started when it is its turn.
 
     Attributes:
-        running: those that were started.
-        waiting: the others, the next first.
+        running: those that were started, by their places among all.
     """
 
     def __init__(
@@ -116,8 +115,7 @@ class _Programs:
         held: ExitStack,
     ) -> None:
         self.scene = load_scene(plan.scene)
-        self.running: list[RunningProgram] = []
-        self.waiting = sorted(submission.programs, key=lambda each: each.delay_s)
+        self.running: dict[int, RunningProgram] = {}
         self._ended: dict[int, tuple[int, float]] = {}  # exit codes, and when [s]
         self._submission, self._plan, self._context = submission, plan, context
         self._interfaces, self._held = interfaces, held
@@ -125,11 +123,13 @@ class _Programs:
 
     def start_due(self, now_s: float) -> None:
         """Start those whose turn has come."""
-        while self.waiting and self.waiting[0].delay_s <= now_s:
-            program, introduction = self.waiting.pop(0), self.scene.introduction
+        for number, program in enumerate(self._submission.programs):
+            at_s = self._starts_at(program)
+            if number in self.running or at_s is None or at_s > now_s:
+                continue
             account = self._held.enter_context(closing(EvidencePage()))
             arguments = (*program.arguments, *self._plan.arguments)
-            words = partial(command, introduction=introduction, plan=self._plan,
+            words = partial(command, introduction=self.scene.introduction, plan=self._plan,
                             page=account.page, arguments=arguments)  # fmt: skip
             moved, process = self._context.start(
                 self._submission.alone(program),
@@ -137,9 +137,16 @@ class _Programs:
                 (account.page,),
                 student_environment(self._interfaces.env),
                 more=self._interfaces.folders,
-                beside=self.running[0].process if self.running else None,
+                beside=next((each.process for each in self.running.values()), None),
             )
-            self.running.append(RunningProgram(program, moved, process, account))
+            self.running[number] = RunningProgram(program, moved, process, account)
+
+    def _starts_at(self, program: Program) -> float | None:
+        """When it is to start [s]; None where that is not known yet."""
+        if program.after is None:
+            return program.delay_s
+        ended = self._ended.get(program.after)
+        return None if ended is None else ended[1] + program.delay_s
 
     @contextmanager
     def ended_at_exit(self) -> Iterator[None]:
@@ -147,15 +154,18 @@ class _Programs:
         try:
             yield
         finally:
-            for each in self.running:
+            for each in self.running.values():
                 each.process.end()
 
     def have_ended(self) -> bool:
-        """Whether all were started and have ended."""
-        for number, each in enumerate(self.running):
+        """Whether all that could be started were, and have ended."""
+        for number, each in self.running.items():
             if number not in self._ended and (code := each.process.poll()) is not None:
                 self._ended[number] = code, time.monotonic() - self.began_s
-        return not self.waiting and len(self._ended) == len(self.running)
+        programs = enumerate(self._submission.programs)
+        left = (p for number, p in programs if number not in self.running)
+        is_through = all(self._starts_at(program) is None for program in left)
+        return is_through and len(self._ended) == len(self.running)
 
     def ends(self, reason: Reason) -> tuple[list[ProgramEnd], Observations]:
         """Return how they have ended, and what is known of it.
@@ -164,14 +174,15 @@ class _Programs:
         """
         now_s = time.monotonic() - self.began_s
         ends, computes = [], []
-        for number, each in enumerate(self.running):
+        self.running = dict(sorted(self.running.items()))
+        for number, each in self.running.items():
             code, at_s = self._ended.get(number, (None, now_s))
             ends.append(ProgramEnd(outcome(reason, code), code, at_s, has_failed=bool(code)))
             computes.append(linux.process_stat(each.process.pid).cpu_s > COMPUTES * at_s)
             if code is None:
                 each.account.request_dump(each.process.pid)
             each.account.close()  # later entries are only about the end that we ask for
-        return ends, observations_of(self.running, ends, computes)
+        return ends, observations_of([*self.running.values()], ends, computes)
 
 
 def command(

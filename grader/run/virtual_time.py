@@ -28,7 +28,14 @@ from grader.run.handover import Plan
 from grader.run.limits import END_S, SIMULATOR_S, CpuBudget, Patience
 from grader.run.processes import cores
 from grader.run.processes.started_process import SubmissionProcess
-from grader.run.programs import ProgramEnd, RunningProgram, blamed, ending_of, observations_of
+from grader.run.programs import (
+    ProgramEnd,
+    RunningProgram,
+    blamed,
+    ending_of,
+    lost,
+    observations_of,
+)
 from grader.run.real_time import Progress
 from grader.run.run_context import RunContext
 from grader.run.simulator_process import (
@@ -48,7 +55,8 @@ STOPPED = msg("the node's process was stopped (SIGSTOP), and nobody let it go on
 FLOODING = msg(
     "the node sent so much that the simulator used more than {seconds} s of processor time"
 )
-NEVER_STARTED = msg("{program} was to start at {at:g} s, when the run was over")
+TOO_LATE = msg("{program} was to start at {at:g} s, when the run was over")
+NEVER_ENDED = msg("{program} was to start at the end of {other}, which did not come")
 #: The silences of a program that still runs, and can be asked to dump where it is.
 COMPUTES = ("stalled", "slow")
 PATIENCE = Patience()
@@ -105,7 +113,10 @@ def _try(
                     students.enter_context(its.process.ended_at_exit(gently=False))
                     running.append(its)
                     links.append(link)
-                starts = [(e.process.pid, round(e.program.delay_s * 1e9)) for e in running]
+                starts = [
+                    (each.process.pid, each.program.after, round(each.program.delay_s * 1e9))
+                    for each in running
+                ]
                 pids = json.dumps(starts)
                 more = (pids, str(core_id), json.dumps(asdict(patience)))
                 server = fork_servers.server(fork_servers.SIMULATOR)
@@ -134,26 +145,30 @@ def _try(
         except SceneFailure:
             raise
         except GraderFailure as failure:
-            lost = any(each.process.was_lost for each in running)
-            if simulator is None or not simulator.is_driven or lost:
+            is_ours = any(each.process.was_lost for each in running)
+            if simulator is None or not simulator.is_driven or is_ours:
                 raise
-            ends = [ProgramEnd("killed", None, 0.0, has_failed=True) for _ in running]
-            killed = ending_of("virtual", running, ends, context.isolation, started)
+            killed = lost("virtual", running, context.isolation, started)
             raise SimulatorLost(failure, killed) from failure
-    judged = [
-        _judge({**message, **program}, code, patience)
-        if not program["is_new"]
-        else ("not_run", [NEVER_STARTED.given(program=its.program.name, at=its.program.delay_s)])
-        for its, program, code in zip(running, message["programs"], codes, strict=True)
+    how_each_ended = [
+        (its, told, code)
+        for its, told, code in zip(running, message["programs"], codes, strict=True)
+        if not (told["is_new"] and its.program.is_respawned(submission.programs))
+    ]
+    running = [its for its, *_ in how_each_ended]
+    judged: list[tuple[Outcome, list[Message]]] = [
+        ("not_run", [_never_started(its.program, submission.programs)])
+        if told["is_new"]
+        else _judge({**message, **told}, code, patience)
+        for its, told, code in how_each_ended
     ]
     ends = [
-        ProgramEnd(how, code, program["reached_s"], _has_failed(program, code))
-        for (how, _), program, code in zip(judged, message["programs"], codes, strict=True)
+        ProgramEnd(how, code, told["reached_s"], _has_failed(told, code))
+        for (how, _), (_, told, code) in zip(judged, how_each_ended, strict=True)
     ]
-    number = blamed(ends)
     late = [flags for how, flags in judged if how == "not_run"]
-    flags = (*judged[number][1], *chain(*late), *map(Message.parse, message["flags"]))
-    computes = [program["silence"] in COMPUTES for program in message["programs"]]
+    flags = (*judged[blamed(ends)][1], *chain(*late), *map(Message.parse, message["flags"]))
+    computes = [told["silence"] in COMPUTES for _, told, _ in how_each_ended]
     observations = observations_of(running, ends, computes)
     ending = ending_of("virtual", running, ends, context.isolation, started, flags)
     return record(plan, trace, topics, ending, observations), NOTHING
@@ -181,14 +196,11 @@ def _start(
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     held.enter_context(theirs)
     scene, arguments = load_scene(plan.scene), (*program.arguments, *plan.arguments)
-    start_ns = round(program.delay_s * 1e9)
     with ours:
         fds = (ours.fileno(), account.page)
         moved, process = context.start(
             submission.alone(program),
-            lambda private: command(
-                private, scene.introduction, plan, *fds, arguments, number, start_ns
-            ),
+            lambda private: command(private, scene.introduction, plan, *fds, arguments, number),
             fds,
             virtual_environment({}),
             fork_servers.for_student(program.root),
@@ -202,6 +214,8 @@ def _exit_code(each: RunningProgram, ended: dict[str, Any]) -> int | None:
 
     Where it did not end by itself, have it leave its last account.
     """
+    if ended["is_new"]:
+        return None
     if each.process.ends_for_excess():
         ended["silence"] = "gone"  # for what it has filled just before
     if ended["silence"] == "gone":
@@ -211,6 +225,12 @@ def _exit_code(each: RunningProgram, ended: dict[str, Any]) -> int | None:
     elif ended["silence"] == "":
         each.account.await_last_write(each.process.pid)  # the run is over
     return None
+
+
+def _never_started(program: Program, beside: Sequence[Program]) -> Message:
+    if program.after is None:
+        return TOO_LATE.given(program=program.name, at=program.delay_s)
+    return NEVER_ENDED.given(program=program.name, other=beside[program.after].name)
 
 
 def _has_failed(ended: dict[str, Any], exit_code: int | None) -> bool:
@@ -225,25 +245,17 @@ def command(
     page: int,
     arguments: Sequence[str],
     number: int = 0,
-    start_ns: int = 0,
 ) -> list[str]:
     """Return the command of a program's process.
 
     Args:
         number: of a program among several, from 1; 0 for one alone.
-        start_ns: when it starts [ns].
     """
     own = submission.interfaces
     known = json.dumps(
         [
             *(introduction.compares_stamps, own.texts, list(own.unlike)),
-            *(
-                plan.cast is not None,
-                number,
-                start_ns,
-                arguments,
-                list(map(str, submission.beside)),
-            ),
+            *(plan.cast is not None, number, arguments, list(map(str, submission.beside))),
         ]
     )
     words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]

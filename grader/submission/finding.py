@@ -62,7 +62,13 @@ from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
 from grader.submission.python_source import read_source
 from grader.submission.refusals import CPP, advice, missing, no_python
-from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, PackageFolder
+from grader.submission.set_ups import (
+    MOST,
+    SETUP_FILES,
+    ConsoleScript,
+    NotInspected,
+    PackageFolder,
+)
 from grader.submission.start import EntryPoint, Launch, Program, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
 
@@ -92,38 +98,13 @@ def find(
         UsageError: there is no such path; or a choice is asked for where there is none.
         OSError: a file cannot be read, or something is wrong with the machine.
     """
-    return _find(path, executable, scratch, tuple(programs), launch.file if launch else "")
-
-
-def find_inspected(
-    asked: NotInspected,
-    inspection: Inspection,
-    name: str,
-    executable: str | None,
-    scratch: Path,
-    programs: Sequence[str] = (),
-    launch: LaunchAsked | None = None,
-) -> Submission:
-    """Find what to start of a package that was inspected; see `find`."""
-    submitted = SubmissionFolder(shown(name), asked.base, tuple(programs))
-    file = launch.file if launch else ""
-    found = _in_folder(submitted, executable, Unpacking(scratch), inspection, file)
-    if launch is not None:
-        found = replace(found, notes=(*undeclared(inspection, launch), *found.notes))
-    for archive in asked.inside:
-        found = _with_archive(found, archive)
-    return found
-
-
-def _find(
-    path: Path, executable: str | None, scratch: Path, programs: tuple[str, ...], launch: str
-) -> Submission:
     name = shown(path.name or path.resolve().name)
+    asked = tuple(programs), launch.file if launch else ""
     if not path.exists():
         raise missing(path)
     if path.is_dir():
-        submitted = SubmissionFolder(name, path.resolve(), programs)
-        return _in_folder(submitted, executable, Unpacking(scratch), launch=launch)
+        submitted = SubmissionFolder(name, path.resolve(), *asked)
+        return _in_folder(submitted, executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
@@ -144,12 +125,32 @@ def _find(
                 name=name,
             )
         if launch:
-            raise _no_launch_files(name, launch)
+            raise _no_launch_files(name, launch.file)
         folder = path.parent.resolve()
-        return _from_file(SubmissionFolder(name, folder, programs), folder / path.name)
+        return _from_file(SubmissionFolder(name, folder, *asked), folder / path.name)
     unpacking = Unpacking(scratch)
-    submitted = SubmissionFolder(name, unpacking.unpack(path), programs)
-    return _in_folder(submitted, executable, unpacking, launch=launch)
+    submitted = SubmissionFolder(name, unpacking.unpack(path), *asked)
+    return _in_folder(submitted, executable, unpacking)
+
+
+def find_inspected(
+    asked: NotInspected,
+    inspection: Inspection,
+    name: str,
+    executable: str | None,
+    scratch: Path,
+    programs: Sequence[str] = (),
+    launch: LaunchAsked | None = None,
+) -> Submission:
+    """Find what to start of a package that was inspected; see `find`."""
+    file = launch.file if launch else ""
+    submitted = SubmissionFolder(shown(name), asked.base, tuple(programs), file)
+    found = _in_folder(submitted, executable, Unpacking(scratch), inspection)
+    if launch is not None:
+        found = replace(found, notes=(*undeclared(inspection, launch), *found.notes))
+    for archive in asked.inside:
+        found = _with_archive(found, archive)
+    return found
 
 
 def _in_folder(
@@ -157,7 +158,6 @@ def _in_folder(
     executable: str | None,
     unpacking: Unpacking,
     inspection: Inspection | None = None,
-    launch: str = "",
 ) -> Submission:
     top = top_of(submitted.base)
     if all(is_junk(entry.name) for entry in entries_of(top)):
@@ -167,12 +167,12 @@ def _in_folder(
     files = files_below(top)
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
-        return _in_archive(submitted, archives, executable, unpacking, launch)
+        return _in_archive(submitted, archives, executable, unpacking)
     if inspection is None and (folders := _set_ups(submitted, files)):
         raise NotInspected(submitted.base, tuple(folders))
-    if inspection is None and launch:
-        raise _no_launch_files(submitted.name, launch)
-    found = _among(submitted, files, executable, unpacking, inspection, launch)
+    if inspection is None and submitted.launch:
+        raise _no_launch_files(submitted.name, submitted.launch)
+    found = _among(submitted, files, executable, unpacking, inspection)
     interfaces, notes = find_interfaces(submitted, files)
     return replace(found, interfaces=interfaces, notes=(*found.notes, *notes))
 
@@ -183,13 +183,11 @@ def _among(
     executable: str | None,
     unpacking: Unpacking,
     inspection: Inspection | None,
-    launch: str,
 ) -> Submission:
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
-    together = [] if executable or launch else packages.together(submitted.programs)
+    together = [] if executable or submitted.launch else packages.together(submitted.programs)
     if inspection and executable is None and len(together) != 1:
-        is_needed = not together
-        launched = find_launched(submitted, packages, inspection, launch, is_needed=is_needed)
+        launched = find_launched(submitted, packages, inspection, is_needed=not together)
         if launched is not None:
             found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
             found = replace(found, start=Launch(found.programs), found=launched.found)
@@ -233,7 +231,6 @@ def _in_archive(
     archives: list[Path],
     executable: str | None,
     unpacking: Unpacking,
-    launch: str,
 ) -> Submission:
     """Unpack the one archive that a folder holds, as folders from a course's server do."""
     if len(archives) > 1:
@@ -247,7 +244,7 @@ def _in_archive(
     submitted.must_hold(archive)
     inside = replace(submitted, base=unpacking.unpack(archive))
     try:
-        found = _in_folder(inside, executable, unpacking, launch=launch)
+        found = _in_folder(inside, executable, unpacking)
     except NotInspected as asks:
         asks.inside = (*asks.inside, submitted.called(archive))
         raise
@@ -276,9 +273,13 @@ def _from_scripts(
     scratch: Path,
 ) -> Submission:
     """Start console scripts; one by itself is no launch."""
-    modules = [find_module(submitted, each.package, each.script) for each in started]
     base, notes, added = submitted.base, list[Message](), dict[Path, None]()
-    if any(module.bare for module in modules):
+    modules = {
+        each: find_module(submitted, each.package, each.script)
+        for each in started
+        if each.package and isinstance(each.script, ConsoleScript)
+    }
+    if any(module.bare for module in modules.values()):
         # without its __init__.py, Python prefers any installed package of the same name
         base = scratch / "with_init"
         notes += copy_folder(submitted.base, base)  # all of it: there may be packages beside
@@ -287,32 +288,36 @@ def _from_scripts(
         return base / path.relative_to(submitted.base)
 
     programs = []
-    for each, module in zip(started, modules, strict=True):
-        root = placed(module.root)
-        for folder in module.bare:
-            (root / folder / "__init__.py").touch()
-            added[placed(module.root) / folder / "__init__.py"] = None
-        entry = EntryPoint(each.script.module, each.script.function)
-        programs.append(
-            Program(
-                *(each.name, each.package.name, each.script.name, entry, root),
-                *(each.arguments, each.delay_s),
-            )
+    for each in started:
+        of_package = each.package.name if each.package else ""
+        entry: EntryPoint | Script
+        if isinstance(each.script, ConsoleScript):
+            root = placed(modules[each].root)
+            added |= {root / f / "__init__.py": None for f in modules[each].bare}
+            entry = EntryPoint(each.script.module, each.script.function)
+        else:
+            entry = Script(placed(each.script))
+            root = entry.path.parent
+        files = tuple(n for n, word in enumerate(each.arguments) if isinstance(word, Path))
+        words = tuple(w if isinstance(w, str) else str(placed(w)) for w in each.arguments)
+        given = words, files, each.after, each.delay_s
+        programs.append(Program(each.name, of_package, each.called, entry, root, *given))
+    for file in added:
+        file.touch()
+    first, scripts = programs[0], [e.script for e in started if isinstance(e.script, ConsoleScript)]
+    found = msg("the console scripts {names}", names=listed(each.called for each in started))
+    if len(started) == len(scripts) == 1:
+        found = msg(
+            "console script {script} in {file}",
+            script=shown(scripts[0].name),
+            file=submitted.called(scripts[0].file),
         )
-    first, script = programs[0], started[0].script
-    found = msg(
-        "console script {script} in {file}",
-        script=shown(script.name),
-        file=submitted.called(script.file),
-    )
-    if len(started) > 1:
-        names = listed(each.script.name for each in started)
-        found = msg("the console scripts {names}", names=names)
-    elif added:
+    if len(started) == 1 and added:
         missing = listed(str(each.relative_to(first.root)) for each in added)
         found = msg("{found}, with the missing {missing} added", found=found, missing=missing)
-    short = [*shortcomings(submitted, started[0].package, script)]
-    others = packages.others([each.script for each in started])
+    package = next((each.package for each in started if each.package), None)
+    short = shortcomings(submitted, package, scripts[0] if scripts else None) if package else ()
+    others = packages.others(scripts)
     roots = {each.root for each in programs}
     root = first.root if len(roots) == 1 else base
     is_plain = len(programs) == 1 and not first.arguments and not first.delay_s
@@ -320,7 +325,7 @@ def _from_scripts(
         *(submitted.name, root, first.entry if is_plain else Launch(tuple(programs)), found),
         notes=(*short, *not_started("console script", others), *notes),
         added=tuple(each.relative_to(root) for each in added),
-        package=placed(started[0].package.folder),
+        package=placed(package.folder) if package else None,
         beside=tuple(
             dict.fromkeys(
                 placed(each.roots(each.name)[0]) for each in packages.readable if each.has_setup_py

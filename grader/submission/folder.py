@@ -52,6 +52,7 @@ class SubmissionFolder:
     name: str  # "alice.zip"
     base: Path  # absolute; messages name paths relative to it
     programs: tuple[str, ...] = ()  # those of the exercise
+    launch: str = ""  # the launch file that is asked for
 
     @property
     def usual(self) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,14 +15,21 @@ from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.inspection.answer import Inspection
-    from grader.inspection.trace import LaunchedNode, LaunchFile
+    from grader.inspection.answer import Inspection, LaunchOrder, LaunchStart
+    from grader.inspection.trace import LaunchFile
 
 _ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
 _SIMULATOR: Final = ("turtlesim", "turtlesim_node")
-#: What ROS takes as a name, in the arguments of a program.
-_NAME: Final = re.compile(r"[A-Za-z_~/{}][\w~/{}.]*")
+#: The most times that a program which has ended is started again.
+MOST_RESPAWNS: Final = 3
+LACKING: Final = msg("{program} of {file} was started without {names}")
+OTHERS: Final = msg("{file} starts programs of other packages, and these were not: {names}")
+LATER: Final = msg("{file} starts programs after an event, and these were not: {names}")
+NOT_FOLLOWED: Final = msg("of {file} was not followed: {names}")
+AGAIN: Final = msg("{program} of {file} is started again {n} times at most")
+#: How an inspection names the folder of the submission.
+_SOURCE: Final = "/source/"
 
 
 @dataclass(frozen=True)
@@ -41,19 +46,28 @@ class LaunchAsked:
 
 
 class StartedScript(NamedTuple):
-    """A console script that is started.
+    """A program of a submission that is started.
 
     Attributes:
+        package: in which it is; None for a file that is started by its path.
+        script: a console script; or the file itself.
         name: as `ros2 launch` prints it.
-        arguments: of ROS, and its own.
-        delay_s: how long after the others [s].
+        arguments: of ROS, and its own; a file of the submission is a path.
+        after: the place, among those that are started, of the one at whose end it is; None: none.
+        delay_s: how long after that, or after the others [s].
     """
 
-    package: PackageFolder
-    script: ConsoleScript
+    package: PackageFolder | None
+    script: ConsoleScript | Path
     name: str
-    arguments: tuple[str, ...] = ()
+    arguments: tuple[str | Path, ...] = ()
+    after: int | None = None
     delay_s: float = 0.0
+
+    @property
+    def called(self) -> str:
+        """The name of the script, or of the file."""
+        return self.script.name
 
     @classmethod
     def alone(cls, package: PackageFolder, script: ConsoleScript) -> StartedScript:
@@ -67,18 +81,20 @@ class Launched:
 
     Attributes:
         file: its name.
-        scripts: the submission's.
+        scripts: the submission's, in the order in which they are started.
         notes: what is left out, and what is not followed.
+        compiled: the submission's that are not in Python.
     """
 
     file: str
     scripts: tuple[StartedScript, ...]
     notes: tuple[Message, ...]
+    compiled: tuple[str, ...]
 
     @property
     def found(self) -> Message:
         """A sentence for the user."""
-        names = listed(each.script.name for each in self.scripts)
+        names = listed(each.called for each in self.scripts)
         return msg("{file}, which starts {names}", file=shown(self.file), names=names)
 
 
@@ -91,7 +107,6 @@ def find_launched(
     submitted: SubmissionFolder,
     packages: Packages,
     inspection: Inspection,
-    asked: str = "",
     *,
     is_needed: bool = True,
 ) -> Launched | None:
@@ -103,25 +118,34 @@ def find_launched(
         is_needed: else there is none where one would have to be chosen.
 
     Raises:
-        SubmissionError: there is no such file, or it starts nothing, or more than `MOST_PROGRAMS`;
-            or none is asked for and several start several.
+        SubmissionError: there is no such file, or it starts nothing, or more than `MOST_PROGRAMS`,
+            or what is not in Python; or none is asked for and several start several.
     """
-    launches = inspection.trace.launches
+    launches, asked = inspection.trace.launches, submitted.launch
+
+    def launched(launch: LaunchFile) -> Launched:
+        made = _Launching(submitted, packages, inspection)
+        return made.launched(launch, inspection.orders[launch.file])
+
     if asked:
-        found = _launched(submitted, packages, inspection, _asked(submitted, launches, asked))
-        if not found.scripts:
+        found = launched(_asked(submitted, launches, asked))
+        if not (found.scripts or found.compiled):
             raise SubmissionError(
                 "{file} starts no program of {name}", file=shown(found.file), name=submitted.name
             )
     else:
         included = {file for order in inspection.orders.values() for file in order.included}
         every = [
-            _launched(submitted, packages, inspection, each)
+            launched(each)
             for each in launches
             if each.file in inspection.orders and each.file not in included
         ]
         least = 1 if len(submitted.programs) > 1 else 2
-        several = {each.scripts: each for each in reversed(every) if len(each.scripts) >= least}
+        several = {
+            each.scripts: each
+            for each in reversed(every)
+            if len(each.scripts) + len(each.compiled) >= least
+        }
         if len(several) > 1 and not is_needed:
             return None
         if len(several) > 1:
@@ -135,6 +159,12 @@ def find_launched(
         if not several:
             return None
         (found,) = several.values()
+    if found.compiled:
+        raise SubmissionError(
+            "{file} starts {names}, which is not in Python. Only Python can be graded.",
+            file=shown(found.file),
+            names=listed(found.compiled),
+        )
     if len(found.scripts) > MOST_PROGRAMS:
         raise SubmissionError(
             "{file} starts {number} programs; a run may have {most}",
@@ -170,6 +200,9 @@ def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: s
         SubmissionError: there is none, or several are; or it could not be evaluated.
     """
     named = [each for each in launches if _is_called(each, asked)]
+    if not named:  # by its path in all that was handed in
+        ends = [each for each in launches if f"/{asked}".endswith(f"/{each.file}")]
+        named = sorted(ends, key=lambda each: len(each.file))[-1:]
     if len(named) != 1:
         text = msg("{name} has no launch file {file}; it has: {names}")
         if named:
@@ -185,80 +218,83 @@ def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: s
     return named[0]
 
 
-def _launched(
-    submitted: SubmissionFolder, packages: Packages, inspection: Inspection, launch: LaunchFile
-) -> Launched:
-    """Return what a launch file starts of a submission's programs."""
-    own = {each.name: each for each in packages.readable}
-    setup = inspection.trace.setup
-    folder = submitted.base / inspection.package
-    judged = next((each for each in packages.readable if each.folder == folder), None)
-    if setup is not None and judged is not None:  # by both of its names
-        own |= {setup.name: judged, setup.told: judged}
-    order = inspection.orders[launch.file]
-    scripts, others, later, notes = list[StartedScript](), list[str](), list[str](), list[Message]()
-    for number, (node, delay_s) in enumerate(zip(launch.nodes, order.delays_s, strict=False), 1):
-        package = own.get(node.package)
+class _Launching:
+    """Finds, one after the other, the programs that a launch file starts."""
+
+    def __init__(self, submitted: SubmissionFolder, packages: Packages, of: Inspection) -> None:
+        self._submitted, setup = submitted, of.trace.setup
+        self._own = {each.name: each for each in packages.readable}
+        self._names = {*self._own, *of.trace.others}  # of all packages
+        folder = submitted.base / of.package
+        judged = next((each for each in packages.readable if each.folder == folder), None)
+        if setup is not None:
+            self._names.add(setup.name)
+            if judged is not None:  # by both of its names
+                self._own |= {setup.name: judged, setup.told: judged}
+        self._scripts, self._compiled = list[StartedScript](), list[str]()
+        self._places = dict[int, int]()  # of the scripts, by their numbers in the launch file
+        self._others, self._later = list[str](), list[str]()
+        self._has_simulator = False
+
+    def launched(self, launch: LaunchFile, order: LaunchOrder) -> Launched:
+        """Return what a launch file starts."""
+        notes = list[Message]()
+        for number, start in enumerate(order.starts):
+            if lacking := self._add(number, start):
+                program = shown(start.executable)
+                notes.append(LACKING.given(program=program, names=listed(lacking)))
+        notes += self._respawn(order)
+        self._others += [f"{each.package} {each.file}" for each in launch.includes]
+        left = {OTHERS: self._others, LATER: self._later, NOT_FOLLOWED: order.ignored}
+        notes += [text.given(names=listed(names)) for text, names in left.items() if names]
+        told = tuple(each.given(file=shown(launch.file)) for each in notes)
+        return Launched(launch.file, tuple(self._scripts), told, tuple(self._compiled))
+
+    def _add(self, number: int, start: LaunchStart) -> Sequence[str]:
+        """Add a program to those of its kind; return what it does not get."""
+        package, script = self._own.get(start.package), self._script(start)
+        name = f"{start.package} {start.executable}".strip()
+        if script is not None:
+            if start.after is not None and start.after not in self._places:
+                self._later.append(start.executable)
+                return ()
+            self._places[number] = len(self._scripts)
+            after = None if start.after is None else self._places[start.after]
+            arguments = tuple(self._file(word) or word for word in start.words)
+            started = StartedScript(package, script, start.name, arguments, after, start.delay_s)
+            self._scripts.append(started)
+            return start.lacking
+        if (start.package, start.executable) == _SIMULATOR and not self._has_simulator:
+            self._has_simulator = True
+            return [word for word in start.words if not word.startswith(("-", "__node:="))]
+        if package is None or (package.folder / "CMakeLists.txt").is_file():
+            is_own = start.package in self._names
+            (self._compiled if is_own else self._others).append(name)
+        return ()  # its set-up does not install it: `not_installed` says so
+
+    def _respawn(self, order: LaunchOrder) -> Iterator[Message]:
+        """Add to those that are started what is started again at their ends."""
+        for number, place in self._places.items():
+            start, again = order.starts[number], self._scripts[place]
+            room = MOST_PROGRAMS - len(self._scripts)
+            most = min(MOST_RESPAWNS, max(room, 0))
+            times = start.respawns if 0 <= start.respawns <= most else most
+            if times != start.respawns:
+                yield AGAIN.given(program=shown(start.executable), n=times)
+            for _ in range(times):
+                self._scripts.append(again._replace(after=place, delay_s=start.respawn_s))
+                place = len(self._scripts) - 1
+
+    def _script(self, start: LaunchStart) -> ConsoleScript | Path | None:
+        """Return the submission's program that a launch file means, in Python."""
+        package = self._own.get(start.package)
         named = {} if package is None else {each.name: each for each in package.scripts}
-        if delay_s < 0:
-            later.append(node.executable)
-        elif package is not None and node.executable in named:
-            words, lacking = _arguments(node)
-            notes += _not_given(launch.file, node, lacking)
-            name = f"{node.executable}-{number}"
-            script = StartedScript(package, named[node.executable], name, words, delay_s)
-            scripts.append(script)
-        elif package is judged is not None:
-            continue  # which its set-up does not install: `not_installed` says so
-        elif (node.package, node.executable) != _SIMULATOR:
-            others.append(f"{node.package} {node.executable}")
-    file = shown(launch.file)
-    if others := [*others, *launch.processes]:
-        text = msg("{file} starts programs of other packages, and these were not: {names}")
-        notes.append(text.given(file=file, names=listed(others)))
-    if later:
-        text = msg("{file} starts programs after an event, and these were not: {names}")
-        notes.append(text.given(file=file, names=listed(later)))
-    if order.ignored:
-        text = msg("of {file} was not followed: {names}")
-        notes.append(text.given(file=file, names=listed(order.ignored)))
-    return Launched(launch.file, tuple(scripts), tuple(notes))
+        return named.get(start.executable) or self._file(start.script)
 
-
-def _arguments(node: LaunchedNode) -> tuple[tuple[str, ...], list[str]]:
-    """The arguments that `ros2 launch` gives a program; and what cannot be given."""
-    space = node.namespace
-    space = space if space.startswith("/") or not space else f"/{space}"
-    rules = [f"{old}:={new}" for old, new in (("__node", node.name), ("__ns", space)) if new]
-    rules += node.remappings
-    given = [("-r", rule, all(map(_NAME.fullmatch, rule.split(":=")))) for rule in rules]
-    given += [
-        (
-            *("-p", f"{each.name}:={_yaml(each.value)}"),
-            each.text < 0 and _NAME.fullmatch(each.name) is not None,
-        )
-        for each in node.parameters
-    ]
-    words = [word for option, rule, fits in given if fits for word in (option, rule)]
-    plain = [word for word in node.arguments if "\0" not in word]
-    lacking = [rule for _, rule, fits in given if not fits]
-    return (*plain, *(["--ros-args", *words] if words else [])), lacking
-
-
-def _not_given(file: str, node: LaunchedNode, lacking: Sequence[str]) -> Iterator[Message]:
-    if lacking:
-        yield msg(
-            "{program} of {file} was started without {names}",
-            program=shown(node.executable),
-            file=shown(file),
-            names=listed(lacking),
-        )
-
-
-def _yaml(value: str) -> str:
-    """Return a value as YAML: JSON as it is, everything else as a text."""
-    try:
-        json.loads(value)
-    except ValueError:
-        return json.dumps(value)
-    return value
+    def _file(self, name: str) -> Path | None:
+        """Return the file of the submission that an inspection names; None for other texts."""
+        file = self._submitted.base / name.removeprefix(_SOURCE)
+        if not name.startswith(_SOURCE) or ".." in file.parts or not file.is_file():
+            return None
+        self._submitted.must_hold(file)
+        return file

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -45,7 +45,9 @@ class Program:
         entry: what runs.
         root: comes first on its sys.path, and is its working directory; absolute.
         arguments: "--ros-args", "-r", "__ns:=/left".
-        delay_s: how long after the others it is started [s].
+        files: which of them are files of the submission, as absolute paths.
+        after: the place among all of the one at whose end it is started; None: of none.
+        delay_s: how long after that, or after the others [s].
     """
 
     name: str
@@ -54,7 +56,13 @@ class Program:
     entry: EntryPoint | Script
     root: Path
     arguments: tuple[str, ...] = ()
+    files: tuple[int, ...] = ()
+    after: int | None = None
     delay_s: float = 0.0
+
+    def is_respawned(self, beside: Sequence[Program]) -> bool:
+        """Whether it is another of these that is started again."""
+        return self.after is not None and beside[self.after].name == self.name
 
 
 @dataclass(frozen=True)
@@ -164,7 +172,10 @@ class Submission:
             if isinstance(start, Launch):
                 return Launch(tuple(map(placed, start.programs)))
             if isinstance(start, Program):
-                return replace(start, entry=placed(start.entry), root=there(start.root))
+                words, root = list(start.arguments), there(start.root)
+                for each in start.files:
+                    words[each] = str(there(Path(words[each])))
+                return replace(start, entry=placed(start.entry), root=root, arguments=tuple(words))
             return start
 
         package, beside = self.package and there(self.package), tuple(map(there, self.beside))

@@ -17,7 +17,7 @@ from typing import Any, Final
 from grader.inspection.examining.steps import not_there
 
 PUBLISHER: Final = "robot_state_publisher"
-_NODE: Final = {"name": "", "namespace": "", "arguments": [], "remappings": [], "later": False}
+_NODE: Final = {"name": "", "namespace": "", "arguments": [], "remappings": []}
 
 
 def nodes_of(

@@ -128,14 +128,16 @@ def action(element: ElementTree.Element) -> Any:
             made = actions.GroupAction([action(each) for each in element], scoped=scoped, **more)
         case "push_ros_namespace" | "push-ros-namespace":
             made = ros.PushROSNamespace(take.needed("namespace"), **more)
+        case "set_parameters_from_file":
+            made = ros.SetParametersFromFile(take.needed("filename"), **more)
         case "set_parameter":
             made = ros.SetParameter(take.needed("name"), take.needed("value"), **more)
         case "executable":
             import shlex
 
             words = [substitutions(word) for word in shlex.split(take.plain("cmd"))]
-            take.ignore("cwd", "name", "output", "shell", "launch-prefix", "respawn", "on_exit")
-            made = actions.ExecuteProcess(cmd=words, **more)
+            more |= _process(element, take)
+            made = actions.ExecuteProcess(cmd=words, name=take("name"), **more)
         case "timer" | "ros_timer":
             made = actions.TimerAction(
                 period=take.needed("period"), actions=[action(each) for each in element], **more
@@ -146,8 +148,12 @@ def action(element: ElementTree.Element) -> Any:
         case "shutdown":
             take.ignore("reason")
             made = actions.Shutdown(**more)
-        case "set_remap" | "set_use_sim_time" | "set_ros_log_dir":
-            return actions.LogInfo(msg="")
+        case "set_remap":
+            made = ros.SetRemap(take.needed("from"), take.needed("to"), **more)
+        case "set_use_sim_time":
+            made = ros.SetUseSimTime(take.needed("value"), **more)
+        case "set_ros_log_dir":
+            made = ros.SetROSLogDir(take.needed("new_log_dir"), **more)
         case other if other in _OF_ROS_1:
             raise RuntimeError(f"Unrecognized entity of the type: {other} (it is one of ROS 1)")
         case other:
@@ -157,7 +163,7 @@ def action(element: ElementTree.Element) -> Any:
 
 
 def _node(element: ElementTree.Element, take: _Attributes, more: dict[str, Any]) -> Any:
-    from launch_ros.actions import Node
+    from launch_ros.actions import LifecycleNode, Node
 
     parameters: list[Any] = []
     remappings = []
@@ -169,29 +175,49 @@ def _node(element: ElementTree.Element, take: _Attributes, more: dict[str, Any])
             remappings.append((of.needed("from"), of.needed("to")))
         elif child.tag != "env":
             raise ValueError(f"Unexpected nested entity '{child.tag}' in node")
-    arguments = take.plain("args", "")
-    take.ignore("output", "respawn", "respawn_delay", "launch-prefix", "ros_args", "env", "machine")
-    take.ignore("exec_name", "emulate_tty", "sigkill_timeout", "sigterm_timeout", "on_exit", "cwd")
-    take.ignore("log_cmd", "cached_output")
-    return Node(
+    own, ros = (
+        [substitutions(word) for word in _words(take.plain(name, ""))]
+        for name in ("args", "ros_args")
+    )
+    take.ignore("machine", "log_cmd", "cached_output")
+    return (LifecycleNode if element.tag == "lifecycle_node" else Node)(
         package=take.needed("pkg"),
         executable=take.needed("exec"),
         name=take("name"),
         namespace=take("namespace"),
         parameters=parameters,
         remappings=remappings,
-        arguments=[substitutions(word) for word in _words(arguments)],
+        arguments=own,
+        ros_arguments=ros,
+        exec_name=take("exec_name"),
+        **_process(element, take),
         **more,
     )
+
+
+def _process(element: ElementTree.Element, take: _Attributes) -> dict[str, Any]:
+    """What every process may have."""
+    from launch.actions import Shutdown
+
+    made: dict[str, Any] = {"cwd": take("cwd"), "prefix": take("launch-prefix")}
+    made["shell"] = take.plain("shell", "false").lower() in ("true", "1")
+    made["respawn"] = take("respawn") or False
+    made["respawn_delay"] = float(take.plain("respawn_delay", "0"))
+    made["respawn_max_retries"] = int(take.plain("respawn_max_retries", "-1"))
+    made["on_exit"] = [Shutdown()] if take.plain("on_exit", "") else None
+    env = [_Attributes(each) for each in element.findall("env")]
+    made["additional_env"] = {each.plain("name"): each.needed("value") for each in env}
+    take.ignore("output", "emulate_tty", "sigkill_timeout", "sigterm_timeout")
+    return made
 
 
 def _param(element: ElementTree.Element, take: _Attributes) -> Any:
     from launch_ros.parameter_descriptions import ParameterFile, ParameterValue
 
     if (file := take("from")) is not None:
-        take("allow_substs")
+        is_template = take.plain("allow_substs", "false").lower() in ("true", "1")
         take.must_be_through()
-        return ParameterFile(file)
+        return ParameterFile(file, allow_substs=is_template)
     name, kind = take.plain("name"), take.plain("type", "")
     if len(element):
         inner = [_param(each, _Attributes(each)) for each in element if each.tag == "param"]

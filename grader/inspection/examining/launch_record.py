@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import heapq
+import itertools
 import json
 import os
+import re
+import shlex
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, NamedTuple
 
-from grader.inspection.answer import LaunchOrder
+from grader.inspection.answer import LaunchOrder, LaunchStart
 from grader.inspection.examining import commands, external, known, paths
 from grader.inspection.examining.layout import Workspace
 from grader.inspection.examining.steps import LIMITS, NotKnown, end_of, it
@@ -36,7 +40,8 @@ FOLLOWED: Final = (
     # each of these is named, or known
     *("ExecuteProcess", "ExecuteLocal", "RegisterEventHandler"),
     *("DeclareLaunchArgument", "GroupAction", "IncludeLaunchDescription", "LaunchDescription"),
-    *("LogInfo", "Node", "OpaqueFunction", "PushROSNamespace", "PushRosNamespace"),
+    *("LogInfo", "Node", "LifecycleNode", "ComposableNodeContainer", "OpaqueFunction"),
+    *("PushROSNamespace", "PushRosNamespace"),
     *("ROSTimer", "ResetLaunchConfigurations", "SetLaunchConfiguration", "SetParameter"),
     *("SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime", "TimerAction"),
     "UnsetLaunchConfiguration",
@@ -47,6 +52,38 @@ SUFFIXES: Final = (
     *(".rviz", ".urdf", ".xacro", ".xml", ".yaml", ".yml", ".sdf", ".world", ".py", ".dae", ".stl"),
     *(".launch", ".config", ".json", ".vcg"),
 )
+
+
+#: What a shell would not take as words.
+_OF_A_SHELL: Final = re.compile(r"[;&|<>$`*?~\n]")
+_PYTHON: Final = re.compile(r"python3?(\.\d+)?")
+
+
+WITH_THE_LAUNCH, NEVER = -1, -2
+
+
+class Moment(NamedTuple):
+    """When something happens: so long after the end of a program, or one of these."""
+
+    after: int
+    delay_s: float
+
+
+class Waiting(NamedTuple):
+    """Actions that wait for their moment.
+
+    Attributes:
+        number: what comes first at one moment.
+        place: of what has them wait, among all that is visited.
+        scope: the locals of their context.
+    """
+
+    when: Moment
+    number: int
+    entities: Any
+    place: tuple[int, ...]
+    scope: dict[str, Any]
+    is_later: bool
 
 
 @dataclass(frozen=True)
@@ -84,13 +121,22 @@ class LaunchRecord:
         self._depth = 0
         #: descriptions that were read, in their order
         self.sources: list[str] = []
+        # Of what is visited now: when it happens, whether something else has to happen before, and
+        # its place; a node's in the trace is that of what it waits for.
+        self._when, self._is_later = Moment(WITH_THE_LAUNCH, 0.0), False
+        self._place_of, self._numbers = tuple[int, ...](), itertools.count()
+        self._waiting: list[Waiting] = []
+        #: with their places
+        self._handlers: list[tuple[Any, tuple[int, ...]]] = []
+        self._nodes: list[tuple[tuple[int, ...], LaunchedNode]] = []
 
     def evaluated(
         self, file: str, problem: Obstacle | None, there: Sequence[str], missing: Sequence[str]
     ) -> Evaluated:
         """All of it; with packages that were asked for, those that are there and the others."""
         found: dict[str, Any] = {name: tuple(each) for name, each in self._found.items()}
-        ordered = {name: found.pop(name, ()) for name in ("delays_s", "included", "ignored")}
+        found["nodes"] = tuple(node for _, node in sorted(self._nodes, key=lambda each: each[0]))
+        ordered = {name: found.pop(name, ()) for name in ("starts", "included", "ignored")}
         of_all = {name: found.pop(name, ()) for name in ("refused", "borrowed")}
         order = LaunchOrder(**ordered)
         launch = LaunchFile(file, problem, packages=tuple(there), **found)
@@ -104,16 +150,140 @@ class LaunchRecord:
 
     # Called by the doubles ----------------------------------------------------------------------
 
-    def node(self, node: dict[str, Any]) -> None:
-        """A node that would start."""
+    def node(
+        self,
+        node: dict[str, Any],
+        ros: Sequence[str] = (),
+        lacking: Sequence[str] = (),
+        action: Any = None,
+        command: str = "",
+    ) -> None:
+        """A node that would start.
+
+        Args:
+            ros: its arguments with those of ROS.
+            lacking: what it cannot get.
+            action: that starts it.
+            command: what it calls, where it is no Node.
+        """
         given = [*node["parameters"], *self._by_argument(node)]
         parameters = tuple(self._parameter(each) for each in given)
         self._look_for_paths(node["arguments"])
         words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
         made = {**self._from_where(node), **words, "parameters": parameters}
-        if len(self._found["nodes"]) < _MOST:  # one may be there twice
-            self._found["nodes"].append(LaunchedNode(**made))
-            self._found["delays_s"].append(self.context.delay_s)
+        if len(self._nodes) < _MOST:  # one may be there twice
+            launched = LaunchedNode(**made, later=self._is_later)
+            self._nodes.append((self._next_place(), launched))
+        package, executable = node["package"], node["executable"]
+        script = self._program_file(package, executable)
+        start = LaunchStart("", package, executable, script, tuple(ros), tuple(lacking))
+        if type(action).__name__ == "LifecycleNode":
+            start = LaunchStart("", "", f"LifecycleNode {package} {executable}")
+        self._start(start, action, command or executable)
+
+    def _start(self, start: LaunchStart, action: Any, program: str) -> None:
+        """Note a program that starts now."""
+        starts = self._found["starts"]
+        if len(starts) >= _MOST:
+            return
+        number, name = len(starts), os.path.basename(program)
+        if action is not None:
+            name = action.printed(self.context, program)
+            respawn_s, respawns = action.respawns(self.context)
+            start = replace(start, respawn_s=respawn_s, respawns=respawns)
+            for option in action.ignored:
+                self.ignored(f"{option} of {start.executable}")
+            if action.on_exit is not None:
+                from launch.event_handlers import OnProcessExit
+
+                self.handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
+        words, lacking = self._with_sources(start.words)
+        starts.append(
+            replace(
+                start,
+                name=f"{name}-{number + 1}"[:LONG],
+                executable=start.executable[:LONG],
+                words=words,
+                lacking=(*start.lacking, *lacking)[:_MOST],
+                after={WITH_THE_LAUNCH: None, NEVER: -1}.get(self._when.after, self._when.after),
+                delay_s=self._when.delay_s,
+            )
+        )
+        for when, on in ((self._when, "start"), (Moment(number, 0.0), "exit")):
+            if self._when.after != NEVER:
+                self._put(when, (on, action), is_later=True)
+
+    def _with_sources(self, words: Sequence[str]) -> tuple[tuple[str, ...], list[str]]:
+        """Arguments with the submission's files where they come from; and what cannot be given."""
+        given, lacking = list[str](), list[str]()
+        for word in words:
+            shown = self._source(word) or word
+            fits = str(self._place.prefix) not in shown and "\0" not in shown and len(shown) < 1000
+            (given if fits else lacking).append(shown[:LONG])
+            if not fits and given[-1:] in (["-p"], ["-r"], ["--params-file"]):
+                given.pop()
+        return tuple(given[:_MOST]), lacking
+
+    def _source(self, path: str) -> str:
+        """Where a file of the submission comes from, as '/source/FILE'; '' for others."""
+        for each in self._place.all:
+            if own := each.own(path, self._place.prefix):
+                return f"/source/{os.path.relpath(each.package.folder / own, self._place.root)}"
+        return ""
+
+    def _program_file(self, package: str, name: str) -> str:
+        """The submission's file of the same name as a program that it installs; '' for none."""
+        path = self._place.prefix / "lib" / package / name
+        meant = self._place.meant(str(path)) if name.endswith(".py") and paths.is_file(path) else ""
+        return self._source(meant) if meant else ""
+
+    # What happens later -------------------------------------------------------------------------
+
+    def later(self, entities: Any, delay_s: float) -> None:
+        """Actions that are done so long after this [s]."""
+        after, before_s = self._when
+        self._put(Moment(after, before_s + delay_s), entities, is_later=self._is_later)
+
+    def handler(self, handler: Any) -> None:
+        """Actions that are done when something has happened."""
+        self._handlers.append((handler, self._next_place()))
+
+    def _put(self, when: Moment, entities: Any, *, is_later: bool) -> None:
+        scope = dict(self.context.locals_)
+        number, place = next(self._numbers), self._next_place()
+        if len(self._waiting) < _MOST * 2:
+            heapq.heappush(self._waiting, Waiting(when, number, entities, place, scope, is_later))
+
+    def _next_place(self) -> tuple[int, ...]:
+        return (*self._place_of, next(self._numbers))
+
+    def let_time_pass(self) -> None:
+        """Do what waits; and last what waits for something that never comes."""
+        for _ in range(_MOST * 4):
+            if not self._waiting:
+                break
+            self._do(heapq.heappop(self._waiting))
+        while self._handlers:
+            handler, place = self._handlers.pop(0)
+            scope = dict(self.context.locals_)
+            self._do(Waiting(Moment(NEVER, 0.0), 0, handler.entities, place, scope, is_later=True))
+
+    def _do(self, waiting: Waiting) -> None:
+        from launch._core import walk
+        from launch.events import Happened
+
+        self._when, self._place_of, self._is_later = waiting.when, waiting.place, waiting.is_later
+        self.context.locals_ = {"event": Happened(), **waiting.scope}
+        if isinstance(waiting.entities, tuple):  # what a program has done
+            on, action = waiting.entities
+            met = [e for e in self._handlers if e[0].on == on and e[0].target is action is not None]
+            for handler in reversed(met):
+                self._handlers.remove(handler)
+                self._do(waiting._replace(entities=handler[0].entities, place=handler[1]))
+        elif callable(waiting.entities):
+            self.ignored("a function for an event")
+        else:
+            walk(waiting.entities, self.context)
 
     def skipped(self, node: dict[str, Any]) -> None:
         """A node that would start on a condition that is not met."""
@@ -141,8 +311,11 @@ class LaunchRecord:
         """An action or an option that changes what is started, and is not followed."""
         self._add("ignored", what[:LONG])
 
-    def process(self, words: list[str]) -> None:
+    def process(self, words: list[str], action: Any) -> None:
         """Another program that would start; a node, where it is plainly one."""
+        command = words[0] if words else ""
+        if action.shell and not _OF_A_SHELL.search(text := " ".join(words)):
+            words = shlex.split(text)
         program = os.path.basename(words[0]) if words else ""
         if words[:2] == ["ros2", "run"] and len(words) > 3:
             package, executable, *arguments = words[2:]
@@ -154,10 +327,21 @@ class LaunchRecord:
             self.executable(package, executable)
             described = {"package": package, "executable": executable, "arguments": arguments}
             described |= {"name": "", "namespace": "", "parameters": [], "remappings": []}
-            self.node({**described, "later": self.context.is_later})
+            self.node(described, arguments, (), action, command)
             return
         self._look_for_paths(words)
         self._add("processes", " ".join(words)[:1000])
+        own = self._own_script(words)
+        start = LaunchStart("", "", self._place.shown(" ".join(words)), *own)
+        self._start(start, action, command)
+
+    def _own_script(self, words: list[str]) -> tuple[str, tuple[str, ...]]:
+        """The submission's file that a command runs in Python, and its arguments."""
+        rest = words[1:] if words and _PYTHON.fullmatch(os.path.basename(words[0])) else words
+        script = rest[1:] if rest[:1] == ["-u"] else rest
+        if not script or not script[0].endswith(".py"):
+            return "", ()
+        return self._source(os.path.abspath(script[0])), tuple(script[1:])
 
     def declared(self, name: str) -> None:
         """An argument."""

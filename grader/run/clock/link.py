@@ -211,11 +211,6 @@ class SimulatorLink(EndpointRegistry):
 
     # Time -------------------------------------------------------------------------------------
 
-    def start_at(self, now_ns: int) -> None:
-        """Begin later than the run; nothing has happened here before."""
-        self._move_to(now_ns)
-        self._scheduler.set_now(now_ns)
-
     @guarded
     def advance(self, deadline_ns: int) -> None:
         """Move time to the next event: our deadline, or something from the simulator."""
@@ -350,7 +345,11 @@ class SimulatorLink(EndpointRegistry):
         """Connect our endpoints with those of others, which get our table."""
         if not self._is_introduced:
             self._is_introduced = True
-            self.add_others(self._sockets.introduction())
+            table = self._sockets.introduction()
+            if table.now_ns:  # later than the run; nothing has happened here before
+                self._move_to(table.now_ns)
+                self._scheduler.set_now(table.now_ns)
+            self.add_others(table)
             self._connect_anew()
         if not self.changed:
             return

@@ -144,10 +144,14 @@ class Table:
     """What appeared and disappeared in a process since its last table.
 
     A removed one may still have sent something that comes with the next `Reply`.
+
+    Attributes:
+        now_ns: of the first one to a program: when that begins.
     """
 
     added: tuple[EndpointInfo, ...]
     removed: tuple[int, ...] = ()
+    now_ns: int = 0
 
 
 @dataclass(frozen=True)
@@ -217,8 +221,8 @@ def encode(packet: Packet) -> bytes:
             return _HEAD.pack(b"M", 0, 0, 0, 0, False) + _parcels(parcels)
         case Note(kind, remark):
             return _HEAD.pack(b"N", 0, kind, 0, 0, False) + json.dumps(remark.serialise()).encode()
-        case Table(added, removed):
-            return b"T" + json.dumps([added, removed]).encode()
+        case Table(added, removed, now_ns):
+            return b"T" + json.dumps([added, removed, now_ns]).encode()
 
 
 def decode(data: bytes) -> Packet:
@@ -276,7 +280,7 @@ def _read_parcels(data: bytes) -> Parcels:
     return found
 
 
-def _table(added: Any, removed: Any) -> Table:
+def _table(added: Any, removed: Any, now_ns: Any = 0) -> Table:
     endpoints = tuple(EndpointInfo(*values) for values in added)
     for each in endpoints:
         forms = [(_NAME, each.node), (_CHANNEL, each.channel)]
@@ -287,7 +291,7 @@ def _table(added: Any, removed: Any) -> Table:
             raise ValueError(f"no endpoint: {each!r:.200}")
         _must_be_numbers(each[4:8])
     _must_be_numbers(removed)
-    return Table(endpoints, tuple(removed))
+    return Table(endpoints, tuple(removed), int(now_ns))
 
 
 def _must_be_numbers(values: Any) -> None:

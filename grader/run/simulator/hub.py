@@ -4,7 +4,8 @@
 
 The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to a program's
 process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
-each program; PIDS a JSON list of their processes, each with when it is started [ns]; CORE the
+each program; PIDS a JSON list of their processes, each with the place of the one at whose end it is
+started (null: with the run), and how long after that [ns]; CORE the
 processor core that all are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
 
 One program runs at a time, in the order in which they were started, until it asks for time
@@ -81,17 +82,19 @@ class LinkedProgram:
     Attributes:
         number: from 1, in the order in which they were started.
         request: its last one.
-        start_ns: when it is started; before that it is new.
+        after: the number of the one at whose end it is started; 0 for none.
+        start_ns: when it is started, so long after that; before that it is new.
         since_ns: when its last turn began; until_ns: before this it could pass time alone.
         inbox, news: what it gets at its next turn.
         waiting_bytes: of the former.
         is_awake: whether something has come for which it waits.
-        is_gone: whether it says nothing more.
+        is_gone: whether it says nothing more, or nothing yet: it waits for the end of another.
         vain: how many of its requests let no tick pass.
     """
 
     number: int
     link: StudentLink
+    after: int = 0
     start_ns: int = 0
     is_new: bool = True
     request: Advance = field(init=False)
@@ -106,6 +109,12 @@ class LinkedProgram:
 
     def __post_init__(self) -> None:
         self.request = Advance(self.start_ns, False, 0, 0)
+        self.is_gone = self.after > 0
+
+    def start_after(self, now_ns: int) -> None:
+        """Have it started so long after this moment."""
+        self.after, self.is_gone = 0, False
+        self.request = Advance(now_ns + self.start_ns, False, 0, 0)
 
     def is_due(self, now_ns: int) -> bool:
         """Whether it can run at this moment."""
@@ -121,7 +130,7 @@ class Hub:
 
     def __init__(
         self,
-        links: Sequence[tuple[StudentLink, int]],
+        links: Sequence[tuple[StudentLink, int, int]],
         plan: Plan,
         share_core: Callable[[], None],
         on_met: Callable[[], None],
@@ -130,16 +139,14 @@ class Hub:
         """Set up the scene.
 
         Args:
-            links: those of the programs, each with when it is started [ns].
+            links: those of the programs, each with the number of the one at whose end it is started
+                (0: with the run), and how long after that [ns].
             share_core: called once, when a program first asks for time.
             on_met: called once, at the first packet of a program.
         """
         #: the number of the program that was heard last
         self.heard_last = 1
-        self._members = [
-            LinkedProgram(number, link, start_ns)
-            for number, (link, start_ns) in enumerate(links, 1)
-        ]
+        self._members = [LinkedProgram(number, *its) for number, its in enumerate(links, 1)]
         self._on_met = on_met
         self._share_core = share_core
         #: the time that all programs have reached, and that of the scene, whole ticks
@@ -174,7 +181,7 @@ class Hub:
     def run(self) -> dict[str, Any]:
         """Give turns to the end of the run; return how it ended."""
         self._registry.pop_table()
-        for member in self._members:
+        for member in self._alive():
             if not member.start_ns:
                 self._start(member)
         self._share_core()
@@ -226,7 +233,7 @@ class Hub:
         """Tick to the end without the submission, which sends nothing more."""
         if self._reason:
             return
-        if all(member.link.silence == "gone" for member in self._members):
+        if all(member.link.silence == "gone" or member.is_new for member in self._members):
             self._simulation.submission_gone()
         while not self._reason:
             self._make_tick()
@@ -319,6 +326,9 @@ class Hub:
         """Note that a program says nothing more; what it has sent before counts."""
         member.is_gone = True
         self._catch_up(member.link.reached(), member)
+        for each in self._members:
+            if each.after == member.number and member.link.silence == "gone":
+                each.start_after(self._time_ns)
         if not self._alive():
             self._note_rest()
         self._receive_mail(member)
@@ -335,7 +345,7 @@ class Hub:
 
     def _introduction(self) -> Table:
         known = (*self._registry.own.values(), *self._registry.others.values())
-        return Table(tuple(each.info() for each in known))
+        return Table(tuple(each.info() for each in known), now_ns=self._time_ns)
 
     def _note(self, member: LinkedProgram, table: Table) -> None:
         """Note what a program has, and has no more.
@@ -441,11 +451,11 @@ def main(argv: list[str]) -> int:
     control = socket.socket(fileno=int(argv[0]))
     *ends, pids, core, patience, shown = argv[3:]
     starts, limits = json.loads(pids), Patience(**json.loads(patience))
-    students = [pid for pid, _ in starts]
+    students = [pid for pid, *_ in starts]
     links = []
-    for link, page, (pid, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
+    for link, page, (pid, after, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
         its = (socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
-        links.append((StudentLink(*its), start_ns))
+        links.append((StudentLink(*its), 0 if after is None else after + 1, start_ns))
 
     def share_core() -> None:
         # for all, from here: a submission's process may not choose its cores

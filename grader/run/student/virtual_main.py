@@ -7,8 +7,8 @@
 FD is the link to the simulator, EVIDENCE the page of the submission's account, SCENE a JSON list of
 the simulator's nodes, with names and namespaces, of whether two stamps have to differ, of the
 definitions of interfaces, of those that the simulator has otherwise, of whether it records what is
-published and logged, of its number among several programs (0: it is alone), of when it starts
-[ns], of its arguments, and of the folders of other packages of the submission.
+published and logged, of its number among several programs (0: it is alone), of its arguments, and
+of the folders of other packages of the submission.
 Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
 the same. Everything of ours is imported before the submission is, and then forgotten by the import
 system.
@@ -137,7 +137,7 @@ def install(
     from grader.run.clock.link import SimulatorLink
     from grader.run.lockstep import endpoints
 
-    compares_stamps, texts, unlike, is_recorded, number, start_ns, *_ = json.loads(introduction)
+    compares_stamps, texts, unlike, is_recorded, number, *_ = json.loads(introduction)
     link = SimulatorLink(scheduler, connection, page, refuse, number)
     main = scheduler.main.ident
 
@@ -161,7 +161,6 @@ def install(
         time_and_chance.vary_chance(number)
     if number:
         link.connect()  # waits for the turn of this program
-        link.start_at(start_ns)
     return link
 
 

@@ -217,8 +217,8 @@ from launch.actions import TimerAction
 from launch_ros.actions import Node
 
 def generate_launch_description():
-    node = Node(package="company", executable="stamps")
-    return LaunchDescription([TimerAction(period=1.25, actions=[node]), node, *OTHERS])
+    late, node = (Node(package="company", executable="stamps") for _ in range(2))
+    return LaunchDescription([TimerAction(period=1.25, actions=[late]), node, *OTHERS])
 """.replace("*OTHERS", 'Node(package="company", executable="drives")')
 
 
@@ -228,8 +228,8 @@ def test_what_is_to_start_later_runs_from_then_on_and_what_came_before_is_known(
     folder = package(tmp_path, stamps=STAMPS, drives=DRIVES)
     (folder / "launch/all.launch.py").write_text(LATER)
     recording, again = recorded(folder), recorded(folder)
-    begin = float(said(recording, "stamps-2")[0])
-    late = [float(line) - begin for line in said(recording, "stamps-1")]
+    begin = float(said(recording, "stamps-1")[0])
+    late = [float(line) - begin for line in said(recording, "stamps-3")]
     assert late == pytest.approx([1.25, 1.75, 2.25], abs=1e-3)
     assert recording.run.trace_sha256 == again.run.trace_sha256
     assert recording.output == again.output
@@ -239,8 +239,8 @@ def test_what_was_to_start_after_the_end_was_not_run(tmp_path: Path) -> None:
     folder = package(tmp_path, stamps=STAMPS, drives=DRIVES)
     (folder / "launch/all.launch.py").write_text(LATER.replace("1.25", "60.0"))
     run = recorded(folder).run
-    assert (run.programs[0].name, run.programs[0].outcome) == ("stamps-1", "not_run")
-    assert "stamps-1 was to start at 60 s, when the run was over" in map(str, run.flags)
+    assert (run.programs[2].name, run.programs[2].outcome) == ("stamps-3", "not_run")
+    assert "stamps-3 was to start at 60 s, when the run was over" in map(str, run.flags)
 
 
 @pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
@@ -256,6 +256,140 @@ def test_each_program_is_in_the_result_with_how_it_has_ended(tmp_path: Path, clo
     }  # fmt: skip
     assert run.programs[0].output.endswith("ValueError: no more\n")
     assert len(run.programs[1].output.splitlines()) == 3
+
+
+WRITES = """
+import os, time
+
+def main():
+    for folder in (".", "/tmp", "/dev/shm"):
+        with open(folder + "/map", "w") as file:
+            file.write("house")
+    time.sleep(2.0)
+    print("map" in os.listdir("/tmp"), os.path.exists("again"))
+"""
+READS = """
+import os, time
+
+def main():
+    time.sleep(1.0)
+    print([open(folder + "/map").read() for folder in (".", "/tmp", "/dev/shm")])
+    os.rename("map", "again")
+    print(os.readlink("/proc/self") == str(os.getpid()), os.path.exists("/dev/stdout"))
+"""
+
+
+def test_what_one_writes_the_others_find_as_at_a_desk(tmp_path: Path) -> None:
+    recording = recorded(package(tmp_path, writes=WRITES, reads=READS))
+    assert said(recording, "reads-2") == ["['house', 'house', 'house']", "True True"]
+    assert said(recording, "writes-1") == ["True True"]
+
+
+AFTER = """
+from launch import LaunchDescription
+from launch.actions import RegisterEventHandler, TimerAction
+from launch.event_handlers import OnProcessExit
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    names = ("stamps", "drives", "raises", "late")
+    stamps, drives, raises, late = (Node(package="company", executable=name) for name in names)
+    later = [TimerAction(period=0.5, actions=[late])]
+    return LaunchDescription([
+        RegisterEventHandler(OnProcessExit(target_action=raises, on_exit=later)),
+        RegisterEventHandler(OnProcessExit(target_action=drives, on_exit=[stamps])),
+        drives, raises,
+    ])
+"""
+
+
+@pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
+def test_what_waits_for_the_end_of_another_starts_then_or_was_not_run(
+    tmp_path: Path, clock: str
+) -> None:
+    folder = package(tmp_path, stamps=STAMPS, drives=DRIVES, raises=RAISES, late=STAMPS)
+    (folder / "launch/all.launch.py").write_text(AFTER)
+    with open_submission(folder) as submission:
+        recording = {"virtual": virtual_time.run, "real": real_time.run}[clock](submission, PLAN)
+    told = {each.name: each.exit_code for each in recording.run.programs}
+    assert [told["drives-1"], told["raises-2"], told["late-4"]] == [None, 1, 0]
+    assert len(said(recording, "late-4")) == 3
+    if clock == "virtual":
+        assert recording.run.programs[2].outcome == "not_run"
+        flag = "stamps-3 was to start at the end of drives-1, which did not come"
+        assert flag in map(str, recording.run.flags)
+        assert float(said(recording, "late-4")[0]) == pytest.approx(2.5, abs=0.01)
+
+
+@pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
+def test_what_is_to_be_started_again_is_at_its_end(tmp_path: Path, clock: str) -> None:
+    folder = package(tmp_path, stamps=STAMPS, drives=DRIVES)
+    again = "executable=name, respawn=name == 'stamps', respawn_delay=0.25)"
+    text = LAUNCH.replace("NAMES", "['drives', 'stamps']").replace("executable=name)", again)
+    (folder / "launch/all.launch.py").write_text(text)
+    with open_submission(folder) as submission:
+        notes = list(map(str, submission.notes))
+        recording = {"virtual": virtual_time.run, "real": real_time.run}[clock](submission, PLAN)
+    assert "stamps of launch/all.launch.py is started again 3 times at most" in notes
+    names = [each.name for each in recording.run.programs]
+    assert names == ["drives-1", *["stamps-2"] * len(names[1:])]
+    if clock == "virtual":
+        begins = [float(line) for line in said(recording, "stamps-2")[::3]]
+        assert begins == pytest.approx([0.0, 1.75, 3.5, 5.25], abs=0.01)
+
+
+YAML = """
+drives: {ros__parameters: {rate: 2.5}}
+/**: {ros__parameters: {frame: map}}
+others: {ros__parameters: {frame: odom}}
+"""
+TELLS = """
+import rclpy
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("drives", automatically_declare_parameters_from_overrides=True)
+    print(node.get_name(), *(node.get_parameter_or(n).value for n in ("rate", "frame", "own")))
+"""
+
+
+def test_a_file_of_parameters_is_for_the_nodes_that_it_names(tmp_path: Path) -> None:
+    folder = package(tmp_path, tells=TELLS, other=TELLS.replace('"drives"', '"other"'))
+    (folder / "config").mkdir()
+    (folder / "config/all.yaml").write_text(YAML)
+    share = 'FindPackageShare("company"), "/config/all.yaml"'
+    text = LAUNCH.replace("NAMES", "['tells', 'other']").replace(
+        "executable=name)", f"executable=name, parameters=[[{share}], {{'own': '5'}}])"
+    )
+    head = "from launch_ros.substitutions import FindPackageShare\n"
+    (folder / "launch/all.launch.py").write_text(head + text)
+    setup = folder / "setup.py"
+    files = '("share/company/config", ["config/all.yaml"]), ("share/company/launch"'
+    setup.write_text(setup.read_text().replace('("share/company/launch"', files))
+    recording = recorded(folder)
+    assert said(recording, "tells-1") == ["drives 2.5 map 5"]
+    assert said(recording, "other-2") == ["other None map 5"]
+
+
+PREPARES = "import pathlib, sys\nprint(pathlib.Path(sys.argv[2]).read_text(), sys.argv[1])\n"
+
+
+def test_a_script_of_its_own_is_started_by_its_path(tmp_path: Path) -> None:
+    folder = package(tmp_path, drives=DRIVES)
+    (folder / "prepare.py").write_text(PREPARES)
+    command = "['python3', HERE + '/prepare.py', '--map', HERE + '/package.xml']"
+    also = f"for name in ['drives']] + [ExecuteProcess(cmd={command})"
+    text = LAUNCH.replace("for name in NAMES", also)
+    head = "import os\nfrom launch.actions import ExecuteProcess\n"
+    head += "HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))\n"
+    (folder / "launch/all.launch.py").write_text(head + text)
+    setup = folder / "setup.py"
+    files = '("share/company", ["prepare.py", "package.xml"]), ("share/company/launch"'
+    setup.write_text(setup.read_text().replace('("share/company/launch"', files))
+    recording = recorded(folder)
+    assert said(recording, "python3-2") == ["<package><name>company</name></package> --map"]
+    last = recording.run.programs[1]
+    assert (last.package, last.executable, last.exit_code) == ("", "prepare.py", 0)
 
 
 STARTS_A_PROCESS = """

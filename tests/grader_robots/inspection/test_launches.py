@@ -122,7 +122,7 @@ def test_the_environment_is_appended_to_or_prepended_with_any_separator(tmp_path
         tmp_path,
         """
         def told(name):
-            return Node(package='rviz2', executable='rviz2', name=EnvironmentVariable(name))
+            return Node(package='rviz2', executable='rviz2', arguments=[EnvironmentVariable(name)])
         return LaunchDescription([
             AppendEnvironmentVariable('A', 'a'), AppendEnvironmentVariable('A', 'b'),
             AppendEnvironmentVariable('A', 'c', prepend='yes'),
@@ -132,17 +132,17 @@ def test_the_environment_is_appended_to_or_prepended_with_any_separator(tmp_path
         """,
     )
     assert launch.problem is None
-    assert [node.name for node in launch.nodes] == ["d-c:a:b", ",b"]
+    assert [node.arguments for node in launch.nodes] == [("d-c:a:b",), (",b",)]
     in_xml = launched(
         tmp_path / "xml",
         """<launch>
         <append_env name="A" value="a"/>
         <append_env name="A" value="b" prepend="true" separator="-"/>
-        <node pkg="rviz2" exec="rviz2" name="$(env A)"/>
+        <node pkg="rviz2" exec="rviz2" args="$(env A)"/>
         </launch>""",
         "launch/display.launch.xml",
     )
-    assert [node.name for node in in_xml.nodes] == ["b-a"]
+    assert [node.arguments for node in in_xml.nodes] == [("b-a",)]
 
 
 def test_values_of_parameters_go_through_yaml_where_the_original_does_so(tmp_path):

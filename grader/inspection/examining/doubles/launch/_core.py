@@ -56,6 +56,9 @@ class Record:
     def path(self, path: str) -> str:
         return path
 
+    def later(self, entities: Any, *_: Any, **__: Any) -> None:
+        pass
+
     def command(self, words: list[str], on_stderr: str) -> str:
         raise not_known("a command")
 
@@ -66,12 +69,10 @@ class Record:
 class LaunchContext:
     def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
         self.argv = list(argv or [])
-        self.launch_configurations: dict[str, str] = {}
+        self.launch_configurations: dict[str, Any] = {}
         self.environment = os.environ
         self.locals_: dict[str, Any] = {}
         self.record = Record()
-        self.is_later = False
-        self.delay_s = 0.0
         self.depth = 0
 
     @property
@@ -201,6 +202,7 @@ class Executable:
         arguments: Any = None,
     ) -> None:
         self.cmd = [*cmd, *(arguments or [])]
+        self.name = name
 
 
 class NeedsArgument(RuntimeError):

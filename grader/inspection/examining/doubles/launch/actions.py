@@ -21,12 +21,13 @@ from launch._core import (
     unknown,
     walk,
 )
+from launch.conditions import evaluate_condition_expression
 
 from grader.inspection.examining.steps import not_known
 from grader.message import msg
 
-#: Nothing starts later [s]; and where nobody knows when it does.
-_LONGEST_S, NEVER = 1e6, -1.0
+#: Nothing starts later [s].
+_LONGEST_S = 1e6
 
 
 class DeclareLaunchArgument(Action):
@@ -136,18 +137,17 @@ class TimerAction(Action):
         self, *, period: Any, actions: Iterable[Any], cancel_on_shutdown: Any = True, **kwargs: Any
     ) -> None:
         super().__init__(**kwargs)
+        if isinstance(period, int):
+            raise TypeError(f"'TimerAction' expected 'period' to be a float, but got {period!r}")
         self.period = period
         self.actions = list(actions)
 
     def execute(self, context: LaunchContext) -> None:
         given = self.period
-        seconds = float(given if isinstance(given, int | float) else text_of(context, given))
+        seconds = float(given if isinstance(given, float) else text_of(context, given))
         if not 0 <= seconds <= _LONGEST_S:
             raise ValueError(f"a period of {seconds} s")
-        before = context.delay_s
-        context.delay_s = before + seconds if before != NEVER else NEVER
-        walk(self.actions, context)
-        context.delay_s = before
+        context.record.later(self.actions, seconds)
 
 
 class OpaqueFunction(Action):
@@ -171,28 +171,13 @@ class OpaqueFunction(Action):
         return function(context, *args, **kwargs)
 
 
-def _walk_later(entities: Any, context: LaunchContext, delay_s: float = NEVER) -> None:
-    """Visit what happens only when something else does; what a function decides is not known.
-
-    Args:
-        delay_s: when that is; `NEVER` where nobody knows [s].
-    """
-    if entities is not None and not callable(entities):
-        before = context.is_later, context.delay_s
-        context.is_later, context.delay_s = True, delay_s
-        walk(entities, context)
-        context.is_later, context.delay_s = before
-
-
 class RegisterEventHandler(Action):
     def __init__(self, event_handler: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.event_handler = event_handler
 
     def execute(self, context: LaunchContext) -> None:
-        is_at_start = type(self.event_handler).__name__ == "OnProcessStart"
-        delay_s = context.delay_s if is_at_start else NEVER
-        _walk_later(self.event_handler.entities, context, delay_s)
+        context.record.handler(self.event_handler)
 
 
 class ExecuteLocal(Action):
@@ -218,17 +203,33 @@ class ExecuteLocal(Action):
         if not isinstance(output, dict):
             normalize_to_list_of_substitutions(output)
         self.process_description = process_description
-        self._on_exit = on_exit
+        self.on_exit, self.shell = on_exit, shell
+        self._respawn, self._respawns = respawn, (respawn_delay or 0.0, respawn_max_retries)
         #: options that are not followed
-        self.ignored = ["respawn"] if respawn else []
+        self.ignored = list[str]()
+        self._has_executed = False
 
     def execute(self, context: LaunchContext) -> None:
         words = [text_of(context, word) for word in self.process_description.cmd]
-        context.record.process(words)
-        self._afterwards(context)
+        context.record.process(words, self)
 
-    def _afterwards(self, context: LaunchContext) -> None:
-        _walk_later(self._on_exit, context)
+    def visit(self, context: LaunchContext) -> list[Any] | None:
+        if self._has_executed:
+            raise RuntimeError(f"{type(self).__name__} action: executed more than once")
+        self._has_executed = self.condition is None or self.condition.evaluate(context)
+        return super().visit(context)
+
+    def respawns(self, context: LaunchContext) -> tuple[float, int]:
+        """How long after its end it is started again [s], and how often; below 0: always."""
+        respawn = self._respawn
+        if not isinstance(respawn, bool):
+            respawn = evaluate_condition_expression(context, respawn)
+        return self._respawns if respawn else (0.0, 0)
+
+    def printed(self, context: LaunchContext, program: str) -> str:
+        """What `ros2 launch` calls it, but for a number."""
+        name = self.process_description.name
+        return os.path.basename(program) if name is None else text_of(context, name)
 
 
 class ExecuteProcess(ExecuteLocal):
@@ -245,7 +246,7 @@ class ExecuteProcess(ExecuteLocal):
     ) -> None:
         super().__init__(
             process_description=Executable(
-                cmd=[normalize_to_list_of_substitutions(word) for word in cmd]
+                cmd=[normalize_to_list_of_substitutions(word) for word in cmd], name=name
             ),
             **kwargs,
         )

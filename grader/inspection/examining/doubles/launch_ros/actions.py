@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import os
+import re
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -61,10 +64,8 @@ class Node(ExecuteProcess):
         self._name, self._namespace = name, namespace
         self._parameters = [_known(each) for each in parameters or []]
         self._remappings = [_pair(each) for each in remappings or []]
-        self._arguments = [
-            normalize_to_list_of_substitutions(each)
-            for each in (*_words(arguments), *_words(ros_arguments))
-        ]
+        self._arguments = [normalize_to_list_of_substitutions(each) for each in _words(arguments)]
+        self._ros = [normalize_to_list_of_substitutions(each) for each in _words(ros_arguments)]
 
     def execute(self, context: LaunchContext) -> None:
         record = context.record
@@ -72,25 +73,35 @@ class Node(ExecuteProcess):
         executable = text_of(context, self._executable)
         if package:
             record.executable(package, executable)
+        name = "" if self._name is None else text_of(context, self._name)
+        if self._name is not None and not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            raise ValueError(f"Invalid node name: {name!r}")
+        namespace = _namespace(context, self._namespace)
+        own, ros = ([text_of(context, e) for e in words] for words in (self._arguments, self._ros))
+        remappings = [
+            f"{text_of(context, a)}:={text_of(context, b)}"
+            for a, b in (*context.launch_configurations.get(_REMAPPINGS, ()), *self._remappings)
+        ]
+        absolute = namespace if namespace.startswith("/") or not namespace else f"/{namespace}"
+        names = [f"{old}:={new}" for old, new in (("__node", name), ("__ns", absolute)) if new]
+        parameters, lacking = self._given(context)
+        ros += [word for rule in names for word in ("-r", rule)] + parameters
+        ros += [word for rule in remappings for word in ("-r", rule)]
         record.node(
             {
                 "package": package,
                 "executable": executable,
-                "name": "" if self._name is None else text_of(context, self._name),
-                "namespace": _namespace(context, self._namespace),
-                "arguments": [text_of(context, each) for each in self._arguments],
+                "name": name,
+                "namespace": namespace,
+                "arguments": [*own, *ros[: len(self._ros)]],
                 "parameters": self._evaluated(context),
-                "remappings": [
-                    f"{text_of(context, a)}:={text_of(context, b)}"
-                    for a, b in (*context.locals_.get(_REMAPPINGS, ()), *self._remappings)
-                ],
-                "later": context.is_later,
+                "remappings": remappings,
                 **self._told(),
-            }
+            },
+            [*own, *(["--ros-args", *ros] if ros else [])],
+            lacking,
+            self,
         )
-        for option in self.ignored:
-            record.ignored(f"{option} of {executable}")
-        self._afterwards(context)
 
     def skip(self, context: LaunchContext) -> None:
         names = []
@@ -105,12 +116,30 @@ class Node(ExecuteProcess):
         condition = getattr(self.condition, "told", "")
         return {"made": self._made, "condition": condition if isinstance(condition, str) else ""}
 
+    def _all(self, context: LaunchContext) -> tuple[Any, ...]:
+        return (*context.launch_configurations.get(_PARAMETERS, ()), *self._parameters)
+
     def _evaluated(self, context: LaunchContext) -> list[dict[str, Any]]:
         found: dict[str, dict[str, Any]] = {}
-        for each in (*context.locals_.get(_PARAMETERS, ()), *self._parameters):
+        for each in self._all(context):
             for name, value, wrapped in _values(context, each):
                 found[name] = {"name": name, "value": value, "wrapped": wrapped}
         return list(found.values())
+
+    def _given(self, context: LaunchContext) -> tuple[list[str], list[str]]:
+        """Arguments that give the parameters, and those that cannot be given."""
+        words, lacking = list[str](), list[str]()
+        for each in self._all(context):
+            if not isinstance(each, Parameter | Mapping):
+                path = text_of(context, getattr(each, "param_file", each))
+                is_template = getattr(each, "allow_substs", False)
+                is_there = os.path.isfile(path) and not is_template
+                (words if is_there else lacking).extend(("--params-file", os.path.abspath(path)))
+                continue
+            for name, value, _ in _values(context, each):
+                text = json.dumps(value, default=str, ensure_ascii=False)
+                words += ["-p", f"{name}:={text}"]
+        return words, lacking
 
 
 def _made_at() -> tuple[str, int]:
@@ -227,8 +256,8 @@ class _SetsParameters(Action):
         self._parameters = parameters
 
     def execute(self, context: LaunchContext) -> None:
-        before = context.locals_.get(_PARAMETERS, ())
-        context.locals_[_PARAMETERS] = (*before, self._parameters)
+        # in place, as the original does: what a group adds to a list from outside stays there
+        context.launch_configurations.setdefault(_PARAMETERS, []).append(self._parameters)
 
 
 class SetParameter(_SetsParameters):
@@ -252,8 +281,7 @@ class SetRemap(Action):
         self._pair = _pair((src, dst))
 
     def execute(self, context: LaunchContext) -> None:
-        known = context.locals_.get(_REMAPPINGS, ())
-        context.locals_[_REMAPPINGS] = (*known, self._pair)
+        context.launch_configurations.setdefault(_REMAPPINGS, []).append(self._pair)
 
 
 class SetROSLogDir(Action):

@@ -19,6 +19,16 @@ class Shutdown(Event):
         self.reason = reason
 
 
+class Happened:
+    """An event of which nothing is known: whatever it has is a text."""
+
+    def __getattr__(self, name: str) -> Any:
+        return self
+
+    def __str__(self) -> str:
+        return "?"
+
+
 def matches_action(action: Any) -> Any:
     return lambda other: other is action
 
@@ -29,29 +39,34 @@ class _OfProcess:
 
 
 class EventHandler:
-    def __init__(self, *, matcher: Any, entities: Any = None, handle_once: bool = False) -> None:
-        self.entities = entities
+    #: what a process does: `start` or `exit`; '' for all else, of which nobody knows when it is
+    on = ""
+
+    def __init__(
+        self, *, matcher: Any, entities: Any = None, handle_once: Any = False, target: Any = None
+    ) -> None:
+        self.entities, self.target = entities, target
 
 
 class OnProcessExit(EventHandler):
-    def __init__(
-        self, *, target_action: Any = None, on_exit: Any, handle_once: Any = False
-    ) -> None:
-        super().__init__(matcher=None, entities=on_exit)
+    on = "exit"
+
+    def __init__(self, *, target_action: Any = None, on_exit: Any, **more: Any) -> None:
+        super().__init__(matcher=None, entities=on_exit, target=target_action, **more)
 
 
 class OnProcessStart(EventHandler):
-    def __init__(
-        self, *, target_action: Any = None, on_start: Any, handle_once: Any = False
-    ) -> None:
-        super().__init__(matcher=None, entities=on_start)
+    on = "start"
+
+    def __init__(self, *, target_action: Any = None, on_start: Any, **more: Any) -> None:
+        super().__init__(matcher=None, entities=on_start, target=target_action, **more)
 
 
 class OnExecutionComplete(EventHandler):
-    def __init__(
-        self, *, target_action: Any = None, on_completion: Any, handle_once: Any = False
-    ) -> None:
-        super().__init__(matcher=None, entities=on_completion)
+    on = "exit"
+
+    def __init__(self, *, target_action: Any = None, on_completion: Any, **more: Any) -> None:
+        super().__init__(matcher=None, entities=on_completion, target=target_action, **more)
 
 
 class OnShutdown(EventHandler):
@@ -69,7 +84,7 @@ class OnProcessIO(EventHandler):
         on_stderr: Any = None,
         handle_once: Any = False,
     ) -> None:
-        super().__init__(matcher=None)
+        super().__init__(matcher=None, entities=on_stdin or on_stdout or on_stderr)
 
 
 process = module(
@@ -97,6 +112,7 @@ event_handlers = module(
 
 __all__ = [
     "Event",
+    "Happened",
     "Shutdown",
     "matches_action",
     "process",

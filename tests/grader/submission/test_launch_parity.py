@@ -1,0 +1,94 @@
+"""What a launch file starts, when and with which arguments is what ROS's own launch has started.
+
+The files are of the kinds that public courses have; `record_launches` has run them with launch
+3.4.3 and launch_ros 0.26.6.
+"""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.submission.launching import LaunchAsked
+from grader.submission.start import Program
+from tests.grader.submission.record_launches import FOLDER, RECORDED
+from tests.grader.submission.test_launching import notes, opened
+
+STARTS = json.loads(RECORDED.read_text())
+#: What the grader does not start, and says so.
+LEFT_OUT = ("sleep", "rqt_graph", "static_transform_publisher", "turtlesim_node", "Spawn")
+#: The programs of `composed.launch.py` that it does not start either; a prefix is no name.
+OF_COMPOSED = ("component_container", "talker")
+#: Two moments are the same, on a machine with something else to do [s].
+SAME_S = 0.2
+
+
+def in_real_time(programs: tuple[Program, ...]) -> Iterator[tuple[float, Program]]:
+    """Each program with its moment: `worker` and scripts end at once, all others never."""
+    at: list[float | None] = []
+    for program in programs:
+        began = 0.0 if program.after is None else at[program.after]
+        at.append(None if began is None else began + program.delay_s)
+    return ((moment, p) for moment, p in zip(at, programs, strict=True) if moment is not None)
+
+
+def comparable(words: list[str]) -> list[Any]:
+    """Arguments without the order of parameters that are given side by side."""
+    found: list[Any] = []
+    for option, word in zip(["", *words], words, strict=False):
+        if option == "-p":
+            found[-1] = [*found[-1], word] if isinstance(found[-1], list) else found[-1]
+        elif word == "--ros-args" and word in found:
+            continue  # that is said already
+        elif word != "-p":
+            found.append(Path(word).name if word.startswith("/") and "." in word else word)
+        elif not (found and isinstance(found[-1], list)):
+            found.append([])
+    return [sorted(each, key=lambda p: p.split(":=")[0]) if isinstance(each, list) else each
+            for each in found]  # fmt: skip
+
+
+@pytest.mark.parametrize("file", STARTS)
+def test_what_is_started_is_what_ros2_launch_starts(file: str) -> None:
+    submission = opened(FOLDER, launch=LaunchAsked(file))
+    skipped = LEFT_OUT + (OF_COMPOSED if "composed" in file else ())
+    real = [each for each in STARTS[file] if not each[0].startswith(skipped)]
+    ours = sorted(in_real_time(submission.programs), key=lambda each: each[0])
+    assert [p.name for _, p in ours] == [name.replace("nice", "worker") for name, *_ in real]
+    for (at_s, program), (name, real_s, words) in zip(ours, real, strict=True):
+        words = words[1:] if name.startswith(("python3", "nice")) else words
+        words = words[3:] if name.startswith("ros2") else words
+        assert comparable(list(program.arguments)) == comparable(words), name
+        assert at_s == pytest.approx(real_s - STARTS[file][0][1], abs=SAME_S), name
+
+
+@pytest.mark.parametrize(
+    ("file", "said"),
+    [
+        ("mimic.launch.py", "turtlesim_node of {} was started without info, __ns:=/turtlesim1"),
+        (
+            "mimic.launch.py",
+            "{} starts programs of other packages, and these were not: turtlesim turtlesim_node, "
+            "rqt_graph rqt_graph",
+        ),
+        (
+            "events.launch.py",
+            "of {} was not followed: EmitEvent, a function for an event",
+        ),
+        (
+            "composed.launch.py",
+            "{} starts programs of other packages, and these were not: "
+            "rclcpp_components component_container, LifecycleNode demo talker",
+        ),
+        (
+            "composed.launch.py",
+            "of {} was not followed: SetEnvironmentVariable, additional_env of listener, prefix of "
+            "worker",
+        ),
+    ],
+)
+def test_what_is_left_out_is_said(file: str, said: str) -> None:
+    found = notes(opened(FOLDER, launch=LaunchAsked(file)))
+    assert any(said.format(f"launch/{file}") in each for each in found), found
