@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tests.attacks import handed_in
@@ -41,6 +41,7 @@ class Attack:
         program: which of `submissions/`, if not that of the attack's name.
         time: the clock that it is graded by.
         beside: an empty module that lies beside it.
+        is_second: whether it is the second of two programs that a launch file starts.
     """
 
     about: str
@@ -55,6 +56,7 @@ class Attack:
     program: str = ""
     time: str = "virtual"
     beside: str = ""
+    is_second: bool = False
 
 
 FILES, PROCESSES, NETWORK = "files", "other processes", "network and terminal"
@@ -159,6 +161,17 @@ ATTACKS = {
     "is_a_hostile_archive": Attack(READING, ALL, handed_in.is_a_hostile_archive, codes=READ),
 }
 
+#: What runs as a program is tried as the second of two as well, beside one that waits: its view of
+#: the files is that of the first, its link is one of several.
+SECOND = " as the second of two"
+ATTACKS |= {
+    f"{name}{SECOND}": replace(each, program=each.program or name, outcome="", is_second=True)
+    for name, each in ATTACKS.items()
+    if each.make is None and each.time == "virtual" and not each.beside
+    if each.about not in (RUBRIC, SIMULATOR, READING)
+}
+ATTACKS["attacks_the_other"] = Attack(PROCESSES, ALL, is_second=True)
+
 #: With limits only: what may get what it is after, but leaves the grader and the next one alone.
 SURVIVED_AT_LIMITS = {"daemons", "daemons_of_libc", "takes_folders_away"}
 #: ... and what is tried there at all: the rest is open, or the same at every level.
@@ -192,4 +205,5 @@ def what_happens(name: str, level: str) -> str:
     """What becomes of an attack at a level of the grader's: `stopped`, `survived` or `open`."""
     if level in ATTACKS[name].stopped_by:
         return "stopped"
-    return "survived" if level != "limits" or name in SURVIVED_AT_LIMITS else "open"
+    alone = name.removesuffix(SECOND)
+    return "survived" if level != "limits" or alone in SURVIVED_AT_LIMITS else "open"

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import pwd
+import re
 import secrets
 import select
 import shutil
@@ -312,6 +313,8 @@ class _Trial:
         }
         text = "".join(f"{name} = {value!r}\n" for name, value in known.items())
         submission = handed_in.folder(self._attack.program or self._name, target, text)
+        if self._attack.is_second:
+            handed_in.as_second(submission)
         if self._attack.beside:
             (submission / self._attack.beside).touch()
         return submission
@@ -348,7 +351,8 @@ class _Trial:
         ]
         with suppress(OSError):
             graded["printed"] = (out / "output.txt").read_text(errors="replace")[:4000]
-        lines = (line for line in said.split(b"\n") if line.startswith(b"ACHIEVED "))
+        lines = (re.sub(rb"^\[\S+\] ", b"", line) for line in said.split(b"\n"))
+        lines = (line for line in lines if line.startswith(b"ACHIEVED "))
         lines = (line for line in lines if b"&#" not in line)  # the page says it again
         for line in sorted({b" ".join(line.split(b" ")[1:8]) for line in lines})[:40]:
             if not line.startswith((b"environment", b"getenv", b"None")):

@@ -22,6 +22,7 @@ from tests.attacks.attacks import (
     LINK,
     READING,
     RUBRIC,
+    SECOND,
     SIMULATOR,
     TRIED_ELSEWHERE,
     what_happens,
@@ -47,6 +48,11 @@ TRIED = {
     "landlock-user": DIFFER - TRIED_ELSEWHERE,
     "landlock-root": AS_ROOT_BY_LANDLOCK,
     "limits-user": AT_LIMITS,
+}
+#: As the second of two programs: what concerns how that comes to its view and to its link.
+TRIED_AS_SECOND = {
+    *("reads_home", "looks_at_processes", "kills_all", "unmounts", "mounts", "enters_namespaces"),
+    *("takes_descriptors", "works_in_a_descriptor", "fills_disk", "misuses_the_link"),
 }
 #: What the grader waits for as long as it would for anybody.
 SLOW = {
@@ -79,6 +85,8 @@ def chosen() -> Iterator[Any]:
             names = names[: EXAMPLES or None]
         for name in names:
             slow = (pytest.mark.more(SLOW[name]),) if name in SLOW else ()
+            if name.endswith(SECOND) and name.removesuffix(SECOND) not in TRIED_AS_SECOND:
+                slow = (pytest.mark.more("as the second of two programs"),)
             yield pytest.param(level, name, marks=(*marks, *slow))
 
 

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.attacks.attacks import ATTACKS, what_happens
+from tests.attacks.attacks import ATTACKS, SECOND, what_happens
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "threat-model.md").read_text(encoding="utf-8")
 LEVELS = ("namespaces", "landlock", "limits")
+ALONE = [name for name in ATTACKS if not name.endswith(SECOND)]
 
 
 def rows() -> dict[str, tuple[str, ...]]:
@@ -21,10 +22,10 @@ def rows() -> dict[str, tuple[str, ...]]:
 
 
 def test_every_attack_is_in_the_table_and_no_other() -> None:
-    assert list(rows()) == list(ATTACKS)
+    assert list(rows()) == ALONE
 
 
-@pytest.mark.parametrize("attack", ATTACKS)
+@pytest.mark.parametrize("attack", ALONE)
 def test_the_table_says_what_stops_it(attack: str) -> None:
     assert rows()[attack] == tuple(what_happens(attack, level) for level in LEVELS)
 
