@@ -321,7 +321,7 @@ def _run_on_link(
     words = [
         *(str(controlled.fileno()), f"/proc/self/fd/{recording}"),
         *(plan.to_json(), str(theirs.fileno()), str(page)),
-        *(json.dumps([(os.getpid(), None, 0)]), "-1"),
+        *(json.dumps([(os.getpid(), "talker-1", None, 0)]), "-1"),
         json.dumps(asdict(Patience(simulator_cpu_s=20.0, all_asleep_s=2.0, asleep_s=1.0))),
         "",  # no live feed
     ]

@@ -20,18 +20,23 @@ class Wire(Protocol):
 
     Attributes:
         now_ns: the time from the start of the run [ns].
+        names: of the programs, by their numbers, where there are several and that is known.
     """
 
     def tap(self, topic: str, kind: str, message: Any) -> None:
         """Record what the program publishes on a topic with a type, whose class is `message`."""
 
-    def heard(self) -> Iterable[tuple[str, str, int, bytes]]:
-        """Return what was recorded since: topic, type, when [ns from the start], CDR."""
+    def heard(self) -> Iterable[tuple[str, str, int, bytes, int]]:
+        """Return what was recorded since.
+
+        Topic, type, when [ns from the start], CDR, and the sender's number; 0: nobody knows.
+        """
 
     def has_unread(self, node: str) -> bool:
         """Whether something waits for a peer's node."""
 
     now_ns: int
+    names: Mapping[int, str]
 
 
 class Playing:
@@ -92,8 +97,8 @@ class Playing:
 
     def record(self) -> None:
         """Record what the program has sent."""
-        for topic, kind, time_ns, data in self._wire.heard():
-            self._recorder.heard(topic, kind, time_ns, data)
+        for message in self._wire.heard():
+            self._recorder.heard(*message)
 
     def act(self) -> None:
         """Let the peers be served, and do what is due, in a tick."""
@@ -113,7 +118,8 @@ class Playing:
     def trace(self, ticks: int) -> CastTrace:
         """Return what was recorded up to now."""
         self.record()
-        return self._recorder.trace(ticks, (peer.name for peer in self._peers))
+        names = self._wire.names
+        return self._recorder.trace(ticks, (peer.name for peer in self._peers), names)
 
     def _type_of(self, kind: str, name: str) -> str:
         """Return the type of a channel that the program uses; '' for none."""

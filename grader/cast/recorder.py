@@ -16,7 +16,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
 from typing import Any, Final
 
 from grader.cast.messages import NoType, Types, plain
@@ -57,7 +58,9 @@ class CastRecorder:
         #: a bag has one type a topic: that of the first message
         self._types_of: dict[str, str] = {}
         self._tapped: set[tuple[str, str]] = set()
-        self._writers: dict[str, set[str]] = {}
+        #: topic -> nodes, each with the number of its program; and the other way round
+        self._writers: dict[str, set[tuple[str, int]]] = {}
+        self._programs: dict[str, set[int]] = {}
         self._endpoints: set[tuple[Any, ...]] = set()
         self._messages: list[SentMessage] = []
         self._events: list[dict[str, Any]] = []
@@ -73,7 +76,7 @@ class CastRecorder:
         """Note the program's readers and writers, and hear those that are asked for.
 
         Args:
-            endpoints: `grader.run.lockstep.protocol.EndpointInfo`s, without their numbers.
+            endpoints: `grader.run.lockstep.protocol.EndpointInfo`s, as numbers those of programs.
         """
         self._writers = {}
         for each in endpoints:
@@ -81,8 +84,9 @@ class CastRecorder:
             if each not in self._endpoints and len(self._endpoints) <= MOST_EVENTS:
                 self._endpoints.add(each)
                 self.event("endpoint", **dict(zip(ENDPOINT, each, strict=False)))
+                self._programs.setdefault(each.node, set()).add(each.id)
             if kind == "topic" and each.writes:
-                self._writers.setdefault(name, set()).add(each.node)
+                self._writers.setdefault(name, set()).add((each.node, each.id))
                 if name in self._topics and (name, each.type) not in self._tapped:
                     self._tapped.add((name, each.type))
                     try:
@@ -103,15 +107,17 @@ class CastRecorder:
         """Return the values of a message for an event; none where there is no room for them."""
         return plain(message) if self._has_room(len(serialise(message))) else {}
 
-    def heard(self, topic: str, kind: str, time_ns: int, data: bytes) -> None:
-        """Add a message of the program's, in CDR."""
+    def heard(self, topic: str, kind: str, time_ns: int, data: bytes, program: int = 0) -> None:
+        """Add a message, in CDR, of the program with a number; 0: nobody knows of which."""
         if not self._is_of_type(topic, kind) or not self._has_room(len(data), 1):
             return
         try:
             canonical = serialise(deserialise(data, self._types.use(kind)))
         except ValueError:
             return
-        nodes = self._writers.get(topic, set()) - self._peers  # it may call itself like one
+        writers = self._writers.get(topic, set())
+        nodes = {node for node, number in writers if number == program}
+        nodes -= self._peers  # it may call itself like one
         node = min(nodes) if len(nodes) == 1 else ""
         self._messages.append(SentMessage(time_ns, topic, kind, node, canonical))
 
@@ -139,8 +145,15 @@ class CastRecorder:
             self.flags.append(_FULL.given(n=MOST_MESSAGES, m=MOST_BYTES))
             self._events.append({"kind": "full", "time_ns": self._now_ns()})
 
-    def trace(self, ticks: int, peers: Iterable[str]) -> CastTrace:
-        """Return the recording up to now."""
+    def trace(
+        self, ticks: int, peers: Iterable[str], names: Mapping[int, str] = MappingProxyType({})
+    ) -> CastTrace:
+        """Return the recording up to now; of several programs, with these names."""
         events: tuple[Event, ...] = tuple(map(dict, self._events))
         messages = tuple(sorted(self._messages, key=lambda each: each.time_ns))
-        return CastTrace(ticks, messages, events, tuple(peers), dict(self._types.used))
+        programs = {
+            node: ", ".join(names[number] for number in sorted(numbers & names.keys()))
+            for node, numbers in self._programs.items()
+            if names
+        }
+        return CastTrace(ticks, messages, events, tuple(peers), dict(self._types.used), programs)

@@ -30,5 +30,6 @@ def _run(title: str, run: PlayedRun) -> dict[str, Any]:
     assert isinstance(trace, CastTrace)
     return {
         **{"title": title, "outcome": run.outcome, "ticks": trace.ticks},
-        **{"lanes": timeline.lanes(trace), "items": timeline.items(trace)},
+        **{"lanes": timeline.lanes(trace), "labels": timeline.labels(trace)},
+        "items": timeline.items(trace),
     }

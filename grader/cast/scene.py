@@ -74,7 +74,8 @@ class GraphSimulation(Simulation):
         changed = [each for each in items if self._told.get(each["id"]) != each]
         self._told.update((each["id"], each) for each in changed)
         self._told_ns = made.duration_ns
-        send({"t": made.duration_ns / 1e9, "lanes": timeline.lanes(made), "items": changed})
+        shown = {"lanes": timeline.lanes(made), "labels": timeline.labels(made)}
+        send({"t": made.duration_ns / 1e9, **shown, "items": changed})
 
     def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
         """Let a foreseen tick pass."""

@@ -24,12 +24,22 @@ _SECOND: Final = 1e9
 
 
 def lanes(trace: CastTrace) -> list[str]:
-    """Return the program's nodes, and then those of the cast."""
+    """Return the program's nodes, of several in the order of these, and then those of the cast."""
     own = {event["node"] for event in trace.of_kind("endpoint")} - {PROGRAM}
-    shown = sorted(own) or [PROGRAM]
+
+    def place(node: str) -> tuple[int, str]:
+        number = trace.programs.get(node, "").rpartition("-")[2]  # of 'talker-1'
+        return int(number) if number.isdecimal() else 0, node
+
+    shown = sorted(own, key=place) or [PROGRAM]
     if len(shown) > MOST_NODES:
         shown[MOST_NODES - 1 :] = [OTHERS]
     return [*shown, *trace.peers]
+
+
+def labels(trace: CastTrace) -> dict[str, str]:
+    """Return what lanes are called otherwise: those of several programs, as a terminal has them."""
+    return {node: f"[{name}] {node}" for node, name in trace.programs.items() if name}
 
 
 def items(trace: CastTrace, since_ns: int = 0) -> list[dict[str, Any]]:

@@ -52,6 +52,7 @@ class CastTrace:
     Attributes:
         peers: the nodes of the cast, with their namespaces.
         definitions: the definitions of all types in it, and of those of their fields.
+        programs: whose a node is, as `ros2 launch` calls it, where there are several.
     """
 
     ticks: int = 0
@@ -59,6 +60,7 @@ class CastTrace:
     events: tuple[Event, ...] = field(default=(), hash=False)
     peers: tuple[str, ...] = ()
     definitions: Mapping[str, str] = field(default_factory=dict, hash=False)
+    programs: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     @property
     def duration_ns(self) -> int:
@@ -66,7 +68,7 @@ class CastTrace:
         return self.ticks * STEP_NS
 
     def sha256(self) -> str:
-        """A hash of all that was exchanged; where types come from does not count."""
+        """A hash of all that was exchanged; where types come from, and programs, do not count."""
         made = hashlib.sha256(_json([self.ticks, self.peers, self.events]).encode())
         for message in self.messages:
             made.update(repr(message).encode())
@@ -134,7 +136,7 @@ def to_messages(trace: CastTrace) -> list[BagMessage]:
         for each in trace.messages
     ]
     facts = {"topics": [*topics], "nodes": [*nodes], "order": order, "peers": trace.peers}
-    last = {"definitions": trace.definitions, **facts}
+    last = {"definitions": trace.definitions, "programs": trace.programs, **facts}
     made = [BagMessage(m.time_ns, m.topic, m.type, m.data) for m in trace.messages]
     made += [BagMessage(e["time_ns"], EVENTS, STRING, string(_json(e))) for e in trace.events]
     made.append(BagMessage(trace.duration_ns, EVENTS, STRING, string(_json(last))))
@@ -199,7 +201,8 @@ def from_channels(channels: Sequence[Channel], duration_ns: int) -> CastTrace:
         kind = by_topic[topic].msgtype
         messages.append(SentMessage(time_ns, topic, kind, last["nodes"][node_number], data))
     ticks, peers = duration_ns // STEP_NS, tuple(last["peers"])
-    return CastTrace(ticks, tuple(messages), tuple(events), peers, last["definitions"])
+    more = last["definitions"], last.get("programs", {})
+    return CastTrace(ticks, tuple(messages), tuple(events), peers, *more)
 
 
 def _json(data: Any) -> str:

@@ -114,8 +114,8 @@ def _try(
                     running.append(its)
                     links.append(link)
                 starts = [
-                    (each.process.pid, each.program.after, round(each.program.delay_s * 1e9))
-                    for each in running
+                    (each.process.pid, its.name, its.after, round(its.delay_s * 1e9))
+                    for each, its in zip(running, programs, strict=True)
                 ]
                 pids = json.dumps(starts)
                 more = (pids, str(core_id), json.dumps(asdict(patience)))

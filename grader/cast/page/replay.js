@@ -31,7 +31,7 @@ function choose(n) {
   const run = data.runs[n];
   buttons.forEach((button, each) => button.setAttribute("aria-pressed", String(each === n)));
   element("outcome").textContent = run.outcome;
-  timeline.set(run.lanes, run.items, run.ticks * data.tick_s);
+  timeline.set(run.lanes, run.labels, run.items, run.ticks * data.tick_s);
   transport.setLast(run.ticks);
 }
 

@@ -60,7 +60,7 @@ class SimulatorEndpoints(EndpointRegistry):
         self._unread_bytes = 0  # at most: what was read since is not subtracted
         self.theirs: tuple[EndpointInfo, ...] = ()
         #: what hidden readers have received
-        self._heard: list[tuple[str, str, int, bytes]] = []
+        self._heard: list[tuple[str, str, int, bytes, int]] = []
         self.published: dict[str, str] = {}
         self._may_have_unread = True
 
@@ -83,7 +83,9 @@ class SimulatorEndpoints(EndpointRegistry):
         shown = (each for each in self.others.values() if not isinstance(each, NodeEntry))
         entries = (each.info() for each in shown)
         self.theirs = tuple(
-            sorted(e._replace(type=e.type.rstrip(), id=0, is_hidden=False) for e in entries)
+            sorted(
+                e._replace(type=e.type.rstrip(), id=e.id >> SHIFT, is_hidden=False) for e in entries
+            )
         )
         types: dict[str, set[str]] = {}
         for each in self.theirs:
@@ -124,10 +126,10 @@ class SimulatorEndpoints(EndpointRegistry):
         reader = Reader(f"topic {topic}", kind, qos, message=message, is_hidden=True)
         self.add(reader)
 
-    def pop_heard(self) -> list[tuple[str, str, int, bytes]]:
+    def pop_heard(self) -> list[tuple[str, str, int, bytes, int]]:
         """Return what hidden readers have received since the last call, in the order of sending.
 
-        Topic, type, when it was sent [ns, on the clock of the run], CDR.
+        Topic, type, when it was sent [ns, on the clock of the run], CDR, the sender's number.
         """
         heard, self._heard = self._heard, []
         return heard
@@ -170,10 +172,11 @@ class SimulatorEndpoints(EndpointRegistry):
         self.answered = False
         return parcels
 
-    def receive(self, parcels: Parcels, since_ns: int, until_ns: int) -> None:
+    def receive(self, parcels: Parcels, member: int, since_ns: int, until_ns: int) -> None:
         """Put what a program has sent in its turn into the readers.
 
         Args:
+            member: its number.
             since_ns, until_ns: of the turn, from the start of the run; the messages say themselves
                 when in it they were sent.
         """
@@ -192,7 +195,7 @@ class SimulatorEndpoints(EndpointRegistry):
                 continue
             if reader.is_hidden:
                 sent_ns = EPOCH_NS + min(max(since_ns, time_ns), until_ns)
-                self._heard.append((reader.name, reader.type, sent_ns, data))
+                self._heard.append((reader.name, reader.type, sent_ns, data, member))
                 continue
             asked_by = client if reader.kind == "request" else None
             reader.items.append(Arrived(data, self.now_ns(), number, asked_by))

@@ -4,8 +4,8 @@
 
 The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to a program's
 process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
-each program; PIDS a JSON list of their processes, each with the place of the one at whose end it is
-started (null: with the run), and how long after that [ns]; CORE the
+each program; PIDS a JSON list of their processes, each with its name, with the place of the one at
+whose end it is started (null: with the run), and how long after that [ns]; CORE the
 processor core that all are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
 
 One program runs at a time, in the order in which they were started, until it asks for time
@@ -131,6 +131,7 @@ class Hub:
     def __init__(
         self,
         links: Sequence[tuple[StudentLink, int, int]],
+        names: Sequence[str],
         plan: Plan,
         share_core: Callable[[], None],
         on_met: Callable[[], None],
@@ -141,11 +142,14 @@ class Hub:
         Args:
             links: those of the programs, each with the number of the one at whose end it is started
                 (0: with the run), and how long after that [ns].
+            names: theirs, as `ros2 launch` prints them.
             share_core: called once, when a program first asks for time.
             on_met: called once, at the first packet of a program.
         """
         #: the number of the program that was heard last
         self.heard_last = 1
+        #: where there are several
+        self.names = dict(enumerate(names, 1)) if len(names) > 1 else {}
         self._members = [LinkedProgram(number, *its) for number, its in enumerate(links, 1)]
         self._on_met = on_met
         self._share_core = share_core
@@ -250,10 +254,12 @@ class Hub:
         """Record what the program publishes on a topic with a type."""
         self._registry.tap(topic, kind, message)
 
-    def heard(self) -> list[tuple[str, str, int, bytes]]:
+    def heard(self) -> list[tuple[str, str, int, bytes, int]]:
         """Return what was recorded since."""
-        heard = self._registry.pop_heard()
-        return [(topic, kind, time_ns - EPOCH_NS, data) for topic, kind, time_ns, data in heard]
+        return [
+            (topic, kind, time_ns - EPOCH_NS, data, number)
+            for topic, kind, time_ns, data, number in self._registry.pop_heard()
+        ]
 
     def has_unread(self, node: str) -> bool:
         """Whether something waits for a node of the cast's."""
@@ -368,7 +374,7 @@ class Hub:
         """Pass on what a program has sent."""
         for parcels in member.link.mail():
             ours = [p for p in parcels if p.endpoint >> SHIFT == 0]
-            self._registry.receive(ours, member.since_ns, self._time_ns)
+            self._registry.receive(ours, member.number, member.since_ns, self._time_ns)
             others = [p for p in parcels if p.endpoint >> SHIFT]
             for each in self._alive():
                 before = len(each.inbox)
@@ -451,9 +457,9 @@ def main(argv: list[str]) -> int:
     control = socket.socket(fileno=int(argv[0]))
     *ends, pids, core, patience, shown = argv[3:]
     starts, limits = json.loads(pids), Patience(**json.loads(patience))
-    students = [pid for pid, *_ in starts]
+    students, names = [pid for pid, *_ in starts], [name for _, name, *_ in starts]
     links = []
-    for link, page, (pid, after, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
+    for link, page, (pid, _, after, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
         its = (socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
         links.append((StudentLink(*its), 0 if after is None else after + 1, start_ns))
 
@@ -463,7 +469,7 @@ def main(argv: list[str]) -> int:
 
     plan = Plan.from_json(argv[2])
     try:
-        hub = Hub(links, plan, share_core, lambda: send_message(control, "met"), shown)
+        hub = Hub(links, names, plan, share_core, lambda: send_message(control, "met"), shown)
         gc.freeze()
         gc.set_threshold(GARBAGE)
         ending = hub.run()

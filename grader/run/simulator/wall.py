@@ -30,11 +30,13 @@ class WallWire:
     Attributes:
         node: that reads the graph, and records.
         ticks: of the run up to now.
+        names: not known: DDS does not tell programs apart.
     """
 
     def __init__(self) -> None:
         self.node = _node(NAME, None)
         self.ticks = self._looks = 0
+        self.names: dict[int, str] = {}
         self._began_ns = time.time_ns()
         self._heard_ns = 0
         self._served = set[str]()  # in this tick
@@ -71,14 +73,14 @@ class WallWire:
             made = self._others[-1].create_subscription(message, topic, print, qos, raw=True)
         self._taps.append((topic, kind, made))
 
-    def heard(self) -> Iterator[tuple[str, str, int, bytes]]:
+    def heard(self) -> Iterator[tuple[str, str, int, bytes, int]]:
         """Yield what was recorded since."""
         now_ns = self.now_ns
         for topic, kind, tap in self._taps:
             while (found := tap.handle.take_message(tap.msg_type, True)) is not None:
                 data, facts = found
                 sent_ns = facts["source_timestamp"] - self._began_ns
-                yield topic, kind, min(max(sent_ns, self._heard_ns), now_ns), bytes(data)
+                yield topic, kind, min(max(sent_ns, self._heard_ns), now_ns), bytes(data), 0
         self._heard_ns = now_ns
 
     def has_unread(self, node: str) -> bool:

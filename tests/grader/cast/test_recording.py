@@ -92,6 +92,15 @@ def test_a_sender_is_known_where_only_one_node_can_be_it(heard: Heard) -> None:
     assert [message.node for message in heard.trace().messages] == ["/node", ""]
 
 
+def test_of_several_programs_the_sender_is_known_by_its_link(heard: Heard) -> None:
+    heard.recorder.meet([TALKS._replace(id=1), TALKS._replace(node="/other", id=2)])
+    for program in (1, 2):
+        heard.recorder.heard("/chatter", STRING, 0, serialise(String(data="said")), program)
+    trace = heard.recorder.trace(625, (), {1: "talker-1", 2: "other-2"})
+    assert [message.node for message in trace.messages] == ["/node", "/other"]
+    assert trace.programs == {"/node": "talker-1", "/other": "other-2"}
+
+
 def test_a_program_that_is_called_like_a_peer_is_none(heard: Heard) -> None:
     heard.recorder.meet([TALKS._replace(node="/peer")])
     heard.hear("forged")

@@ -54,6 +54,13 @@ def test_calls_and_goals_last_from_the_question_to_the_answer(recorded):
     assert goal["t"] < min(goal["marks"]) <= max(goal["marks"]) < goal["end"]
 
 
+def test_each_of_several_programs_has_its_lanes():
+    folder = FOLDER / "talker_listener" / "right" / "official"
+    made = grader.record(folder, "talker_listener").nominal.trace
+    assert timeline.lanes(made) == ["/minimal_publisher", "/minimal_subscriber"]
+    assert timeline.labels(made)["/minimal_subscriber"] == "[listener-2] /minimal_subscriber"
+
+
 def page_of(recordings):
     render = load_scene("graph").player
     return render(playback.of("it", recordings, None))
@@ -107,9 +114,9 @@ def test_a_live_page_grows(recorded, browser):
         assert served.await_viewer(60)
         served.update(Grading("official.py", "nominal run"))
         lanes = timeline.lanes(made)
-        served.hear([{"t": 1.0, "lanes": lanes, "items": every[:2]}])
+        served.hear([{"t": 1.0, "lanes": lanes, "labels": {}, "items": every[:2]}])
         page.locator("#hops tr").nth(1).wait_for()
-        served.hear([{"t": 6.0, "lanes": lanes, "items": every[2:]}])
+        served.hear([{"t": 6.0, "lanes": lanes, "labels": {}, "items": every[2:]}])
         page.locator("#hops tr").nth(len(every) - 1).wait_for()
         assert "Hello World: 10" in page.locator("#hops").inner_text()
         assert "official.py" in page.locator("#state").inner_text()

@@ -246,7 +246,7 @@ def live() -> Iterator[TimelinePage]:
 def news(end_s: float, since_s: float = 0.0) -> dict[str, Any]:
     found = timeline.items(HOSTILE_RUN, round(since_s * 1e9))
     items = [each for each in found if each["t"] <= end_s]
-    return {"t": end_s, "lanes": timeline.lanes(HOSTILE_RUN), "items": items}
+    return {"t": end_s, "lanes": timeline.lanes(HOSTILE_RUN), "labels": {}, "items": items}
 
 
 def test_who_looks_back_stays_there_while_it_grows(live: TimelinePage, visit: Any) -> None:

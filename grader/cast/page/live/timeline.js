@@ -18,7 +18,7 @@ export class Timeline {
   constructor(element, onTime) {
     this.element = element;
     this.canvas = element("lanes");
-    this.lanes = [];
+    [this.lanes, this.labels] = [[], {}];
     this.items = [];
     this.end = 1;
     this.now = 0;
@@ -29,8 +29,8 @@ export class Timeline {
   }
 
   /** Another run, or more of one. */
-  set(lanes, items, end) {
-    this.lanes = lanes;
+  set(lanes, labels, items, end) {
+    [this.lanes, this.labels] = [lanes, labels];
     this.items = items;
     this.end = Math.max(end, 0.1);
     const names = [...new Set(items.map((item) => item.what))].sort().slice(0, CHOICES);
@@ -118,8 +118,9 @@ export class Timeline {
     line(pen, x(this.now), 0, x(this.now), height);
     for (const lane of this.lanes) {  // over all that is drawn, with a rim
       Object.assign(pen, { strokeStyle: color("--paper"), fillStyle: color("--ink"), lineWidth: 4, lineJoin: "round" });
-      pen.strokeText(lane, 4, y(lane) - 14);
-      pen.fillText(lane, 4, y(lane) - 14);
+      const label = this.labels[lane] ?? lane;
+      pen.strokeText(label, 4, y(lane) - 14);
+      pen.fillText(label, 4, y(lane) - 14);
     }
   }
 

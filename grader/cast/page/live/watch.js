@@ -12,7 +12,7 @@ const element = (id) => document.getElementById(id);
 
 await speakAsAsked();
 const items = new Map();
-let lanes = [];
+let lanes = [], labels = {};
 let now = 0;
 let looksAt = null;
 let grading = null;
@@ -32,7 +32,7 @@ function showSoon() {
   isDue = true;
   requestAnimationFrame(() => {
     isDue = false;
-    timeline.set(lanes, [...items.values()].sort((a, b) => a.t - b.t), now);
+    timeline.set(lanes, labels, [...items.values()].sort((a, b) => a.t - b.t), now);
     timeline.show(looksAt ?? now);
     element("slider").max = now;
     element("slider").value = looksAt ?? now;
@@ -44,7 +44,7 @@ function showSoon() {
 function take(news) {
   if (news.begins) { items.clear(); looksAt = null; }
   for (const item of news.items) items.set(item.id, item);
-  [lanes, now] = [news.lanes, news.t];
+  [lanes, labels, now] = [news.lanes, news.labels, news.t];
   if (news.grading?.heading) {
     grading = news.grading;
     tellGrading(element, grading);
