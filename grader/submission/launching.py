@@ -94,7 +94,7 @@ class Launched:
     @property
     def found(self) -> Message:
         """A sentence for the user."""
-        names = listed(each.called for each in self.scripts)
+        names = listed({each.name: each.called for each in self.scripts}.values())
         return msg("{file}, which starts {names}", file=shown(self.file), names=names)
 
 

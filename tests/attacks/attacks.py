@@ -170,7 +170,7 @@ ATTACKS |= {
     if each.make is None and each.time == "virtual" and not each.beside
     if each.about not in (RUBRIC, SIMULATOR, READING)
 }
-ATTACKS["attacks_the_other"] = Attack(PROCESSES, ALL, is_second=True)
+ATTACKS["attacks_the_other"] = Attack(PROCESSES, is_second=True)
 
 #: With limits only: what may get what it is after, but leaves the grader and the next one alone.
 SURVIVED_AT_LIMITS = {"daemons", "daemons_of_libc", "takes_folders_away"}

@@ -136,6 +136,23 @@ def test_what_a_launch_file_does_besides_is_followed_or_named(
     assert any(each.startswith(note) for each in notes(submission)) or not note
 
 
+def test_what_is_started_again_is_said_once(tmp_path: Path) -> None:
+    text = LIST.format(f"{DRIVE}, {THIRD.format(', respawn=True')}")
+    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
+    assert names(submission) == ["turtle_controller-1", *["pen_node-2"] * 4]
+    assert str(submission.found) == "launch/a.launch.py, which starts turtle_controller, pen_node"
+
+
+def test_a_launch_file_that_starts_a_program_in_cpp_cannot_be_graded(tmp_path: Path) -> None:
+    both = LIST.format(f"{DRIVE}, Node(package='arm', executable='move')")
+    files = {f"spiral/{name}": text for name, text in TWO.items()}
+    files |= {"spiral/launch/a.launch.py": both, "arm/CMakeLists.txt": "project(arm)\n"}
+    files |= {"arm/package.xml": "<package><name>arm</name></package>"}
+    lay(tmp_path, files)
+    with pytest.raises(SubmissionError, match=r"starts arm move, which is not in Python. Only"):
+        opened(tmp_path)
+
+
 def test_what_a_timer_starts_is_started_later(tmp_path: Path) -> None:
     timer = "TimerAction(period={}, actions=[{}])"
     inner = timer.format("1.5", PENS)
