@@ -62,7 +62,7 @@ _PYTHON: Final = re.compile(r"python3?(\.\d+)?")
 WITH_THE_LAUNCH, NEVER = -1, -2
 
 
-class Moment(NamedTuple):
+class LaunchMoment(NamedTuple):
     """When something happens: so long after the end of a program, or one of these."""
 
     after: int
@@ -78,7 +78,7 @@ class Waiting(NamedTuple):
         scope: the locals of their context.
     """
 
-    when: Moment
+    when: LaunchMoment
     number: int
     entities: Any
     place: tuple[int, ...]
@@ -123,7 +123,7 @@ class LaunchRecord:
         self.sources: list[str] = []
         # Of what is visited now: when it happens, whether something else has to happen before, and
         # its place; a node's in the trace is that of what it waits for.
-        self._when, self._is_later = Moment(WITH_THE_LAUNCH, 0.0), False
+        self._when, self._is_later = LaunchMoment(WITH_THE_LAUNCH, 0.0), False
         self._place_of, self._numbers = tuple[int, ...](), itertools.count()
         self._waiting: list[Waiting] = []
         #: with their places
@@ -209,7 +209,7 @@ class LaunchRecord:
                 delay_s=self._when.delay_s,
             )
         )
-        for when, on in ((self._when, "start"), (Moment(number, 0.0), "exit")):
+        for when, on in ((self._when, "start"), (LaunchMoment(number, 0.0), "exit")):
             if self._when.after != NEVER:
                 self._put(when, (on, action), is_later=True)
 
@@ -242,13 +242,13 @@ class LaunchRecord:
     def later(self, entities: Any, delay_s: float) -> None:
         """Actions that are done so long after this [s]."""
         after, before_s = self._when
-        self._put(Moment(after, before_s + delay_s), entities, is_later=self._is_later)
+        self._put(LaunchMoment(after, before_s + delay_s), entities, is_later=self._is_later)
 
     def handler(self, handler: Any) -> None:
         """Actions that are done when something has happened."""
         self._handlers.append((handler, self._next_place()))
 
-    def _put(self, when: Moment, entities: Any, *, is_later: bool) -> None:
+    def _put(self, when: LaunchMoment, entities: Any, *, is_later: bool) -> None:
         scope = dict(self.context.locals_)
         number, place = next(self._numbers), self._next_place()
         if len(self._waiting) < _MOST * 2:
@@ -266,7 +266,9 @@ class LaunchRecord:
         while self._handlers:
             handler, place = self._handlers.pop(0)
             scope = dict(self.context.locals_)
-            self._do(Waiting(Moment(NEVER, 0.0), 0, handler.entities, place, scope, is_later=True))
+            self._do(
+                Waiting(LaunchMoment(NEVER, 0.0), 0, handler.entities, place, scope, is_later=True)
+            )
 
     def _do(self, waiting: Waiting) -> None:
         from launch._core import walk
