@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
-import itertools
 import json
 import os
 import re
@@ -12,10 +10,11 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Final, NamedTuple
+from typing import Annotated, Any, Final
 
 from grader.inspection.answer import LaunchOrder, LaunchStart
 from grader.inspection.examining import commands, external, known, paths
+from grader.inspection.examining.launch_time import NEVER, WITH_THE_LAUNCH, LaunchTime
 from grader.inspection.examining.layout import Workspace
 from grader.inspection.examining.steps import LIMITS, NotKnown, end_of, it
 from grader.inspection.trace import (
@@ -59,33 +58,6 @@ _OF_A_SHELL: Final = re.compile(r"[;&|<>$`*?~\n]")
 _PYTHON: Final = re.compile(r"python3?(\.\d+)?")
 
 
-WITH_THE_LAUNCH, NEVER = -1, -2
-
-
-class LaunchMoment(NamedTuple):
-    """When something happens: so long after the end of a program, or one of these."""
-
-    after: int
-    delay_s: float
-
-
-class Waiting(NamedTuple):
-    """Actions that wait for their moment.
-
-    Attributes:
-        number: what comes first at one moment.
-        place: of what has them wait, among all that is visited.
-        scope: the locals of their context.
-    """
-
-    when: LaunchMoment
-    number: int
-    entities: Any
-    place: tuple[int, ...]
-    scope: dict[str, Any]
-    is_later: bool
-
-
 @dataclass(frozen=True)
 class Evaluated:
     """What was taken down of a launch file.
@@ -121,13 +93,8 @@ class LaunchRecord:
         self._depth = 0
         #: descriptions that were read, in their order
         self.sources: list[str] = []
-        # Of what is visited now: when it happens, whether something else has to happen before, and
-        # its place; a node's in the trace is that of what it waits for.
-        self._when, self._is_later = LaunchMoment(WITH_THE_LAUNCH, 0.0), False
-        self._place_of, self._numbers = tuple[int, ...](), itertools.count()
-        self._waiting: list[Waiting] = []
+        self._time = LaunchTime(self)
         #: with their places
-        self._handlers: list[tuple[Any, tuple[int, ...]]] = []
         self._nodes: list[tuple[tuple[int, ...], LaunchedNode]] = []
 
     def evaluated(
@@ -172,8 +139,8 @@ class LaunchRecord:
         words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
         made = {**self._from_where(node), **words, "parameters": parameters}
         if len(self._nodes) < _MOST:  # one may be there twice
-            launched = LaunchedNode(**made, later=self._is_later)
-            self._nodes.append((self._next_place(), launched))
+            launched = LaunchedNode(**made, later=self._time.is_later)
+            self._nodes.append((self._time.next_place(), launched))
         package, executable = node["package"], node["executable"]
         script = self._program_file(package, executable)
         start = LaunchStart("", package, executable, script, tuple(ros), tuple(lacking))
@@ -197,6 +164,7 @@ class LaunchRecord:
                 from launch.event_handlers import OnProcessExit
 
                 self.handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
+        after, delay_s = self._time.when
         words, lacking = self._with_sources(start.words)
         starts.append(
             replace(
@@ -205,13 +173,11 @@ class LaunchRecord:
                 executable=start.executable[:LONG],
                 words=words,
                 lacking=(*start.lacking, *lacking)[:_MOST],
-                after={WITH_THE_LAUNCH: None, NEVER: -1}.get(self._when.after, self._when.after),
-                delay_s=self._when.delay_s,
+                after={WITH_THE_LAUNCH: None, NEVER: -1}.get(after, after),
+                delay_s=delay_s,
             )
         )
-        for when, on in ((self._when, "start"), (LaunchMoment(number, 0.0), "exit")):
-            if self._when.after != NEVER:
-                self._put(when, (on, action), is_later=True)
+        self._time.started(number, action)
 
     def _with_sources(self, words: Sequence[str]) -> tuple[tuple[str, ...], list[str]]:
         """Arguments with the submission's files where they come from; and what cannot be given."""
@@ -219,7 +185,7 @@ class LaunchRecord:
         for word in words:
             shown = self._source(word) or word
             fits = str(self._place.prefix) not in shown and "\0" not in shown and len(shown) < 1000
-            (given if fits else lacking).append(shown[:LONG])
+            (given if fits else lacking).append(shown if fits else shown[:LONG])
             if not fits and given[-1:] in (["-p"], ["-r"], ["--params-file"]):
                 given.pop()
         return tuple(given[:_MOST]), lacking
@@ -237,55 +203,17 @@ class LaunchRecord:
         meant = self._place.meant(str(path)) if name.endswith(".py") and paths.is_file(path) else ""
         return self._source(meant) if meant else ""
 
-    # What happens later -------------------------------------------------------------------------
-
     def later(self, entities: Any, delay_s: float) -> None:
         """Actions that are done so long after this [s]."""
-        after, before_s = self._when
-        self._put(LaunchMoment(after, before_s + delay_s), entities, is_later=self._is_later)
+        self._time.later(entities, delay_s)
 
     def handler(self, handler: Any) -> None:
         """Actions that are done when something has happened."""
-        self._handlers.append((handler, self._next_place()))
-
-    def _put(self, when: LaunchMoment, entities: Any, *, is_later: bool) -> None:
-        scope = dict(self.context.locals_)
-        number, place = next(self._numbers), self._next_place()
-        if len(self._waiting) < _MOST * 2:
-            heapq.heappush(self._waiting, Waiting(when, number, entities, place, scope, is_later))
-
-    def _next_place(self) -> tuple[int, ...]:
-        return (*self._place_of, next(self._numbers))
+        self._time.handler(handler)
 
     def let_time_pass(self) -> None:
-        """Do what waits; and last what waits for something that never comes."""
-        for _ in range(_MOST * 4):
-            if not self._waiting:
-                break
-            self._do(heapq.heappop(self._waiting))
-        while self._handlers:
-            handler, place = self._handlers.pop(0)
-            scope = dict(self.context.locals_)
-            self._do(
-                Waiting(LaunchMoment(NEVER, 0.0), 0, handler.entities, place, scope, is_later=True)
-            )
-
-    def _do(self, waiting: Waiting) -> None:
-        from launch._core import walk
-        from launch.events import Happened
-
-        self._when, self._place_of, self._is_later = waiting.when, waiting.place, waiting.is_later
-        self.context.locals_ = {"event": Happened(), **waiting.scope}
-        if isinstance(waiting.entities, tuple):  # what a program has done
-            on, action = waiting.entities
-            met = [e for e in self._handlers if e[0].on == on and e[0].target is action is not None]
-            for handler in reversed(met):
-                self._handlers.remove(handler)
-                self._do(waiting._replace(entities=handler[0].entities, place=handler[1]))
-        elif callable(waiting.entities):
-            self.ignored("a function for an event")
-        else:
-            walk(waiting.entities, self.context)
+        """Do what waits."""
+        self._time.let_pass()
 
     def skipped(self, node: dict[str, Any]) -> None:
         """A node that would start on a condition that is not met."""

@@ -54,10 +54,10 @@ def generate_launch_description():
             RegisterEventHandler(
                 OnProcessExit(
                     target_action=worker,
-                    on_exit=[
+                    on_exit=(
                         second,
                         TimerAction(period=0.5, actions=[OpaqueFunction(function=later)]),
-                    ],
+                    ),
                 )
             ),
             RegisterEventHandler(
