@@ -37,6 +37,8 @@ _ANSWER, _HIT, _END = b"=", b"!", b"."
 _GRACE_S = 10.0
 #: How often a copy is checked for a stall [s].
 _STALL_CHECK_S = 0.5
+#: How much memory this process had when that could be read last [bytes].
+_size = 0
 _ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIGPIPE")
 
 
@@ -142,12 +144,13 @@ class _Copy:
         for output in (sys.stdout, sys.stderr):
             with suppress(AttributeError, OSError, ValueError):  # there may be none
                 output.flush()
+        size = _size_bytes()
         with warnings.catch_warnings():
             # Of forking beside other threads; see `stream`.
             warnings.simplefilter("ignore", DeprecationWarning)
             self._pid = os.fork()
         if self._pid == 0:
-            _be_copy(work, limits, ours)
+            _be_copy(work, limits, ours, size)
         os.close(ours)
 
     def answers(self, is_stalled: Callable[[], bool]) -> Iterator[bytes]:
@@ -241,11 +244,11 @@ class _Copy:
 # In the copy ----------------------------------------------------------------------------------
 
 
-def _be_copy(work: Work, limits: WorkLimits, answers: int) -> NoReturn:
+def _be_copy(work: Work, limits: WorkLimits, answers: int, size_bytes: int) -> NoReturn:
     code, copy = 1, os.getpid()
     try:
         gc.freeze()  # searching all that is inherited for garbage would copy it, and use memory
-        _confine(limits, answers)
+        _confine(limits, answers, size_bytes)
         _print_to_standard_error()
         signal.setitimer(signal.ITIMER_PROF, limits.cpu_s)
         signal.setitimer(signal.ITIMER_REAL, limits.wall_s)
@@ -268,8 +271,17 @@ def _be_copy(work: Work, limits: WorkLimits, answers: int) -> NoReturn:
         os._exit(code)
 
 
-def _confine(limits: WorkLimits, kept: int) -> None:
-    """Keep the effects of this copy to itself, and set its limits."""
+def _size_bytes() -> int:
+    """Return how much memory this process has, as far as `RLIMIT_AS` counts it."""
+    global _size
+    with suppress(PermissionError):  # a copy may not read that at `landlock`: as it was before
+        text = (system.PROC / "self" / "statm").read_text(encoding="ascii")
+        _size = int(text.split()[0]) * os.sysconf("SC_PAGE_SIZE")
+    return _size
+
+
+def _confine(limits: WorkLimits, kept: int, size_bytes: int) -> None:
+    """Keep the effects of this copy to itself, and set its limits; it had that size."""
     import resource  # here: Windows has none
 
     from grader import linux
@@ -281,8 +293,7 @@ def _confine(limits: WorkLimits, kept: int) -> None:
     linux.signal_at_parents_death(signal.SIGKILL)
     # A process that waits for the end of one of our sockets is not to wait for this copy.
     linux.close_descriptors((0, 1, 2, kept))
-    pages = int((system.PROC / "self" / "statm").read_text(encoding="ascii").split()[0])
-    most = pages * linux.PAGE_BYTES + limits.memory_bytes
+    most = size_bytes + limits.memory_bytes
     linux.lower_limit(resource.RLIMIT_AS, most, resource.RLIM_INFINITY)
     linux.lower_limit(resource.RLIMIT_CORE, 0, resource.RLIM_INFINITY)
 

@@ -82,7 +82,8 @@ class RunContext:
         )
         submission = submission.moved(confinement.copy)
         env = {**self.env, **env, **confinement.env}
-        fds = (*fds, meeting.fileno())
+        if "meeting" in (confinement.order or ()):
+            fds = (*fds, meeting.fileno())
         command = ProcessCommand(
             words(submission), env, submission.root, fds, self.namespaces, confinement.order
         )

@@ -189,8 +189,8 @@ def make_stubs(stubs: Path, declared: set[str], own: set[str]) -> None:
             _touch(stubs / MARKS / name, stubs)
     xacro = stubs / "bin" / "xacro"
     xacro.parent.mkdir()
+    xacro.touch(0o755)  # not by chmod, which is refused at the level `landlock`
     xacro.write_text(f"#!{sys.executable}\nimport xacro\n\nxacro.main()\n")
-    xacro.chmod(0o755)
 
 
 def _left(package: SourcePackage, installed: set[str]) -> tuple[str, ...]:
