@@ -32,27 +32,23 @@ _PLACE = re.compile(r" \([^()]*, line \d+\)$")
 #: So much of an exception's text is in the cause, which is to be one short sentence [characters].
 _LONGEST_ERROR = 120
 #: What the error or its line shows -> what to do.
-_NOT_PYTHON = (
-    (
-        re.compile(r"invalid character '[\u2018-\u201f\u00ab\u00bb]"),
-        msg("These quotes are typographic, as a word processor writes them: type \" or ' instead."),
+_NOT_PYTHON = {
+    r"invalid character '[\u2018-\u201f\u00ab\u00bb]": msg(
+        "These quotes are typographic, as a word processor writes them: type \" or ' instead."
     ),
-    (re.compile(r"\n.*\belse if\b"), msg("Python's word is elif: write elif CONDITION:")),
-    (re.compile(r"\n.*(?:&&|\|\|)"), msg("In Python && is `and`, || is `or`, and ! is `not`.")),
-    (
-        re.compile(r"leading zeros in decimal integer"),
-        msg("A number has a point, not a comma: 0.01. And it does not begin with 0 otherwise."),
+    r"\n.*\belse if\b": msg("Python's word is elif: write elif CONDITION:"),
+    r"\n.*(?:&&|\|\|)": msg("In Python && is `and`, || is `or`, and ! is `not`."),
+    r"leading zeros in decimal integer": msg(
+        "A number has a point, not a comma: 0.01. And it does not begin with 0 otherwise."
     ),
-    (re.compile(r"Maybe you meant '=='"), msg("Compare by ==; a single = assigns a value.")),
-    (
-        re.compile(r"expected ':'"),
-        msg("A line that begins a block ends with a colon: write it at the end of that line."),
+    r"Maybe you meant '=='": msg("Compare by ==; a single = assigns a value."),
+    r"expected ':'": msg(
+        "A line that begins a block ends with a colon: write it at the end of that line."
     ),
-    (
-        re.compile(r"'[(\[{]' was never closed"),
-        msg("A bracket is not closed: count those of that line, and add the one that is missing."),
+    r"'[(\[{]' was never closed": msg(
+        "A bracket is not closed: count those of that line, and add the one that is missing."
     ),
-)
+}
 _COLOURS = ("r", "g", "b")
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 #: For people who do not know the kernel's words.
@@ -89,11 +85,9 @@ def unreadable(case: Case) -> Diagnosis | None:
             "Look at that line and the one above it: a bracket, quote or colon that"
             " is missing is noticed only where something else begins."
         )
-        code = raised.place.text if raised.place is not None else ""
-        for pattern, advice in _NOT_PYTHON:
-            if pattern.search(f"{text}\n{code}"):
-                help_ = advice
-                break
+        shown = f"{text}\n{raised.place.text if raised.place is not None else ''}"
+        fitting = (advice for sign, advice in _NOT_PYTHON.items() if re.search(sign, shown))
+        help_ = next(fitting, help_)
         if raised.type != "SyntaxError":
             help_ = msg(
                 "Look at the spaces at the beginning of that line and the one above it: lines "

@@ -27,42 +27,35 @@ from grader.recording.observations import End, LintFinding, LintKind
 _SAY_MORE = ("at_wall", "uncalled", "always", "local", "unread")
 
 _COLOURS = "look at its conditions"
-#: Kind of a finding -> a word of the checks that it may explain, '' for all; cause and help.
-_MEANT: dict[LintKind, tuple[str, Message, Message]] = {
-    "compared": (
-        "",
-        msg("`{name}` compares, and sets nothing{where}."),
-        msg("Write = for ==."),
-    ),
-    "always": ("driving", msg("`{name}`{where} is always true."), NOTHING),
-    "adds_nothing": ("", msg("`{name}`{where} lets nothing grow."), NOTHING),
+#: Kind of a finding that explains some checks only -> words of theirs.
+_ABOUT: dict[LintKind, str] = {
+    **dict.fromkeys(("late", "degrees", "overrules", "twice", "shared"), _COLOURS),
+    **{"always": "driving", "heads": "into a quadrant gave", "quiet": "was not logged"},
+    "grows": "grew by",
+}
+#: Kind of a finding -> cause and help.
+_MEANT: dict[LintKind, tuple[Message, Message]] = {
+    "compared": (msg("`{name}` compares, and sets nothing{where}."), msg("Write = for ==.")),
+    "always": (msg("`{name}`{where} is always true."), NOTHING),
+    "adds_nothing": (msg("`{name}`{where} lets nothing grow."), NOTHING),
     "no_effect": (
-        "",
         msg("Nothing uses what `{name}`{where} is."),
         msg("Write return before it, if that is what you mean."),
     ),
-    "plus": (
-        "",
-        msg("`{code}`{where} sets it anew each time, and adds nothing."),
-        msg("Write +=."),
-    ),
+    "plus": (msg("`{code}`{where} sets it anew each time, and adds nothing."), msg("Write +=.")),
     "resets": (
-        "",
         msg("`{code}`{where} sets {name} anew each time, so what is added to it is lost."),
         msg("Set it once, before: in __init__ or before the loop, and keep it as self.{name}."),
     ),
     "sides": (
-        "",
         msg("`{code}`{where} sets the argument, not {near}."),
         msg("Exchange the sides: {near} = {name}."),
     ),
     "unpublished": (
-        "",
         msg("`{name}`{where} is filled, and never sent."),
         msg("Write publish({name}), or call_async({name}) for a request, behind it."),
     ),
     "default": (
-        "",
         msg(
             "`{name}`{where} is worked out once, when Python reads the function, and stays"
             " the same."
@@ -70,12 +63,10 @@ _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
         msg("Ask for the time in the function, not in its arguments."),
     ),
     "other_text": (
-        "",
         msg("`{code}`{where} compares with {name}; what is set is {near}."),
         msg("Write the same text in both places, letter by letter."),
     ),
     "late": (
-        _COLOURS,
         msg(
             "`{name}` in the lambda{where} is looked up when that is called: then the loop"
             " is over, and it is the last one."
@@ -83,12 +74,10 @@ _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
         msg("Write lambda {name}={name}: there, which keeps each."),
     ),
     "degrees": (
-        _COLOURS,
         msg("`{name}`{where}: the angle is in radians, not in degrees."),
         msg("A full turn is 2 * math.pi; or use math.degrees(...)."),
     ),
     "overrules": (
-        _COLOURS,
         msg(
             "This `if`{where} begins anew, and its else sets {name} again, whatever the if "
             "above has set."
@@ -96,27 +85,22 @@ _MEANT: dict[LintKind, tuple[str, Message, Message]] = {
         msg("Write elif for if."),
     ),
     "twice": (
-        _COLOURS,
         msg("`{code}`{where} sets again what the line before it has set."),
         msg("One of the two is meant for another name."),
     ),
     "shared": (
-        _COLOURS,
         msg("`{name}`{where} is one and the same object, several times."),
         msg("Make each for itself: [... for _ in range(4)]."),
     ),
     "heads": (
-        "into a quadrant gave",
         msg("`{name}`{where} is where the turtle looks, not where it is."),
         msg("Take the quadrant from x and y of the pose."),
     ),
     "quiet": (
-        "was not logged",
         msg("`{code}`{where} logs at the level debug, which is not shown."),
         msg("Log it with self.get_logger().info(...)."),
     ),
     "grows": (
-        "grew by",
         msg("`{code}`{where} is done with each message, in {near}(): many times a second."),
         msg("Move it to where you publish."),
     ),
@@ -147,16 +131,14 @@ _NOT_TAKEN: dict[str, tuple[Message, Message]] = {
     ),
 }
 #: What tf2 says of a transform that is not found -> what to do.
-_LOOKED_UP = (
-    (
-        "does not exist",
-        msg("Only TransformListener(self.buffer, self) fills a tf2 buffer: is there one?"),
+_LOOKED_UP = {
+    "does not exist": msg(
+        "Only TransformListener(self.buffer, self) fills a tf2 buffer: is there one?"
     ),
-    (
-        "extrapolation into the future",
-        msg("Ask for the newest transform: rclpy.time.Time() for the time, and not now()."),
+    "extrapolation into the future": msg(
+        "Ask for the newest transform: rclpy.time.Time() for the time, and not now()."
     ),
-)
+}
 
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
@@ -240,7 +222,8 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
         is_tried = how == "past" and finding.name.startswith("try")
         cause, help_ = _NOT_TAKEN["tried" if is_tried else how if how in _NOT_TAKEN else "past"]
         if is_tried:
-            help_ = next((advice for text, advice in _LOOKED_UP if text in case.tail), help_)
+            fitting = (advice for text, advice in _LOOKED_UP.items() if text in case.tail)
+            help_ = next(fitting, help_)
         if (kept := stays.get(finding.place)) is not None:
             help_ = msg(
                 "Nothing sets {name} after the start: which line should?",
@@ -255,9 +238,9 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
 
 def _misunderstood(found: Diagnosis, case: Case) -> Diagnosis | None:
     """Add what the source says otherwise than it was meant, where that may cost the points."""
-    for kind, (about, cause, help_) in _MEANT.items():
-        for finding in of_kind(case, kind) if about in found.spoken else ():
-            return _explained(found, finding, cause, help_)
+    for kind in _MEANT:
+        for finding in of_kind(case, kind) if _ABOUT.get(kind, "") in found.spoken else ():
+            return _explained(found, finding, *_MEANT[kind])
     return None
 
 

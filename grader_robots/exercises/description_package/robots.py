@@ -130,7 +130,8 @@ def of_text(where: str | Message, text: str) -> Finding:
                 line=line,
                 consequence=what,
             )
-            return Finding(share, rationale, _help(findings[0].text))
+            said = findings[0].text
+            return Finding(share, rationale, next(_HELP[words] for words in _HELP if words in said))
     assert model is not None
     fault = next(faults(model), "")
     if fault:
@@ -142,24 +143,21 @@ def of_text(where: str | Message, text: str) -> Finding:
     return Finding(1, NOTHING)
 
 
-def _help(text: str) -> Message:
-    if "root link" in text:
-        return msg(
-            "Every link but one is the child of exactly one joint. Which has none, or is misspelt?"
-        )
-    if "is not unique" in text:
-        return msg(
-            "Each name is given once: two parts are called the same, or a macro is used twice."
-        )
-    if "limit" in text:
-        return msg('Such a joint needs <limit lower="" upper="" effort="" velocity=""/>.')
-    if "PARSING_DECLARATION" in text:
-        return msg(
-            "A declaration such as <?xml ...?> stands at the very start: take the other away."
-        )
-    if "XML" in text:
-        return msg("The file is no XML: look for a tag that is not closed, at the line or above.")
-    return msg("`check_urdf FILE` prints the same line; the element that it names is at fault.")
+#: What urdfdom says -> what to do. The first that fits counts, '' always.
+_HELP: Final = {
+    "root link": msg(
+        "Every link but one is the child of exactly one joint. Which has none, or is misspelt?"
+    ),
+    "is not unique": msg(
+        "Each name is given once: two parts are called the same, or a macro is used twice."
+    ),
+    "limit": msg('Such a joint needs <limit lower="" upper="" effort="" velocity=""/>.'),
+    "PARSING_DECLARATION": msg(
+        "A declaration such as <?xml ...?> stands at the very start: take the other away."
+    ),
+    "XML": msg("The file is no XML: look for a tag that is not closed, at the line or above."),
+    "": msg("`check_urdf FILE` prints the same line; the element that it names is at fault."),
+}
 
 
 def faults(model: Model) -> Iterator[Message]:
@@ -258,75 +256,49 @@ _ABOVE: Final = msg(
     "a tag that is not closed, or closed by another name, stands at that line or above."
 )
 #: What xacro says -> what to do. The first that fits counts.
-_ADVICE: Final = (
-    (
-        "unbound prefix",
-        msg(
-            "The first tag has to say what xacro: is: "
-            '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name=...>.'
-        ),
+_ADVICE: Final = {
+    "unbound prefix": msg(
+        "The first tag has to say what xacro: is: "
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name=...>.'
     ),
-    ("mismatched tag", msg("The line is where it was noticed: {above}", above=_ABOVE)),
-    ("no element found", msg("The file ends too soon: {above}", above=_ABOVE)),
-    (
-        "XML or text declaration not at start",
-        msg("<?xml ...?> stands at the very start of a file: take away what is above it."),
+    "mismatched tag": msg("The line is where it was noticed: {above}", above=_ABOVE),
+    "no element found": msg("The file ends too soon: {above}", above=_ABOVE),
+    "XML or text declaration not at start": msg(
+        "<?xml ...?> stands at the very start of a file: take away what is above it."
     ),
-    (
-        "not well-formed",
-        msg(
-            "Look at that place: a quotation mark that is missing, a < or & that is"
-            " meant as it stands, or -- within a comment."
-        ),
+    "not well-formed": msg(
+        "Look at that place: a quotation mark that is missing, a < or & that is"
+        " meant as it stands, or -- within a comment."
     ),
-    (
-        "unknown macro name",
-        msg(
-            "A macro is defined by <xacro:macro name=...>, or in a file that is "
-            "included, above where it is used. Compare the names."
-        ),
+    "unknown macro name": msg(
+        "A macro is defined by <xacro:macro name=...>, or in a file that is "
+        "included, above where it is used. Compare the names."
     ),
-    (
-        "Undefined parameters",
-        msg(
-            "The macro's params asks for them: each use of it has to give them, "
-            "unless params has a default (NAME:=VALUE)."
-        ),
+    "Undefined parameters": msg(
+        "The macro's params asks for them: each use of it has to give them, "
+        "unless params has a default (NAME:=VALUE)."
     ),
-    (
-        "Invalid parameter",
-        msg(
-            "The macro has no such parameter: add it to its params, or leave it out"
-            " where it is used."
-        ),
+    "Invalid parameter": msg(
+        "The macro has no such parameter: add it to its params, or leave it out where it is used."
     ),
-    (
-        "No such file or directory",
-        msg(
-            "A name in <xacro:include filename=...> is looked for beside the file that includes "
-            "it, where it is installed: is it there, and in data_files?"
-        ),
+    "No such file or directory": msg(
+        "A name in <xacro:include filename=...> is looked for beside the file that includes "
+        "it, where it is installed: is it there, and in data_files?"
     ),
-    (
-        "a file of another package",
-        msg(
-            "$(find NAME) takes the name of a package: of your own, as package.xml has it, for "
-            "your own files. Another one has to be installed where this is graded."
-        ),
+    "a file of another package": msg(
+        "$(find NAME) takes the name of a package: of your own, as package.xml has it, for "
+        "your own files. Another one has to be installed where this is graded."
     ),
-    (
-        "codec can't decode",
-        msg("Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."),
+    "codec can't decode": msg(
+        "Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."
     ),
-    (
-        "sequence by non-int",
-        msg("A number is a text here: decimals take a point, 0.11, not a comma, and no unit."),
+    "sequence by non-int": msg(
+        "A number is a text here: decimals take a point, 0.11, not a comma, and no unit."
     ),
-    (
-        "Undefined substitution argument",
-        msg("<xacro:arg name=... default=...> has to come before $(arg ...) is used."),
+    "Undefined substitution argument": msg(
+        "<xacro:arg name=... default=...> has to come before $(arg ...) is used."
     ),
-)
+}
 _UNDEFINED: Final = re.compile(r"name '(\w+)' is not defined")
 
 
@@ -347,4 +319,4 @@ def xacro_advice(errors: str) -> Message:
             "Compare letter by letter.",
             name=undefined[1],
         )
-    return next((help for words, help in _ADVICE if words in errors), _BY_HAND)
+    return next((help for words, help in _ADVICE.items() if words in errors), _BY_HAND)
