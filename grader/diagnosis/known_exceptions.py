@@ -259,8 +259,7 @@ _RULES = (
         msg("super stands there without parentheses"),
     ),
     _Rule(
-        r"^InvalidNodeNameException: ",
-        msg("Write letters, digits and _ only, as in 'my_node'."),
+        r"^InvalidNodeNameException: ", msg("Write letters, digits and _ only, as in 'my_node'.")
     ),
     # a class instead of an instance of it
     _Rule(
@@ -373,10 +372,7 @@ _RULES = (
         code=r"(?P<name>\b[A-Za-z_][\w.]{0,60})\[",
     ),
     # a Parameter instead of its value, or one that was not declared
-    _Rule(
-        r"^ParameterNotDeclaredException: .*parameter\(s\): (?P<name>[\w.]{1,60})",
-        _DECLARE,
-    ),
+    _Rule(r"^ParameterNotDeclaredException: .*parameter\(s\): (?P<name>[\w.]{1,60})", _DECLARE),
     _Rule(r"^ParameterNotDeclaredException: ", _DECLARE.given(name="NAME")),
     _Rule(r"^TypeError: .*'Parameter'", OF_A_PARAMETER),
     # None, a name that is not there, a spin within a spin

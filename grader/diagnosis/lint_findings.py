@@ -9,15 +9,7 @@ import math
 import re
 from collections.abc import Callable
 
-from grader.diagnosis.case import (
-    Case,
-    diagnosed,
-    diagnosed_by,
-    excerpt,
-    first_of,
-    line,
-    of_kind,
-)
+from grader.diagnosis.case import Case, diagnosed, diagnosed_by, excerpt, first_of, line, of_kind
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.standstill import hears_once, never_spins
 from grader.message import Message, msg

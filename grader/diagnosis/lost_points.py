@@ -226,8 +226,7 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
             help_ = next(fitting, help_)
         if (kept := stays.get(finding.place)) is not None:
             help_ = msg(
-                "Nothing sets {name} after the start: which line should?",
-                name=excerpt(kept.name),
+                "Nothing sets {name} after the start: which line should?", name=excerpt(kept.name)
             )
         if goal == "branch" and end is None:
             help_ = NOTHING  # the check's own stays

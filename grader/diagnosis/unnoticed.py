@@ -5,15 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import PurePath
 
-from grader.diagnosis.case import (
-    Case,
-    after,
-    diagnosed,
-    excerpt,
-    function,
-    is_library,
-    sentences,
-)
+from grader.diagnosis.case import Case, after, diagnosed, excerpt, function, is_library, sentences
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import explain
 from grader.message import NOTHING, Message, joined, msg, plain_text

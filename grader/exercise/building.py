@@ -147,9 +147,7 @@ def _without_clock(data: Mapping[str, Any], scene: str) -> Limits:
     for part in ("limits", "varied_runs"):
         if data.get(part):
             raise Mistake(
-                (part,),
-                "nothing is started in the scene {scene}: leave it out",
-                scene=repr(scene),
+                (part,), "nothing is started in the scene {scene}: leave it out", scene=repr(scene)
             )
     return NO_LIMITS
 

@@ -137,10 +137,7 @@ def _accepts_two(function: CheckFunction) -> bool:
 
 
 def judge(
-    recordings: Recordings,
-    checks: Checks,
-    points: Mapping[str, float],
-    tolerances: Tolerances,
+    recordings: Recordings, checks: Checks, points: Mapping[str, float], tolerances: Tolerances
 ) -> list[Verdict]:
     """Run every check that the exercise gives points for.
 
@@ -212,10 +209,7 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
     if missing:
         titles = [msg("“{title}”", title=earlier[name].title) for name in missing]
         return not_judged(
-            msg(
-                "Not judged, because {titles} did not pass.",
-                titles=chained(titles),
-            ),
+            msg("Not judged, because {titles} did not pass.", titles=chained(titles)),
             msg("Look at {title} first.", title=titles[0]),
         )
     try:

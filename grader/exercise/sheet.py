@@ -49,10 +49,7 @@ def sheet(exercise: Exercise, subject: Subject, start: Start) -> str:
     """Return the sheet."""
     trial = subject.how_to_try(start.program, start.package)
     parts = (
-        [
-            f"# {translate(exercise.title)}",
-            in_force(translate(exercise.task), exercise.tolerances),
-        ],
+        [f"# {translate(exercise.title)}", in_force(translate(exercise.task), exercise.tolerances)],
         _judged(exercise, subject),
         _tolerances(exercise),
         [_heading(tr("How to try it")), trial] if trial else [],

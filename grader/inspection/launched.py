@@ -6,14 +6,7 @@ from collections.abc import Sequence
 
 from grader import text
 from grader.inspection.error_texts import described, placed
-from grader.inspection.trace import (
-    PREFIX,
-    Lacking,
-    LaunchedNode,
-    LaunchFile,
-    PackageTrace,
-    Skipped,
-)
+from grader.inspection.trace import PREFIX, Lacking, LaunchedNode, LaunchFile, PackageTrace, Skipped
 from grader.message import NOTHING, Message, Text, joined, msg, msg_many, plain_text
 from grader.recording.view import Cell, Table
 

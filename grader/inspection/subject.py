@@ -106,11 +106,7 @@ class PackageSubject(Subject):
         if trace.setup is None:
             return []
         found = [
-            msg(
-                "{file} could not be evaluated: {why}",
-                file=launch.file,
-                why=launch.problem.text,
-            )
+            msg("{file} could not be evaluated: {why}", file=launch.file, why=launch.problem.text)
             for launch in trace.launches
             if launch.problem is not None and launch.problem.kind == "unknown"
         ]

@@ -34,7 +34,7 @@ _Service = _struct(
     *("hash", "description", "sources"),
 )
 _Action = _struct(
-    *("goal", "result", "cancel", "feedback", "status", "hash", "description", "sources"),
+    *("goal", "result", "cancel", "feedback", "status", "hash", "description", "sources")
 )
 #: What `data` of a message and of a service points to.
 _Callbacks = _struct("namespace", "name", "serialise", "deserialise", "size", "most", "key")

@@ -198,10 +198,7 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
     both = {solution.name for solution in right} & set(mutants)
     if both:
         raise ExerciseError("{name!r} is both a right solution and a mutant", name=min(both))
-    return [
-        *right,
-        *(_mutant(str(n), words, made, exercise) for n, words in mutants.items()),
-    ]
+    return [*right, *(_mutant(str(n), words, made, exercise) for n, words in mutants.items())]
 
 
 @dataclass(frozen=True)

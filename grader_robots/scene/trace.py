@@ -32,12 +32,7 @@ TICK_S = TICK_NS / 1e9
 JOINT_STATES, TF, TF_STATIC = "/joint_states", "/tf", "/tf_static"
 DESCRIPTION = "/robot_description"
 #: Every topic of the scene, with its type.
-TOPICS = {
-    JOINT_STATES: JOINT_STATE,
-    TF: TF_MESSAGE,
-    TF_STATIC: TF_MESSAGE,
-    DESCRIPTION: STRING,
-}
+TOPICS = {JOINT_STATES: JOINT_STATE, TF: TF_MESSAGE, TF_STATIC: TF_MESSAGE, DESCRIPTION: STRING}
 
 Publisher = Literal["scene", "submission"]
 PUBLISHERS = "/robot/publishers"

@@ -18,13 +18,7 @@ from grader.inspection.examining import launches, paths
 from grader.inspection.examining.launch_record import Evaluated
 from grader.inspection.examining.layout import Installed, Workspace
 from grader.inspection.examining.steps import Ended, attempt, step
-from grader.inspection.trace import (
-    Lacking,
-    LaunchedNode,
-    LaunchFile,
-    PackageTrace,
-    Setup,
-)
+from grader.inspection.trace import Lacking, LaunchedNode, LaunchFile, PackageTrace, Setup
 from grader.message import NOTHING, Message, msg
 from grader.strict_json import Made
 

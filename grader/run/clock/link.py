@@ -44,12 +44,7 @@ from grader.run.lockstep.protocol import (
     encode,
     pieces,
 )
-from grader.run.lockstep.registry import (
-    Arrived,
-    EndpointRegistry,
-    Reader,
-    Writer,
-)
+from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer
 
 #: The costs of sending a message, 20 us, and of counting the endpoints of a channel.
 SEND_UNITS = 4

@@ -214,9 +214,7 @@ def _replaced(module: Any, name: str) -> Any:
 
 
 def _start_new_thread(
-    function: Callable[..., object],
-    args: tuple[Any, ...],
-    kwargs: dict[str, Any] | None = None,
+    function: Callable[..., object], args: tuple[Any, ...], kwargs: dict[str, Any] | None = None
 ) -> int:
     return SCHEDULER.spawn(lambda: _quietly(function, *args, **(kwargs or {})))
 

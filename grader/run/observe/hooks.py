@@ -81,9 +81,7 @@ def _install(witness: Witness) -> None:
 
     _after(publisher, "__init__", lambda it, _: made("publisher", it, it.topic_name, it.msg_type))
     _after(
-        subscription,
-        "__init__",
-        lambda it, _: made("subscription", it, it.topic_name, it.msg_type),
+        subscription, "__init__", lambda it, _: made("subscription", it, it.topic_name, it.msg_type)
     )
     _after(
         client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type)

@@ -95,11 +95,7 @@ class ForkServer:
     """A process that forks itself for others; any thread may ask it."""
 
     def __init__(
-        self,
-        command: Sequence[str],
-        env: Mapping[str, str],
-        *more: str,
-        executes: bool = False,
+        self, command: Sequence[str], env: Mapping[str, str], *more: str, executes: bool = False
     ) -> None:
         """Start it; the first request waits until it is ready.
 
