@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from signal import Signals
 
-from grader.diagnosis import known_exceptions, lint_findings, lint_hints
+from grader.diagnosis import lint_findings, lint_hints
 from grader.diagnosis.case import (
     Case,
     diagnosed,
@@ -19,6 +19,7 @@ from grader.diagnosis.case import (
     thread_exception,
 )
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.known_exceptions import Hint
 from grader.message import NOTHING, Message, msg, plain_text
 from grader.recording.observations import Raised, SourceLine
 from grader.text import clip
@@ -254,7 +255,7 @@ def crashed(case: Case) -> Diagnosis | None:
     raised = case.raised
     if case.run.outcome != "crashed" or raised is None or case.is_shut_down:
         return None
-    hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
+    hint = lint_hints.explain(case, raised)
     place = hint.place or raised.place
     cause = msg("Your node crashed{at}{error}{where}.", error=_error(raised, hint))
     if not hint.text:
@@ -271,7 +272,7 @@ def thread_crashed(case: Case) -> Diagnosis | None:
     of = msg("A thread of your program")
     if "Error raised in" in case.tail:
         of = msg("The callback of your action")
-    hint = lint_hints.explain(case, raised) or known_exceptions.explain(raised)
+    hint = lint_hints.explain(case, raised)
     cause = msg("{of} crashed{error}{where}.", of=of, error=_error(raised, hint))
     return diagnosed("crashed", cause, _help(raised, hint), hint.place or raised.place)
 
@@ -288,7 +289,7 @@ def misses_message(case: Case) -> bool:
     return raised.type == "AttributeError" and "has no attribute" in raised.text and not in_init
 
 
-def _error(raised: Raised, hint: known_exceptions.Hint) -> Message:
+def _error(raised: Raised, hint: Hint) -> Message:
     """Return ': TypeError: its text', or ' (TypeError): ' and the hint's text."""
     name, text = excerpt(raised.type).rpartition(".")[2], excerpt(raised.text).rstrip(".")
     if hint.text:
@@ -297,7 +298,7 @@ def _error(raised: Raised, hint: known_exceptions.Hint) -> Message:
     return msg(": {error}", error=f"{name}: {text}" if text else name)
 
 
-def _help(raised: Raised, hint: known_exceptions.Hint) -> Message:
+def _help(raised: Raised, hint: Hint) -> Message:
     help_ = hint.help
     if not help_ and raised.place is None:
         help_ = msg("None of its lines is in your own files.")
@@ -311,8 +312,7 @@ def killed(case: Case) -> Diagnosis | None:
         return None
     raised = case.raised
     name = excerpt(raised.type) if raised is not None else _signal(run.exit_code)
-    when = None if raised is None else _when(case, raised)
-    place = None if raised is None else raised.place
+    when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     signal = msg(" by the signal {name}", name=name) if name else ""
     cause = msg("Your program was killed{at}{signal}{where}.", signal=signal)
     if name in _SIGNALS:

@@ -39,9 +39,10 @@ _PRINTED = re.compile(r"print\(([\w.]{1,60})\)$")
 _NO_INSTANCE = "Service classes can not be instantiated"
 
 
-def explain(case: Case, raised: Raised) -> Hint | None:
-    """Explain an exception where the source or the scene shows more than its text."""
-    return next(chain.from_iterable(rule(case, raised) for rule in _RULES), None)
+def explain(case: Case, raised: Raised) -> Hint:
+    """Explain an exception by what the source or the scene shows, or else by its text."""
+    found = next(chain.from_iterable(rule(case, raised) for rule in _RULES), None)
+    return found or known_exceptions.explain(raised)
 
 
 def _hint(finding: LintFinding, help_: Message, text: Message = NOTHING, **words: Any) -> Hint:

@@ -14,11 +14,9 @@ from grader.recording.observations import Caught, SourceLine
 #: A program that ends so soon after an exception has ended by it [s].
 _SOON_S = 1.0
 #: Exceptions that no program counts on.
-_MISTAKES = frozenset(
-    (
-        *("NameError", "UnboundLocalError", "AttributeError", "TypeError", "AssertionError"),
-        *("ZeroDivisionError", "ImportError", "ModuleNotFoundError"),
-    )
+_MISTAKES = (
+    *("NameError", "UnboundLocalError", "AttributeError", "TypeError", "AssertionError"),
+    *("ZeroDivisionError", "ImportError", "ModuleNotFoundError"),
 )
 #: What is None until the first message has come is gone after so many times.
 _OFTEN = 8
@@ -58,7 +56,8 @@ def ended_by_caught(case: Case) -> Diagnosis | None:
 def hides_errors(case: Case) -> Diagnosis | None:
     """A callback fails again and again, and the program catches that and goes on."""
     for caught in case.observed.caught:
-        if not _is_mistake(caught):
+        often = _OFTEN if "NoneType" in caught.text else 2
+        if caught.times < often or caught.type not in _MISTAKES:
             continue
         return diagnosed(
             "hides_errors",
@@ -153,11 +152,6 @@ def makes_timers(case: Case) -> Diagnosis | None:
             times=timer.times,
         )
     return None
-
-
-def _is_mistake(caught: Caught) -> bool:
-    often = _OFTEN if "NoneType" in caught.text else 2
-    return caught.times >= often and caught.type in _MISTAKES
 
 
 def _error(caught: Caught) -> Message:
