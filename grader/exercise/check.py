@@ -117,23 +117,17 @@ class Checks:
             name = function.__name__
             if name in {check.name for check in self._checks}:
                 raise ValueError(f"two checks are named {name!r}")
-            if not _accepts_two(function):
-                found = inspect.signature(function)
-                raise TypeError(f"{name}: expected (recordings, tolerances), found {found}")
-            texts = authored(title.strip().rstrip(".")), authored(rubric.strip())
-            check = Check(name, texts[0], function, tuple(after), texts[1])
-            self._checks.append(check)
+            found = inspect.signature(function)
+            try:
+                found.bind(None, None)
+            except TypeError:
+                what = f"{name}: expected (recordings, tolerances), found {found}"
+                raise TypeError(what) from None
+            heading, rest = authored(title.strip().rstrip(".")), authored(rubric.strip())
+            self._checks.append(Check(name, heading, function, tuple(after), rest))
             return function
 
         return register
-
-
-def _accepts_two(function: CheckFunction) -> bool:
-    try:
-        inspect.signature(function).bind(None, None)
-    except TypeError:
-        return False
-    return True
 
 
 def judge(

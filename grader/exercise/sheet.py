@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -69,16 +69,16 @@ def _judged(exercise: Exercise, subject: Subject) -> Iterator[str]:
         if exercise.visible.get(name) != "never"
     ]
     yield _heading(tr("What it is worth: {points} points", points=points(exercise.max_score)))
-    yield "\n".join(
-        [_row(tr("points"), tr("what is looked at"), tr("check")), "|---:|---|---|"]
-        + [
-            _row(points(worth), translate(check.title), f"`{check.name}`")
-            for check, worth in listed
-        ]
-        + ([f"| {points(sum(hidden))} | {_not_shown(len(hidden))} | |"] if hidden else [])
-    )
-    yield "\n".join(_seen_of(exercise, [check for check, _ in listed]))
-    yield "\n".join(_waits([check for check, _ in listed]))
+    rows = [_row(tr("points"), tr("what is looked at"), tr("check")), "|---:|---|---|"]
+    for check, worth in listed:
+        rows.append(_row(points(worth), translate(check.title), f"`{check.name}`"))
+    if number := len(hidden):
+        what = tr_many("a check that no report shows", "{n} checks that no report shows", number)
+        rows.append(f"| {points(sum(hidden))} | {what} | |")
+    yield "\n".join(rows)
+    shown = [check for check, _ in listed]
+    yield "\n".join(_seen_of(exercise, shown))
+    yield "\n".join(_waits(shown))
     for check, worth in listed:
         if text := check_rubric(check, exercise.tolerances):
             heading = tr("{title}: {points} points", title=check.title, points=points(worth))
@@ -90,30 +90,19 @@ def _judged(exercise: Exercise, subject: Subject) -> Iterator[str]:
         yield from _late(exercise.late)
 
 
-def _not_shown(checks: int) -> str:
-    return tr_many("a check that no report shows", "{n} checks that no report shows", checks)
-
-
-def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
+def _seen_of(exercise: Exercise, checks: Sequence[Check]) -> Iterator[str]:
     """Yield which checks a report shows later, or not all of, a line each."""
-    named: dict[str, list[str]] = {"after_due": [], "points_only": []}
-    for check in checks:
-        named.get(exercise.visible.get(check.name, ""), []).append(f"`{check.name}`")
-    for visible, names in named.items():
+    sentences = {
+        "after_due": msg(
+            "Shown when the exercise is over, and until then in no report and no total: {checks}."
+        ),
+        "points_only": msg("A report shows the points of these, and not what was found: {checks}."),
+    }
+    for visible, sentence in sentences.items():
+        names = [f"`{c.name}`" for c in checks if exercise.visible.get(c.name) == visible]
         if names:
-            yield _wrapped(f"- {_seen(visible, ', '.join(names))}", indent="  ")
-
-
-def _seen(visible: str, checks: str) -> str:
-    """Describe checks that students do not see at once, or not all of."""
-    if visible == "after_due":
-        return tr(
-            "Shown when the exercise is over, and until then in no report and no total: {checks}.",
-            checks=checks,
-        )
-    return tr(
-        "A report shows the points of these, and not what was found: {checks}.", checks=checks
-    )
+            told = translate(sentence.given(checks=", ".join(names)))
+            yield _wrapped(f"- {told}", indent="  ")
 
 
 def _late(policy: LatePolicy) -> Iterator[str]:
@@ -128,17 +117,15 @@ def _late(policy: LatePolicy) -> Iterator[str]:
     ]
     if policy.grace_min:
         sentences.append(msg("Another {grace:g} minutes cost nothing.", grace=policy.grace_min))
+    cost = msg("To hand it in later costs no points.")
     if policy.per_day and policy.most:
-        sentences.append(
-            msg(
-                "From then on each started day costs {per_day} points, {most} at most; nobody has "
-                "fewer than 0 points.",
-                per_day=points(policy.per_day),
-                most=points(policy.most),
-            )
+        cost = msg(
+            "From then on each started day costs {per_day} points, {most} at most; nobody has "
+            "fewer than 0 points.",
+            per_day=points(policy.per_day),
+            most=points(policy.most),
         )
-    else:
-        sentences.append(msg("To hand it in later costs no points."))
+    sentences.append(cost)
     yield _wrapped(translate(joined(sentences, " ")))
 
 
@@ -206,29 +193,27 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
         nearest_m=varied.nearest_m,
         farthest_m=varied.farthest_m,
     )
-    more = [elsewhere] if varied.count and not varied.runs else []
-    if others := len(exercise.cases) - 1:
-        more.append(
-            tr_many(
-                "In one more run other nodes do something else, or yours has other arguments.",
-                "In {n} more runs other nodes do something else, or yours has other arguments.",
-                others,
-            )
-        )
-    if varied.runs:
-        more += [
-            tr_many(
-                "In {n} more run {the_thing} starts elsewhere, or drives and turns faster or "
-                "slower than it is commanded: a program that reads the pose works there too, one "
-                "that counts steps or seconds does not.",
-                "In {n} more runs {the_thing} starts elsewhere, or drives and turns faster or "
-                "slower than it is commanded: a program that reads the pose works there too, one "
-                "that counts steps or seconds does not.",
-                varied.count,
-                the_thing=translate(subject.the_thing),
-            )
-        ]
-    return "\n\n".join(map(_wrapped, [text, *more]))
+    others = tr_many(
+        "In one more run other nodes do something else, or yours has other arguments.",
+        "In {n} more runs other nodes do something else, or yours has other arguments.",
+        len(exercise.cases) - 1,
+    )
+    otherwise = tr_many(
+        "In {n} more run {the_thing} starts elsewhere, or drives and turns faster or slower than "
+        "it is commanded: a program that reads the pose works there too, one that counts steps or "
+        "seconds does not.",
+        "In {n} more runs {the_thing} starts elsewhere, or drives and turns faster or slower than "
+        "it is commanded: a program that reads the pose works there too, one that counts steps or "
+        "seconds does not.",
+        varied.count,
+        the_thing=translate(subject.the_thing),
+    )
+    more = {
+        elsewhere: varied.count and not varied.runs,
+        others: len(exercise.cases) > 1,
+        otherwise: varied.runs,
+    }
+    return "\n\n".join(map(_wrapped, [text, *(each for each in more if more[each])]))
 
 
 def _tolerances(exercise: Exercise) -> Iterator[str]:

@@ -36,7 +36,6 @@ def add_checks(
     cases: Sequence[RunCase],
     known: KnownTypes,
     end_s: float,
-    keys: tuple[str, ...] = ("expect",),
 ) -> set[str]:
     """Add a check for each entry; return the topics that they judge.
 
@@ -47,6 +46,7 @@ def add_checks(
     Raises:
         Mistake: something in it is wrong; its keys name the place.
     """
+    keys = ("expect",)
     what = "expected names of checks, each with what is expected; found {found}"
     expect(isinstance(data, dict) and bool(data), keys, what, data)
     named = [each.name or USUAL for each in cases]

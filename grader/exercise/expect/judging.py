@@ -344,26 +344,19 @@ def _expect_rate(
 def _expect_quality(
     wanted: e.ExpectedQuality, topic: str, own: Sequence[Event], share: float
 ) -> None:
+    help_ = msg("Look at the QoSProfile of the publisher.")
     for event in own:
         for name, codes in (("reliability", _RELIABILITY), ("durability", _DURABILITY)):
             right = getattr(wanted, name)
             if right and event[name] != codes[right]:
                 found = next((word for word, code in codes.items() if code == event[name]), "?")
-                raise Lacks(
-                    msg("{topic} has the {name} {found}, expected {right}.",
-                        topic=topic, name=name, found=found, right=right),
-                    msg("Look at the QoSProfile of the publisher."),
-                    None,
-                    share,
-                )  # fmt: skip
+                text = msg("{topic} has the {name} {found}, expected {right}.")
+                values = {"topic": topic, "name": name, "found": found, "right": right}
+                raise Lacks(text.given(**values), help_, None, share)
         if wanted.depth and event["depth"] not in (0, wanted.depth):  # DDS does not tell it
-            raise Lacks(
-                msg("{topic} has the depth {found}, expected {right}.",
-                    topic=topic, found=event["depth"], right=wanted.depth),
-                msg("Look at the QoSProfile of the publisher."),
-                None,
-                share,
-            )  # fmt: skip
+            text = msg("{topic} has the depth {found}, expected {right}.")
+            values = {"topic": topic, "found": event["depth"], "right": wanted.depth}
+            raise Lacks(text.given(**values), help_, None, share)
 
 
 def _got(trace: CastTrace, wanted: e.ExpectedReceipt, _: Recording) -> Message:
