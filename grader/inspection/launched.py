@@ -27,12 +27,12 @@ def tables(trace: PackageTrace) -> tuple[Table, ...]:
 def _table(trace: PackageTrace, launch: LaunchFile) -> Table:
     rows = [_node(trace, launch, node) for node in launch.nodes]
     rows += [
-        _row("", "", "", (msg("the program {name}", name=_clip(each)),), launch.file)
+        _row("", "", (msg("the program {name}", name=_clip(each)),), launch.file)
         for each in launch.processes
     ]
     for each in launch.includes:
         details: tuple[Text, ...] = (msg("includes {file}", file=_clip(each.file)), *each.arguments)
-        rows.append(_row(each.package, "", "", details, launch.file))
+        rows.append(_row(each.package, "", details, launch.file))
     rows += [_skipped(each) for each in launch.skipped]
     rows += [
         _lacking(each) for each in launch.lacking if each.source or not _is_named(launch, each)
@@ -101,7 +101,7 @@ def _names(details: Sequence[Text], file: str) -> bool:
 def _skipped(each: Skipped) -> tuple[Cell, ...]:
     condition = _clip(each.condition) or msg("its condition")
     details = msg("not started: {condition} is not so by default", condition=condition)
-    return _row(each.package, each.executable, "", (details,), _place(each.file, each.line))
+    return _row(each.package, each.executable, (details,), _place(each.file, each.line))
 
 
 def _lacking(each: Lacking) -> tuple[Cell, ...]:
@@ -116,10 +116,8 @@ def _lacking(each: Lacking) -> tuple[Cell, ...]:
     return (Cell(("",)),) * 3 + (Cell(_lines(lines), True), Cell((_clip(each.by),)))
 
 
-def _row(
-    package: str, program: str, name: str, details: tuple[Text, ...], where: Text
-) -> tuple[Cell, ...]:
-    words = (_clip(each) for each in (package, program, name))
+def _row(package: str, program: str, details: tuple[Text, ...], where: Text) -> tuple[Cell, ...]:
+    words = (_clip(each) for each in (package, program, ""))
     return (*(Cell((each,)) for each in words), Cell(_lines(details)), Cell((_clipped(where),)))
 
 
@@ -133,11 +131,8 @@ def _value(trace: PackageTrace, value: str, number: int) -> Text:
 
 
 def _lines(details: Sequence[Text]) -> tuple[Text, ...]:
-    more = (
-        (msg("and {count} more", count=len(details) - _MOST_LINES),)
-        if len(details) > _MOST_LINES
-        else ()
-    )
+    left = len(details) - _MOST_LINES
+    more = [msg("and {count} more", count=left)] if left > 0 else []
     return (*map(_clipped, details[:_MOST_LINES]), *more)
 
 
@@ -217,17 +212,11 @@ def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[Mes
     for launch in trace.launches:
         own = [n for n in launch.nodes if n.package == setup.name and n.executable in scripts]
         if started and launch.problem is None and (why := _why(own, started[0])):
-            found.append(_sentence(launch, started[0], why))
+            text = msg(
+                "{file} was evaluated and not run: {program} was started by itself, without {what}"
+            )
+            found.append(text.given(file=launch.file, program=started[0], what=why))
     return found
-
-
-def _sentence(launch: LaunchFile, started: str, why: Message) -> Message:
-    return msg(
-        "{file} was evaluated and not run: {program} was started by itself, without {what}",
-        file=launch.file,
-        program=started,
-        what=why,
-    )
 
 
 def _why(own: list[LaunchedNode], started: str) -> Message:

@@ -8,7 +8,6 @@ from dataclasses import replace
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from grader import strict_json
@@ -50,9 +49,7 @@ class Examination:
         obstacle: why nothing is evaluated any more, if anything.
     """
 
-    def __init__(
-        self, workspace: Workspace, scratch: Path, given: Mapping[str, str] = MappingProxyType({})
-    ) -> None:
+    def __init__(self, workspace: Workspace, scratch: Path, given: Mapping[str, str]) -> None:
         """`given`: values of launch arguments."""
         self.workspace = workspace
         self._given = given

@@ -17,6 +17,7 @@ from grader.inspection.examining.steps import not_known
 
 _SUBSTITUTIONS_OF_ROS_1 = ("find", "arg", "optenv", "param")
 _SUBSTITUTION = re.compile(r"\$\(([\w-]+)")
+_PUSHES = ("push_ros_namespace", "push-ros-namespace")
 _OF_ROS_1 = ("param", "rosparam", "remap", "env", "machine", "test", "master")
 
 
@@ -86,6 +87,19 @@ def action(element: ElementTree.Element) -> Any:
     from launch.launch_description_sources import AnyLaunchDescriptionSource
     from launch_ros import actions as ros
 
+    #: those that take nothing but some attributes, all of which are needed
+    plain: dict[str, tuple[Any, ...]] = {
+        "let": (actions.SetLaunchConfiguration, "name", "value"),
+        "set_env": (actions.SetEnvironmentVariable, "name", "value"),
+        "append_env": (actions.AppendEnvironmentVariable, "name", "value"),
+        "unset_env": (actions.UnsetEnvironmentVariable, "name"),
+        **dict.fromkeys(_PUSHES, (ros.PushROSNamespace, "namespace")),
+        "set_parameters_from_file": (ros.SetParametersFromFile, "filename"),
+        "set_parameter": (ros.SetParameter, "name", "value"),
+        "set_remap": (ros.SetRemap, "from", "to"),
+        "set_use_sim_time": (ros.SetUseSimTime, "value"),
+        "set_ros_log_dir": (ros.SetROSLogDir, "new_log_dir"),
+    }
     take = _Attributes(element)
     more = {"condition": take.condition()}
     match element.tag:
@@ -98,18 +112,12 @@ def action(element: ElementTree.Element) -> Any:
                 **more,
             )
             take.ignore("choice")
-        case "let" | "set_env" | "append_env":
-            kinds: dict[str, Any] = {
-                "let": actions.SetLaunchConfiguration,
-                "set_env": actions.SetEnvironmentVariable,
-                "append_env": actions.AppendEnvironmentVariable,
-            }
-            if element.tag == "append_env":
+        case tag if tag in plain:
+            if tag == "append_env":
                 given = {name: take(name) for name in ("prepend", "separator")}
                 more |= {name: value for name, value in given.items() if value is not None}
-            made = kinds[element.tag](take.needed("name"), take.needed("value"), **more)
-        case "unset_env":
-            made = actions.UnsetEnvironmentVariable(take.needed("name"), **more)
+            kind, *names = plain[tag]
+            made = kind(*map(take.needed, names), **more)
         case "node" | "lifecycle_node":
             made = _node(element, take, more)
         case "include":
@@ -126,12 +134,6 @@ def action(element: ElementTree.Element) -> Any:
             scoped = take.plain("scoped", "true").lower() not in ("false", "0")
             take("forwarding")
             made = actions.GroupAction([action(each) for each in element], scoped=scoped, **more)
-        case "push_ros_namespace" | "push-ros-namespace":
-            made = ros.PushROSNamespace(take.needed("namespace"), **more)
-        case "set_parameters_from_file":
-            made = ros.SetParametersFromFile(take.needed("filename"), **more)
-        case "set_parameter":
-            made = ros.SetParameter(take.needed("name"), take.needed("value"), **more)
         case "executable":
             import shlex
 
@@ -148,12 +150,6 @@ def action(element: ElementTree.Element) -> Any:
         case "shutdown":
             take.ignore("reason")
             made = actions.Shutdown(**more)
-        case "set_remap":
-            made = ros.SetRemap(take.needed("from"), take.needed("to"), **more)
-        case "set_use_sim_time":
-            made = ros.SetUseSimTime(take.needed("value"), **more)
-        case "set_ros_log_dir":
-            made = ros.SetROSLogDir(take.needed("new_log_dir"), **more)
         case other if other in _OF_ROS_1:
             raise RuntimeError(f"Unrecognized entity of the type: {other} (it is one of ROS 1)")
         case other:
@@ -385,12 +381,9 @@ def _substitution(name: str, arguments: list[list[Any]]) -> Any:
         return plain.FindExecutable(name=arguments[0])
     if name == "exec-in-pkg":
         return ros.ExecutableInPackage(executable=arguments[0], package=arguments[1])
-    if name == "env" and len(arguments) == 2:
-        return plain.EnvironmentVariable(arguments[0], default_value=arguments[1])
-    if name == "var" and len(arguments) == 2:
-        return plain.LaunchConfiguration(arguments[0], default=arguments[1])
-    if name == "command" and len(arguments) == 2:
-        return plain.Command(arguments[0], on_stderr=arguments[1])
+    second = {"env": "default_value", "var": "default", "command": "on_stderr"}.get(name)
+    if second and len(arguments) == 2:
+        return kinds[name](arguments[0], **{second: arguments[1]})
     if name == "path-join":
         return plain.PathJoinSubstitution(arguments)
     if name in _SUBSTITUTIONS_OF_ROS_1:

@@ -112,15 +112,12 @@ class _Unknown:
         import importlib.machinery
 
         top = name.partition(".")[0]
-        if (
-            top not in DOUBLED
-            and top not in self._declared | known.KNOWN
-            and not top.startswith("launch_")
-        ):
+        is_of_launch = top in DOUBLED or top.startswith("launch_")
+        if not is_of_launch and top not in self._declared | known.KNOWN:
             return None
         if importlib.machinery.PathFinder.find_spec(name, path) is not None:
             return None
-        if top in DOUBLED or top.startswith("launch_"):
+        if is_of_launch:
             what = msg("imports {name}, which the grader does not have", name=name)
             raise NotKnown(it(what))
         return external.module(name)

@@ -110,16 +110,14 @@ def read(folder: Path) -> SourcePackage:
     name = (root.findtext("name") or "").strip()[:_LONGEST]
     lacking = [tag for tag in _REQUIRED if root.find(tag) is None]
     types = root.findall("export/build_type")
+    depends = (each.text or "" for each in root if each.tag in _DEPENDS)
+    named = dict.fromkeys(each.strip()[:_LONGEST] for each in depends if each)
     return SourcePackage(
         folder,
         name=name,
         build_type="".join((types[0].text or "").split())[:_LONGEST] if types else "",
         manifest=it(msg("has no <{tag}>", tag=lacking[0])) if lacking else NOTHING,
-        depends=tuple(
-            dict.fromkeys(
-                each.text.strip()[:_LONGEST] for each in root if each.tag in _DEPENDS and each.text
-            )
-        )[:_MOST_DEPENDS],
+        depends=tuple(named)[:_MOST_DEPENDS],
         files=files,
     )
 

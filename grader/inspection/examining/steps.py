@@ -267,11 +267,8 @@ def end_of(text: str, most: int) -> str:
 def _is_of_environment(error: BaseException) -> bool:
     """Whether it is what `os.environ[NAME]` raises: the user's shell may have it."""
     last = traceback.extract_tb(error.__traceback__)[-1:]
-    return (
-        isinstance(error, KeyError)
-        and bool(last)
-        and last[0].filename in (os.__file__, "<frozen os>")
-    )
+    is_there = bool(last) and last[0].filename in (os.__file__, "<frozen os>")
+    return is_there and isinstance(error, KeyError)
 
 
 def in_folder(folder: str, path: list[str], env: dict[str, str]) -> None:
