@@ -87,14 +87,8 @@ def _joint(name: str, rows: list[tuple[int, float]]) -> JointMotion:
 def odometry(trace: RobotTrace) -> Odometry:
     """Where the robot's root was in `odom`, as the submission sent it on /tf."""
     root = trace.robot.model.root if trace.robot else ""
-    return Odometry.of(
-        [
-            each
-            for each in trace.transforms
-            if (each.topic, each.publisher) == (TF, "submission")
-            and (bare(each.parent), bare(each.child)) == (ODOM, root)
-        ]
-    )
+    sent = (t for t in trace.transforms if (t.topic, t.publisher) == (TF, "submission"))
+    return Odometry.of([t for t in sent if (bare(t.parent), bare(t.child)) == (ODOM, root)])
 
 
 def fitted(points: Floats) -> tuple[float, float, float, float]:

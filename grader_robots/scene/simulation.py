@@ -121,12 +121,9 @@ class StateNode(Node):
         """Take what has arrived, answer the joint states of it."""
         for topic, subscription in self._heard:
             for message in arrived(subscription):
-                self._on(topic, message, now_ns)
-
-    def _on(self, topic: str, message: Any, now_ns: int) -> None:
-        answer = self._recorder.answer(topic, cdr.serialise(message), now_ns)
-        if answer is not None:
-            self._send(TF, tf_message(answer))
+                answer = self._recorder.answer(topic, cdr.serialise(message), now_ns)
+                if answer is not None:
+                    self._send(TF, tf_message(answer))
 
     def _send(self, topic: str, message: Any) -> None:
         self._recorder.publishes(topic, cdr.serialise(message))

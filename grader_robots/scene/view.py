@@ -88,8 +88,10 @@ def plan(trace: RobotTrace) -> Pixels:
         draw.line((0, at, PLANE.size_px, at), colour)
     _draw_circle(draw, circle(trace))
     way = odometry(trace)
-    x, y = _pixels(way)
-    for piece in _finite_pieces(np.column_stack((x, y))):
+    points = np.column_stack(_pixels(way))
+    is_there = np.isfinite(points).all(axis=1)
+    for piece in np.split(points, np.flatnonzero(~is_there)):
+        piece = piece[np.isfinite(piece).all(axis=1)]
         if len(piece) > 1:
             draw.line([tuple(each) for each in piece.tolist()], INK, _INK_PX, joint="curve")
     return np.asarray(image)
@@ -113,12 +115,6 @@ def _pixels(way: Odometry) -> tuple[Floats, Floats]:
         (places[:, 0] - PLANE.origin_m) * PLANE.metre_px,
         (PLANE.end_m - places[:, 1]) * PLANE.metre_px,
     )
-
-
-def _finite_pieces(points: Floats) -> list[Floats]:
-    lost = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    pieces = np.split(points, lost)
-    return [piece[np.isfinite(piece).all(axis=1)] for piece in pieces]
 
 
 def _track(trace: RobotTrace, way: Odometry) -> Track:

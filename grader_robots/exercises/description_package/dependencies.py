@@ -8,7 +8,7 @@ from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
 from grader.inspection.error_texts import shown
 from grader.inspection.examining.known import DESKTOP
-from grader.inspection.trace import Description, NamedMesh
+from grader.inspection.trace import NamedMesh
 from grader.message import Message, joined, msg
 from grader_robots.exercises.description_package import robots
 from grader_robots.exercises.description_package.facts import (
@@ -71,9 +71,8 @@ def meshes(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     }[first.state]
     if first.uri.startswith("file://"):
         why = msg("a path of one machine, which no other has")
-    text = msg(
-        "{file} names {uri}, and {why}.", file=first_source(readable), uri=shown(first.uri), why=why
-    )
+    file = readable[0].source or readable[0].by
+    text = msg("{file} names {uri}, and {why}.", file=file, uri=shown(first.uri), why=why)
     if len(wrong) > 1:
         text = joined([text, msg(" So {count} more.", count=len(wrong) - 1)])
     help = msg(
@@ -96,11 +95,6 @@ def _instead(facts: PackageFacts, mesh: NamedMesh) -> Message:
                 uri=f"package://{facts.name}/{path.removeprefix(share)}",
             )
     return msg("there is no such file")
-
-
-def first_source(descriptions: list[Description]) -> str | Message:
-    """The file that a description is from."""
-    return next((each.source or each.by for each in descriptions), msg("The description"))
 
 
 @checks()

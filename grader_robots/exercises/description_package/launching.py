@@ -55,7 +55,9 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         return Finding(0, msg("The package has no launch file."), installing.WRITE)
     found = [(each, _judge(facts, each)) for each in facts.for_rviz]
     if not found:
-        found = [(facts.launches[0], _gazebo_alone(facts.launches[0]))]
+        first = facts.launches[0]
+        alone = msg("No launch file shows the robot in RViz: {file} puts it into Gazebo.")
+        found = [(first, Finding(0, alone.given(file=first.file), installing.WRITE))]
     best, finding = max(found, key=lambda each: each[1].share)
     if finding.share < 1 and facts.not_known is not None:
         why = msg("{best} alone does not show the robot", best=best.file)
@@ -90,13 +92,6 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
         publisher=PUBLISHER,
     )
     return Finding(1, rationale)
-
-
-def _gazebo_alone(launch: LaunchFile) -> Finding:
-    rationale = msg(
-        "No launch file shows the robot in RViz: {file} puts it into Gazebo.", file=launch.file
-    )
-    return Finding(0, rationale, installing.WRITE)
 
 
 def starts_nothing(facts: PackageFacts, launch: LaunchFile) -> Finding | None:

@@ -119,7 +119,8 @@ def _faults(facts: PackageFacts, launch: LaunchFile, node: LaunchedNode) -> Iter
         topic = received["-topic"].rsplit("/", 1)[-1]
         if topic == "robot_description" and not any(map(_is_published, facts.launches)):
             yield msg("waits for the topic robot_description, and no launch file publishes it.")
-        elif topic != "robot_description" and not _is_remapped(launch, topic):
+        remapped = (each for node in launch.nodes for each in node.remappings)
+        if topic != "robot_description" and not any(each.endswith(topic) for each in remapped):
             yield msg(
                 "waits for the topic {topic!r}, which nobody publishes; "
                 "robot_state_publisher publishes robot_description.",
@@ -165,7 +166,3 @@ def _is_published(launch: LaunchFile) -> bool:
         is_publisher(node) and any(is_description(p.name) for p in node.parameters)
         for node in launch.nodes
     ) or any(each.package == "urdf_launch" for each in launch.includes)
-
-
-def _is_remapped(launch: LaunchFile, topic: str) -> bool:
-    return any(each.endswith(topic) for node in launch.nodes for each in node.remappings)

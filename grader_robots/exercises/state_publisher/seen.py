@@ -16,7 +16,7 @@ from grader.message import Message, joined, msg, plain_text
 from grader.recording.recording import Recordings
 from grader.recording.view import Floats
 from grader_robots.scene.motion import joints, odometry
-from grader_robots.scene.trace import TF, TF_STATIC, TICK_S, RobotTrace
+from grader_robots.scene.trace import TICK_S, RobotTrace
 from grader_robots.scene.view import PLANE
 from robot_py.model import Joint
 
@@ -42,11 +42,7 @@ class RobotRun:
         self.links = tuple(robot.model.links) if robot else ()
         self.joints = joints(self.trace)
         self.way = odometry(self.trace)
-        self.sent = [
-            t
-            for t in self.trace.transforms
-            if t.publisher == "submission" and t.topic in (TF, TF_STATIC)
-        ]
+        self.sent = [t for t in self.trace.transforms if t.publisher == "submission"]
 
     def no_joint_states(self) -> Finding:
         """For a run in which none came."""
@@ -67,7 +63,7 @@ class RobotRun:
             row = max(0, int(np.searchsorted(self.way.ticks, tick, side="right")) - 1)
             found = [float(value) for value in self.way.places[row, :2]]
             if all(map(math.isfinite, found)):
-                x, y = map(_inside, found)
+                x, y = (min(max(each, PLANE.origin_m), PLANE.end_m) for each in found)
         return Evidence(round(tick * TICK_S, 3), note, x, y, tick=tick)
 
 
@@ -98,10 +94,6 @@ def listed(names: Iterable[str]) -> Message:
 def rounded(value: float) -> float:
     """As it may stand in a sentence, written by `.4g`: -0.506, 0, 29."""
     return round(value, 3) + 0.0
-
-
-def _inside(value: float) -> float:
-    return min(max(value, PLANE.origin_m), PLANE.end_m)
 
 
 def finite(values: Floats) -> Floats:
