@@ -54,12 +54,8 @@ def install(
         compares_stamps: whether a node's clock returns another time each time it is asked.
         on_deadlock: called once, when nothing can ever happen any more.
     """
-
-    def now_ns() -> int:
-        return scheduler.now_ns
-
     unpaid_ns = (lambda: scheduler.unpaid_ns) if compares_stamps else (lambda: 0)
-    clocks = rclpy_clocks.install(now_ns, scheduler.charge, unpaid_ns)
+    clocks = rclpy_clocks.install(lambda: scheduler.now_ns, scheduler.charge, unpaid_ns)
     scheduler.clocks.append(clocks.set_now)
     scheduler.advance = link.advance
     _rclpy.ClockEvent = clock_event_class(scheduler)

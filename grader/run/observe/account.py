@@ -113,11 +113,8 @@ class ProcessAccount:
 
     def _is_another(self) -> bool:
         """Whether this is a fork, or the program has closed the page and opened something else."""
-        return (
-            self._page < 0
-            or os.getpid() != self._process
-            or _identity(self._page) != self._identity
-        )
+        is_own = os.getpid() == self._process and _identity(self._page) == self._identity
+        return self._page < 0 or not is_own
 
 
 def _identity(descriptor: int) -> tuple[int, int]:

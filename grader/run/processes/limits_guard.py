@@ -125,23 +125,22 @@ class LimitsGuard:
                 "print no more",
                 size=size(limits.output_bytes),
             )
-            return True
-        if found.files > limits.family_files:
+        elif found.files > limits.family_files:
             self.remark = msg(
                 "the node and what it started had {number} open files and sockets at once, and "
                 "were ended: a run may have {most}",
                 number=found.files,
                 most=limits.family_files,
             )
-            return True
-        if found.memory_bytes > limits.family_bytes and self._is_too_much_memory():
+        elif found.memory_bytes > limits.family_bytes and self._is_too_much_memory():
             self.remark = msg(
                 "the node and what it started used more than {size} of memory, and were ended: a "
                 "run may use no more",
                 size=size(limits.family_bytes),
             )
-            return True
-        return False
+        else:
+            return False
+        return True
 
     def _is_too_much_memory(self) -> bool:
         """Measure closely: without pages of files, and with shared pages counted once.

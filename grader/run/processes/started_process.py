@@ -251,15 +251,12 @@ class StartedProcess:
     def _read(self) -> None:
         with open(self._child.output, "rb") as output:  # noqa: PTH123
             while chunk := os.read(output.fileno(), 65536):
-                self._keep(chunk)
-
-    def _keep(self, chunk: bytes) -> None:
-        room = KEPT_OUTPUT_BYTES - len(self._head)
-        self._head += chunk[:room]
-        self._tail += chunk[room:]
-        if len(self._tail) > KEPT_OUTPUT_BYTES:
-            self._dropped += len(self._tail) - KEPT_OUTPUT_BYTES
-            del self._tail[:-KEPT_OUTPUT_BYTES]
+                room = KEPT_OUTPUT_BYTES - len(self._head)
+                self._head += chunk[:room]
+                self._tail += chunk[room:]
+                if len(self._tail) > KEPT_OUTPUT_BYTES:
+                    self._dropped += len(self._tail) - KEPT_OUTPUT_BYTES
+                    del self._tail[:-KEPT_OUTPUT_BYTES]
 
 
 class SubmissionProcess(StartedProcess):
