@@ -39,14 +39,6 @@ class Grading:
     is_over: bool = False
 
 
-def content_of(grading: Grading) -> Mapping[str, Any]:
-    """Return the state of a grading as plain data for the page."""
-    shown = ("status", "word", "title", "rationale", "help")
-    checks = [{name: getattr(each, name) for name in shown} for each in grading.judged]
-    rest = {name: value for name, value in asdict(grading).items() if name != "judged"}
-    return {**rest, "checks": checks}
-
-
 class LivePage(ABC):
     """A page in a browser, served by this process; viewers can only watch.
 
@@ -115,8 +107,11 @@ class LivePage(ABC):
 
     def update(self, grading: Grading) -> None:
         """Show the state of the grading."""
+        shown = ("status", "word", "title", "rationale", "help")
+        checks = [{name: getattr(each, name) for name in shown} for each in grading.judged]
+        rest = {name: value for name, value in asdict(grading).items() if name != "judged"}
         with self._lock:
-            self._grading = content_of(grading)
+            self._grading = {**rest, "checks": checks}
             self._tell({**self._nothing_new(), "grading": self._grading})
 
     def _tell(

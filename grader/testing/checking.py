@@ -64,7 +64,8 @@ def check_exercise(
     for solution in solutions:
         recordings = recorded[solution.name]
         verdicts, wrong = examine(asked, recordings)
-        trial = Trial(solution, tuple(verdicts), _remarks(recordings))
+        flags = dict.fromkeys(flag for each in recordings for flag in each.run.flags)
+        trial = Trial(solution, tuple(verdicts), tuple(flags))
         wrong += dict.fromkeys(filter(None, (_changed(asked, each) for each in recordings)))
         wrong += [*_unexpected(trial), *_wrong_first_line(trial, recordings, asked)]
         if solution is solutions[0]:
@@ -232,11 +233,6 @@ def _too_alike(exercise: Exercise) -> Iterator[Fault]:
                     wanted=LARGER,
                 ),
             )
-
-
-def _remarks(recordings: Recordings) -> tuple[Message, ...]:
-    found = [flag for recording in recordings for flag in recording.run.flags]
-    return tuple(dict.fromkeys(found))
 
 
 def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], list[Fault]]:

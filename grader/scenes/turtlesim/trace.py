@@ -128,7 +128,9 @@ def check(trace: TurtleTrace) -> None:
     for event in trace.events:
         _check_event(event, trace.ticks)
     for name, way in trace.trajectories.items():
-        _check_way(name, way, trace.ticks)
+        at = way.ticks
+        if len(at) and (at[0] < 1 or at[-1] > trace.ticks or (np.diff(at) <= 0).any()):
+            raise ValueError(f"the ticks of {name!r:.40} are not in order, or not of this run")
     for log in trace.logs:
         _check_tick("a log line", log.tick, trace.ticks)
     for name, pixels, channels in (("path", trace.canvas, 4), ("window", trace.window, 3)):
@@ -154,13 +156,6 @@ def _check_tick(what: str, tick: int, ticks: int) -> None:
     # inputs after the last tick have the number of the next one
     if not 0 <= tick <= ticks + 1:
         raise ValueError(f"{what} at tick {tick!r:.40} of {ticks}")
-
-
-def _check_way(name: str, way: Trajectory, ticks: int) -> None:
-    if not len(way):
-        return
-    if way.ticks[0] < 1 or way.ticks[-1] > ticks or (np.diff(way.ticks) <= 0).any():
-        raise ValueError(f"the ticks of {name!r:.40} are not in order, or not of this run")
 
 
 def behaviour(trace: TurtleTrace) -> Behaviour:
