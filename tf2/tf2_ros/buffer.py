@@ -64,17 +64,9 @@ class Buffer(BufferCore, BufferInterface):
         logger.warning("Detected jump back in time. Clearing tf buffer.")
         self.clear()
 
-    def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Keep a transform that holds at its stamp, and call the waiting callbacks."""
-        super().set_transform(transform, authority)
-        self._call_new_data_callbacks()
-
-    def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
-        """Keep a transform that holds at all times, and call the waiting callbacks."""
-        super().set_transform_static(transform, authority)
-        self._call_new_data_callbacks()
-
-    def _call_new_data_callbacks(self) -> None:
+    def _set(self, transform: TransformStamped, authority: str, is_static: bool) -> None:
+        """Keep a transform, and call the waiting callbacks."""
+        super()._set(transform, authority, is_static)
         with self._callbacks_lock:
             for callback in self._new_data_callbacks:
                 callback()
