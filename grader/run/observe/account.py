@@ -113,8 +113,9 @@ class ProcessAccount:
 
     def _is_another(self) -> bool:
         """Whether this is a fork, or the program has closed the page and opened something else."""
-        is_own = os.getpid() == self._process and _identity(self._page) == self._identity
-        return self._page < 0 or not is_own
+        if self._page < 0 or os.getpid() != self._process:
+            return True
+        return _identity(self._page) != self._identity
 
 
 def _identity(descriptor: int) -> tuple[int, int]:
