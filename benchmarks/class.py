@@ -75,18 +75,12 @@ def make(folder: Path, count: int, seed: int) -> None:
             (at / "turtle_controller.py").write_text(text, encoding="utf-8")
 
 
-def batch(submissions: Path, out: Path, jobs: int) -> list[str]:
-    """Return the call of `grader batch`."""
-    words = [sys.executable, "-m", "grader", "batch", str(submissions), "--out", str(out)]
-    return [*words, "--jobs", str(jobs)]
-
-
 def measure(submissions: Path, folder: Path, count: int, jobs: list[int]) -> None:
     """Print the table."""
     head("jobs", "wall [s]", "gradings a minute", "CPU a grading [s]", "peak memory [MiB]")
-    samples = []
+    call, samples = [sys.executable, "-m", "grader", "batch", str(submissions)], []
     for number in jobs:
-        sample = command(batch(submissions, folder / f"out{number}", number))
+        sample = command([*call, "--out", f"{folder}/out{number}", "--jobs", str(number)])
         samples.append(sample.cpu_s / count if sample.cpu_s is not None else None)
         rate = f"{count / sample.wall_s * 60:.0f}"
         peak = spread([sample.peak_mib], 0)

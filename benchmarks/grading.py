@@ -62,24 +62,16 @@ Do = Callable[..., list[tuple[Cost, Any]]]
 # Work in a separate process, whose group comes first ----------------------------------------------
 
 
-def virtual_run(own: Group, path: Path) -> tuple[Cost, int]:
-    """Run a submission once in virtual time; also return the ticks."""
+def virtual_run(own: Group, path: Path, exercise: str = "") -> tuple[Cost, int]:
+    """Run a submission once in virtual time, by an exercise's usual case; also return ticks."""
     with grader.open_submission(path) as submission:
+        plan = grading.plan(submission, load_exercise(exercise))[0] if exercise else PLAN
         begun = own.now()
-        recording = virtual_time.run(submission, PLAN)
+        recording = virtual_time.run(submission, plan)
         cost = own.since(begun)
     if recording.run.time != "virtual":
         raise RuntimeError(f"{path.stem}: {recording.run.flags}")
     return cost, recording.run.ticks
-
-
-def cast_run(own: Group, path: Path, exercise: str) -> tuple[Cost, int]:
-    """Run the usual case of an exercise with a cast once; also return the ticks."""
-    with grader.open_submission(path) as submission:
-        plan, *_ = grading.plan(submission, load_exercise(exercise))
-        begun = own.now()
-        recording = virtual_time.run(submission, plan)
-        return own.since(begun), recording.run.ticks
 
 
 def cast_grading(own: Group, path: Path, exercise: str) -> tuple[Cost, float]:
@@ -204,7 +196,7 @@ def table_of_casts(env: dict[str, str], repetitions: int) -> None:
     units = Units(env, 3)
     for name in TUTORIALS:
         path = ROOT / "tests" / "submissions" / "tutorials" / name / "right" / "official.py"
-        for what, work in (("run of the usual case", cast_run), ("grading", cast_grading)):
+        for what, work in (("run of the usual case", virtual_run), ("grading", cast_grading)):
             with worker() as do:
                 do(work, path, name)
                 done = do(work, path, name, times=repetitions)

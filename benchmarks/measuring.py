@@ -195,16 +195,10 @@ class Group:
 
 @contextmanager
 def group() -> Iterator[Group]:
-    """Make a group, and end what is left in it."""
-    made = _new_group()
-    try:
-        yield made
-    finally:
-        made.end()
+    """Make a group below the current one in each hierarchy that is needed and writable.
 
-
-def _new_group() -> Group:
-    """Make a group below the current one in each hierarchy that is needed and writable."""
+    What is left in it is ended.
+    """
     name = f"turtlesim-bench-{os.getpid()}-{time.monotonic_ns()}"
     usable: dict[str, Path] = {}
     for controllers, parent in _current_groups():
@@ -219,7 +213,11 @@ def _new_group() -> Group:
                 folder.rmdir()
             continue
         usable |= dict.fromkeys(controllers, parent)
-    return Group(name, usable)
+    made = Group(name, usable)
+    try:
+        yield made
+    finally:
+        made.end()
 
 
 def _enter(folder: Path) -> None:

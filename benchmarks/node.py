@@ -63,9 +63,9 @@ class Subscriber:
     def _on_pose(self, _: Pose, info: Any) -> None:
         self.stamps_ns.append(info["source_timestamp"])
 
-    def spin_until(self, condition: Callable[[], object], patience_s: float = 60.0) -> None:
+    def spin_until(self, condition: Callable[[], object]) -> None:
         """Listen until the condition holds."""
-        deadline = time.monotonic() + patience_s
+        deadline = time.monotonic() + 60.0
         while not condition():
             if time.monotonic() > deadline:
                 raise TimeoutError

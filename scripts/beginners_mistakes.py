@@ -242,12 +242,8 @@ def _parses(text: str) -> bool:
 
 def _statements(text: str, lines: set[int]) -> set[int]:
     """Add the other lines of the same short statements, or of their heads."""
-    try:
-        tree = ast.parse(text)
-    except SyntaxError:
-        return lines
     found = set(lines)
-    for node in ast.walk(tree):
+    for node in ast.walk(ast.parse(text)):
         if not isinstance(node, ast.stmt):
             continue
         if isinstance(getattr(node, "value", None), ast.Dict | ast.List):
@@ -492,13 +488,11 @@ def awaiting(program: Program) -> Iterator[Change]:
         if around is None or isinstance(around, ast.AsyncFunctionDef):
             continue
         names = {each.name for each in program.callbacks("create_subscription")}
-        if around.name in names:
-            begin = program.span(around)[0]
-            yield (Edit(begin, begin, "async "), Edit(sends.start(), sends.start(), "await "))
-            continue
-        edits = [Edit(sends.start(), sends.start(), "await ")]
         begin = program.span(around)[0]
-        edits.append(Edit(begin, begin, "async "))
+        edits = [Edit(begin, begin, "async "), Edit(sends.start(), sends.start(), "await ")]
+        if around.name in names:
+            yield tuple(edits)
+            continue
         outer = set()
         for call in program.calls(around.name):
             caller = program.around(program.span(call)[0])

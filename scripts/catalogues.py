@@ -96,10 +96,7 @@ def of_grader() -> Iterator[Sentence]:
     shared = set(of_simulator())
     for player in players:
         yield from (each for each in of_page(player) if each not in shared)
-    readers: dict[str, Callable[[Path], Iterator[Sentence]]] = {
-        ".py": of_code,
-        ".html": of_template,
-    }
+    readers = {".py": of_code, ".html": of_template}
     for path in sorted(p for name in ("grader", "grader_robots") for p in (ROOT / name).rglob("*")):
         is_ours = not set(path.relative_to(ROOT).parts) & set(NOT_OURS)
         if is_ours and path.suffix in readers and path.parent not in players:

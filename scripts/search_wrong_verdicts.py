@@ -382,26 +382,26 @@ class Answer:
     @property
     def is_exact(self) -> bool:
         """Whether the place is a line that has to be changed."""
-        place = self.found.place if self.found else None
-        return place is not None and self._is_in_file and place.line in self.drawn.mutant.lines
+        return self._line in self.drawn.mutant.lines
 
     @property
     def is_near(self) -> bool:
         """Whether it is such a line, or in the function where something is missing."""
-        place, around = self.found.place if self.found else None, self.drawn.mutant.function
-        if place is None or around is None or not self._is_in_file:
-            return self.is_exact
-        return self.is_exact or around[0] <= place.line <= around[1]
+        first, last = self.drawn.mutant.function or (1, 0)
+        return self.is_exact or first <= self._line <= last
 
     @property
-    def _is_in_file(self) -> bool:
+    def _line(self) -> int:
+        """The line that it names, from 1; 0 for none, or one of another file."""
         place = self.found.place if self.found else None
-        return place is not None and PurePath(place.file).name == self.drawn.file.name
+        is_there = place is not None and PurePath(place.file).name == self.drawn.file.name
+        return place.line if is_there else 0
 
     @property
     def words(self) -> Words:
         """Whose words those of the first line are."""
-        if self.drawn.operator.named_by(self._text):
+        text = f"{self.found.cause!s} {self.found.help!s}" if self.found else ""
+        if self.drawn.operator.named_by(text):
             return "own"
         is_named = self.found is not None and self.found.key != CHECK
         return "another's" if is_named and self.others else "unnamed"
@@ -412,10 +412,6 @@ class Answer:
         of = beginners_mistakes.OPERATORS
         cause = str(self.found.cause) if self.found else ""
         return [each.name for each in of if each.named_by(cause)]
-
-    @property
-    def _text(self) -> str:
-        return f"{self.found.cause!s} {self.found.help!s}" if self.found else ""
 
     def __str__(self) -> str:
         lines = ", ".join(map(str, self.drawn.mutant.lines))

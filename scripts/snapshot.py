@@ -86,15 +86,11 @@ def record(grader: str, folder: Path, jobs: int, only: list[str]) -> None:
             print(line, flush=True)
 
 
-def _run(grader: str, case: tuple[Path, str], out: Path) -> subprocess.CompletedProcess[str]:
-    path, exercise = case
-    command = [grader, "run", str(path), "--exercise", exercise, "--out", out.name]
-    env = {**os.environ, "COLUMNS": "100"}
-    return subprocess.run(command, cwd=out.parent, env=env, capture_output=True, text=True)
-
-
 def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
-    done = _run(grader, case, folder / name)
+    path, exercise = case
+    command = [grader, "run", str(path), "--exercise", exercise, "--out", name]
+    env = {**os.environ, "COLUMNS": "100"}
+    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True)
     if done.returncode:
         (folder / name).mkdir(exist_ok=True)
         (folder / name / "failed.txt").write_text(f"{done.returncode}\n{done.stderr}")
@@ -106,7 +102,6 @@ def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
         run["wall_s"] = 1.0
     result.pop("provenance", None)
     file.write_text(json.dumps(result, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-    env = {**os.environ, "COLUMNS": "100"}
     for form in FORMATS:
         command = [grader, "report", f"{name}/result.json", "--format", form]
         report = subprocess.run(command, cwd=folder, env=env, capture_output=True)
