@@ -86,8 +86,7 @@ class ClassFile:
             raise UsageError(
                 "{out} is no folder of a class: there is no {file} in it", out=str(out), file=CLASS
             )
-        found: Self = json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
-        return found
+        return json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
 
     def differences(self, other: Self) -> dict[str, Message]:
         """Return what differs between two class files: field -> a sentence."""

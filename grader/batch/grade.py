@@ -42,7 +42,7 @@ from grader.recording.recording import Recordings
 from grader.reports import Report, render
 from grader.result import json_file
 from grader.result.error import ErrorResult
-from grader.result.result import PAGE, RESULT, Result, SubmissionInfo, artifacts, put_artifacts
+from grader.result.result import PAGE, RESULT, SubmissionInfo, artifacts, put_artifacts
 from grader.run.opening import open_submission
 from grader.run.processes import levels, started_process
 from grader.submission.start import Submission
@@ -216,15 +216,10 @@ def _judge(
     files.make_folder(folder)
     result.put(folder / RESULT)
     if not task.judge_only:
-        _show(recordings, result, folder)
+        put_artifacts(recordings.nominal, folder)
+        page = render("html", [Report.of(result, folder, recordings, "whole")])
+        files.put(folder / PAGE, page.encode("utf-8"))
     _put(hand_in, exercise, folder, "judged", key=task.key)
-
-
-def _show(recordings: Recordings, result: Result, folder: Path) -> None:
-    """Write the report page and the files beside it."""
-    put_artifacts(recordings.nominal, folder)
-    page = render("html", [Report.of(result, folder, recordings, "whole")])
-    files.put(folder / PAGE, page.encode("utf-8"))
 
 
 def _put(

@@ -191,7 +191,7 @@ def _grade(
 
     planned = batch.plan(found.hand_ins, order, store)
     if args.scheduler:
-        work = _on_a_cluster(args, order, store, messages)
+        work = _on_a_cluster(args, order, messages)
     else:
         work = partial(pool.work, jobs=_jobs_of(args))
         if any(task.run is None for task in planned.tasks):
@@ -229,7 +229,7 @@ def _jobs_of(args: argparse.Namespace) -> int:
     return args.jobs or max(1, round(cores.share()))
 
 
-def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> Work:
+def _on_a_cluster(args: argparse.Namespace, order: Order, messages: Console) -> Work:
     from grader.batch import class_file, cluster
 
     settle = partial(class_file.note, args.out)

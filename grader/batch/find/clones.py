@@ -65,7 +65,7 @@ def read(items: Sequence[Item]) -> Export:
                 prefix=shown(prefix),
             )
         )
-    if not commits.can_be_asked:
+    if commits.git is None:
         notes.append(msg("There is no git on this machine to say when the last commits were made."))
     else:
         unknown = [item.name for item, each in pairs if each.at is None]
@@ -106,20 +106,18 @@ class LastCommits:
 
     Args:
         scratch: an empty folder for its git folder.
+
+    Attributes:
+        git: None where there is none on this machine.
     """
 
     def __init__(self, scratch: Path) -> None:
-        self._git = shutil.which("git")
+        self.git = shutil.which("git")
         self._folder = scratch / "git"
         for folder in ("objects", "refs"):
             (self._folder / folder).mkdir(parents=True)
         (self._folder / "HEAD").write_text("ref: refs/heads/none\n", encoding="ascii")
         (self._folder / "config").write_text("[core]\n\tbare = true\n", encoding="ascii")
-
-    @property
-    def can_be_asked(self) -> bool:
-        """Whether there is a git on this machine."""
-        return self._git is not None
 
     def of(self, clone: Path) -> datetime | None:
         """Return the time of a clone's checked-out commit, by its author's clock; None: unknown."""
@@ -139,11 +137,11 @@ class LastCommits:
         return None if commit is None else _time(commit)
 
     def _ask(self, objects: Path, what: str, name: str) -> bytes | None:
-        if self._git is None:
+        if self.git is None:
             return None
         try:
             asked = subprocess.run(
-                [self._git, "--no-replace-objects", "cat-file", what, name],
+                [self.git, "--no-replace-objects", "cat-file", what, name],
                 cwd=self._folder,
                 env=self._environment(objects),
                 stdin=subprocess.DEVNULL,

@@ -23,8 +23,7 @@ class Grade:
     Attributes:
         entry: the graded hand-in of the person, or of the group.
         final: the points for a course system; None where it must not get any: the grader failed,
-            nothing was handed in and that is not to count as 0, or an unmatched hand-in may belong
-            to this person.
+            or an unmatched hand-in may belong to this person.
         is_double: another hand-in of the same person counts, or it is unknown which one does.
     """
 
@@ -53,16 +52,11 @@ class Grade:
         return tuple(person.id for person in people) if len(people) > 1 else ()
 
 
-def grades(entries: Iterable[Entry], nothing_is_zero: bool = True) -> list[Grade]:
-    """Return the grades of all people, in the order of the entries.
-
-    Args:
-        nothing_is_zero: whether somebody without a hand-in has 0 points, or no grade at all.
-    """
+def grades(entries: Iterable[Entry]) -> list[Grade]:
+    """Return the grades of all people, in the order of the entries."""
     found = []
     for entry in entries:
-        has_none = entry.state == "nothing" and not nothing_is_zero
-        final = None if has_none or entry.hand_in.problem == UNCLEAR else entry.score
+        final = None if entry.hand_in.problem == UNCLEAR else entry.score
         found += [Grade(person, entry, final) for person in entry.hand_in.people]
     return _one_each(found)
 

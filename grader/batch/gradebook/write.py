@@ -49,7 +49,6 @@ def write(
     title: Message,
     view: View = "student",
     assignment: str = "",
-    nothing_is_zero: bool = True,
 ) -> list[Message]:
     """Write all files, and remove exports that are not possible any more.
 
@@ -58,7 +57,6 @@ def write(
         view: who reads the feedback: a student before, or after the exercise is due.
         assignment: Canvas's title or number of it, or both as in "Spiral (4711)"; '' for the
             exercise's title.
-        nothing_is_zero: see `grader.batch.gradebook.grade.grades`.
 
     Returns:
         Sentences on what an import lacks and who is left out.
@@ -66,7 +64,7 @@ def write(
     Raises:
         UsageError: one of them cannot be written.
     """
-    everybody = grades(entries, nothing_is_zero)
+    everybody = grades(entries)
     name = translate(title)
     feedback = Feedback(view)
     heading = canvas.assignment_of(everybody, assignment or name)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from grader import text
-from grader.batch.page.students import STATES, Student
+from grader.batch.page.students import GAP, STATES, Student
 from grader.message import NOTHING, Message, Value, joined, msg
 from grader.reports.wording import title_of
 from grader.translations import translate
@@ -51,7 +51,6 @@ _CALLED: Final = {
         msg("wrong value"),
     )
 }
-GAP = "…"
 #: The name of an exception is the kind of a mistake.
 _ERROR = re.compile(r"\w*(?:Error|Exception|Warning|Interrupt)\b")
 _WORD = re.compile(r"\w+")

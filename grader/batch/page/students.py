@@ -24,7 +24,8 @@ STATES: Final[Mapping[State, Message]] = {
     "nothing": msg("nothing handed in"),
     "failed": msg("the grader failed"),
 }
-_GAP = "…"
+#: Stands for what is left out of a sentence.
+GAP = "…"
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ class Student:
         names = [self.entry.id, self.name, *(person.id for person in people)]
         words = {word for name in names for word in re.split(r"[\W_]+", name) if len(word) > 2}
         for word in sorted(words, key=lambda word: (-len(word), word)):
-            sentence = re.sub(rf"(?<!\w){re.escape(word)}(?!\w)", _GAP, sentence, flags=re.I)
+            sentence = re.sub(rf"(?<!\w){re.escape(word)}(?!\w)", GAP, sentence, flags=re.I)
         return sentence
 
 

@@ -115,7 +115,8 @@ def _path(recording: Recording) -> tuple[Piece, ...]:
     scale = UNITS / load_subject(recording.scene).plane.size_px
     track = animation.tracks[0]
     whole = pieces(track.x * scale, track.y * scale)[:_MOST_PIECES]
-    return tuple(_whole_numbers(piece) for piece in _few(whole))
+    rounded = (np.clip(np.rint(piece), 0, UNITS).astype(int) for piece in _few(whole))
+    return tuple(tuple(piece.ravel().tolist()) for piece in rounded)
 
 
 def _few(whole: list[Floats]) -> list[Floats]:
@@ -126,10 +127,6 @@ def _few(whole: list[Floats]) -> list[Floats]:
             return shorter
     step = -(-sum(map(len, shorter)) // _MOST_POINTS)
     return [np.vstack([piece[:-1:step], piece[-1:]]) for piece in shorter]
-
-
-def _whole_numbers(piece: Floats) -> Piece:
-    return tuple(np.clip(np.rint(piece), 0, UNITS).astype(int).ravel().tolist())
 
 
 def pieces(x: Floats, y: Floats) -> list[Floats]:

@@ -130,9 +130,9 @@ def _of_class(out: Path, exercise_path: str) -> tuple[ClassFile, Exercise]:
 
 def _tasks(out: Path, found: Iterable[Entry], exercise_path: str) -> Iterator[Task]:
     """Yield a task for each run of a class; `into` is not set yet."""
-    before, by_run = ClassFile.read(out), defaultdict(list)
-    for entry in found:
-        by_run[_run(out, entry)].append(entry)
+    before, store, by_run = ClassFile.read(out), Store(out), defaultdict(list)
+    for entry in found:  # its recording is in the store, else beside its result
+        by_run[store.run(entry.key) if store.has(entry.key) else entry.folder].append(entry)
     for run, sharing in by_run.items():
         yield Task(
             key=sharing[0].key,
@@ -145,12 +145,6 @@ def _tasks(out: Path, found: Iterable[Entry], exercise_path: str) -> Iterator[Ta
             run=run,
             into=Path(),
         )
-
-
-def _run(out: Path, entry: Entry) -> Path:
-    """Return the folder of a hand-in's recording: in the store, else beside its result."""
-    store = Store(out)
-    return store.run(entry.key) if store.has(entry.key) else entry.folder
 
 
 def _read(task: Task, answer: Answer, before: Entry) -> Entry | Message:
@@ -231,7 +225,9 @@ def apply(
     keep(found, store)
     by_id = {entry.id: entry for entry in found.entries}
     for task in found.made:
-        _keep_run(task, store)
+        if not store.has(task.key) and task.run is not None:  # it is in the hand-in's folder alone
+            kept = task.into / RUN / RECORDING
+            shutil.copytree(task.run / RECORDING, kept, symlinks=True, ignore=_special)
         store.put(task.key, task.into)
         for hand_in in task.hand_ins:
             notify(by_id[hand_in.id])
@@ -273,13 +269,6 @@ def _next(top: Path) -> Path:
     while os.path.lexists(top / str(number)):
         number += 1
     return top / str(number)
-
-
-def _keep_run(task: Task, store: Store) -> None:
-    """Copy a recording into the store if it is only in the folder of the hand-in."""
-    if not store.has(task.key) and task.run is not None:
-        kept = task.into / RUN / RECORDING
-        shutil.copytree(task.run / RECORDING, kept, symlinks=True, ignore=_special)
 
 
 def _special(folder: str, names: list[str]) -> list[str]:

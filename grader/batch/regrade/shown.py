@@ -143,26 +143,19 @@ def _text(value: str, style: str = "") -> Text:
     return Text(for_terminal(value), style)
 
 
-def page(found: Regrade, to_class: str = "") -> str:
+def page(found: Regrade, to_class: str) -> str:
     """Return the page.
 
     Args:
-        to_class: the path from the page to the folder of the class, for links to reports; '' for no
-            links.
+        to_class: the path from the page to the folder of the class, for links to reports.
     """
-    made: str = (
-        _environment()
-        .get_template("regrade.html")
-        .render(
-            found=found,
-            title=plain(translate(found.exercise.title)),
-            checks=found.of_checks,
-            link=lambda id: (
-                f"{to_class}/{SUBMISSIONS}/{quote(id, safe='')}/{PAGE}" if to_class else ""
-            ),
-        )
+    template = _environment().get_template("regrade.html")
+    return template.render(
+        found=found,
+        title=plain(translate(found.exercise.title)),
+        checks=found.of_checks,
+        link=lambda id: f"{to_class}/{SUBMISSIONS}/{quote(id, safe='')}/{PAGE}",
     )
-    return made
 
 
 @cache

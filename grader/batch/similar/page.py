@@ -59,7 +59,8 @@ def write(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
     page = _environment().get_template("similar.html")
     html = page.render(found=found, exercise=translate(exercise.title))
     files.put(out / PAGE, html.encode("utf-8"))
-    files.put(out / LINES, _json_lines(found).encode("utf-8"))
+    rows = (json.dumps(_row(found, pair), ensure_ascii=False) for pair in found.comparison.pairs)
+    files.put(out / LINES, "".join(f"{row}\n" for row in rows).encode("utf-8"))
 
 
 def compare_class(entries: Sequence[Entry], exercise: Exercise) -> Class:
@@ -103,13 +104,8 @@ def _content(entry: Entry, found: Features | None) -> str:
     return entry.key
 
 
-def _json_lines(found: Class) -> str:
-    """Return a line of JSON for each pair, in the order of the page."""
-    rows = (_row(found, pair) for pair in found.comparison.pairs)
-    return "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows)
-
-
 def _row(found: Class, pair: Pair) -> dict[str, Any]:
+    """Return what a line of JSON tells of a pair."""
     data = asdict(pair)
     ids = [found.students[data.pop(name)].entry.id for name in ("first", "second")]
     return {"schema": SCHEMA, "ids": ids, **data}
@@ -129,9 +125,7 @@ def _environment() -> jinja2.Environment:
 
 
 def _headline(pair: Pair) -> str:
-    if pair.same_content:
-        return tr("the same files, byte for byte")
-    return tr("the same behaviour")
+    return tr("the same files, byte for byte") if pair.same_content else tr("the same behaviour")
 
 
 def _facts(size: int, pair: Pair) -> Iterator[tuple[str, str, str]]:

@@ -129,8 +129,9 @@ def given_files(exercise: Exercise) -> list[File]:
         OSError: one of them cannot be read.
     """
     found = starter(exercise)
-    for path in _right_solutions(exercise):
-        found += _below(path)
+    solutions = read_solutions(exercise) if (exercise.folder / FILE_NAME).is_file() else ()
+    for each in solutions:
+        found += _below(each.path) if each.is_right else []
     return sorted(set(found))
 
 
@@ -138,11 +139,6 @@ def starter(exercise: Exercise, package: str = "") -> list[File]:
     """Return the starter, as `grader new` writes it into a package of this name."""
     files = exercise.starter_files(package).items()
     return [File(f"starter/{name}", data) for name, data in files if name.endswith(".py")]
-
-
-def _right_solutions(exercise: Exercise) -> Iterator[Path]:
-    if (exercise.folder / FILE_NAME).is_file():
-        yield from (each.path for each in read_solutions(exercise) if each.is_right)
 
 
 def _below(path: Path) -> list[File]:

@@ -520,7 +520,7 @@ def test_the_table_has_a_row_a_check_and_adds_up(found, expected):
 
 def test_no_name_is_a_formula_a_tag_or_an_escape(found):
     assert not re.search(r'(^|,)"?=', shown.table(found), re.MULTILINE)
-    page = shown.page(found)
+    page = shown.page(found, "..")
     assert "<script>alert" not in page
     assert "&lt;script&gt;alert(1)" in page
     said = io.StringIO()
@@ -534,7 +534,6 @@ def test_the_page_stands_alone_and_leads_to_each_report(found):
     assert 'href="../../submissions/far/report.html"' in page
     assert not re.search(r'(src|href)="(?!\.\./\.\./submissions/)', page)
     assert "default-src 'none'" in page
-    assert "<a " not in shown.page(found)
 
 
 def test_the_terminal_tells_the_largest_changes_first_and_how_many_more(found, monkeypatch):

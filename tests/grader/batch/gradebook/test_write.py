@@ -156,8 +156,8 @@ def test_no_link_in_the_place_of_an_export_is_followed(tmp_path: Path) -> None:
     assert [path.read_text() for path in elsewhere.iterdir()] == ["mine"]
 
 
-def rows(entries, **options):
-    text = as_csv(grades(entries, **options))
+def rows(entries):
+    text = as_csv(grades(entries))
     assert text.startswith("\ufeff")  # for Excel; every reader of utf-8-sig takes it away
     return list(csv.DictReader(io.StringIO(text[1:]), strict=True))
 
@@ -179,7 +179,6 @@ def test_nobody_pays_for_the_grader_and_nothing_is_worth_nothing() -> None:
         without_result("failed", person(2), message="The grader failed."),
     ]
     assert [row["final"] for row in rows(class_)] == ["0.00", "0.00", ""]
-    assert [row["final"] for row in rows(class_, nothing_is_zero=False)] == ["", "0.00", ""]
     assert rows(class_)[1]["message"] == "No Python file."
 
 
