@@ -91,7 +91,7 @@ def _main(words: Sequence[str]) -> int:
     except options.Misuse as error:
         text = tr("{prog}: error: {message}", prog=error.prog, message=error.message)
         print(f"{error.usage}{for_terminal(text)}", file=sys.stderr)
-        return _misused(error, options.parse_partly(words))
+        return _ended(error, options.parse_partly(words))
     if system.runs_submissions():
         from grader.run.processes import started_process
 
@@ -180,18 +180,11 @@ def _versions() -> str:
     return f"grader {system.grader_version()} ({on})"
 
 
-def _misused(error: options.Misuse, args: Namespace) -> int:
-    try:
-        options.prepare(args)
-    except UsageError as unwritable:
-        print(f"grader: {for_terminal(translate(unwritable.message))}", file=sys.stderr)
-        return error.exit_code
-    return _ended(error, args)
-
-
 def _ended(error: GraderError, args: Namespace, exit_code: int | None = None) -> int:
     """Write the error as data, if that was asked for, and return the exit code."""
     try:
+        if isinstance(error, options.Misuse):  # nothing is prepared yet
+            options.prepare(args)
         options.write(error, args)
     except UsageError as unwritten:
         print(f"grader: {for_terminal(translate(unwritten.message))}", file=sys.stderr)

@@ -123,9 +123,7 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
         "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", len(entries), counts=counts
     )
     console.print(summary)
-    scores = [
-        entry.score for entry in entries if entry.state == "judged" and entry.score is not None
-    ]
+    scores = [e.score for e in entries if e.state == "judged" and e.score is not None]
     if scores:
         most = points(entries[0].max_score)
         console.print(
@@ -153,8 +151,6 @@ def _outcome(entry: Entry) -> str:
         score, most = points(entry.score), points(entry.max_score)
         return tr("{score} of {max_score}", score=score, max_score=most)
     state = _STATES[entry.state]
-    return (
-        tr("{state}: {message}", state=state, message=entry.message)
-        if entry.message
-        else translate(state)
-    )
+    if not entry.message:
+        return translate(state)
+    return tr("{state}: {message}", state=state, message=entry.message)

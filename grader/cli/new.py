@@ -59,7 +59,7 @@ def main(args: argparse.Namespace) -> int:
     """
     folder: Path = args.folder
     exercise = load_exercise(args.exercise)
-    try:
+    with files.writing(folder):
         if folder.exists() and not folder.is_dir():
             raise UsageError(
                 "{folder} is a file; give a new folder, nothing was written", folder=folder
@@ -91,8 +91,6 @@ def main(args: argparse.Namespace) -> int:
                 _write_sheet(copy, exercise, Path(called), package, _grading(called, words))
             if args.ros:
                 _adapt(copy, exercise.subject, args.ros)
-    except OSError as error:
-        raise files.cannot_write(folder, error.strerror or str(error)) from None
     to_fill_in = _with_todos(folder)
     if exercise.starter is None:
         print(tr("The exercise sheet is in {folder}.", folder=folder))

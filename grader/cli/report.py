@@ -79,7 +79,9 @@ def main(args: argparse.Namespace) -> int:
     if summary is not None:
         whole = args.whole
         summed = [reports.read(path, checks, "student") for path in args.result] if whole else shown
-        _append(summary, "".join(reports.render("markdown", [each]) for each in summed))
+        content = "".join(reports.render("markdown", [each]) for each in summed)
+        with files.writing(summary), summary.open("a", encoding="utf-8") as file:
+            file.write(content)
     return 0
 
 
@@ -115,11 +117,6 @@ def _print(content: str) -> None:
         sys.stdout.buffer.flush()
     except BrokenPipeError:  # the reader has closed it: `grader report ... | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _append(path: Path, content: str) -> None:
-    with files.writing(path), path.open("a", encoding="utf-8") as file:
-        file.write(content)
 
 
 def _summary_file() -> Path:

@@ -121,9 +121,6 @@ def change(last: Result | None, result: Result) -> str:
     if last is None:
         return tr("{score} of {max_score}", score=score, max_score=shown(result.max_score))
     by = round(result.score - last.score, 2)
-    sign = "+" if by > 0 else ""
-    return (
-        f"{shown(last.score)} -> {score} ({sign}{shown(by)})"
-        if by
-        else tr("{score}, as before", score=score)
-    )
+    if not by:
+        return tr("{score}, as before", score=score)
+    return f"{shown(last.score)} -> {score} ({'+' if by > 0 else ''}{shown(by)})"

@@ -74,19 +74,16 @@ def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
     Raises:
         RecordingError: it is damaged, or is another one.
     """
-    folder = mcap.parent
+    wrong = f"cannot read the bag in {mcap.parent}"
     try:
         channels = read_channels(mcap)
+        wrong = f"the bag in {mcap.parent} holds no recording"
+        return subject.from_channels(channels, duration_ns)
     except MemoryError:  # a limit
         raise
-    except Exception as error:  # where a bag is damaged, rosbags may raise anything
-        raise RecordingError(f"cannot read the bag in {folder}: {_brief(error)}") from error
-    try:
-        return subject.from_channels(channels, duration_ns)
-    except MemoryError:
-        raise
-    except Exception as error:  # and where a message is, too
-        raise RecordingError(f"the bag in {folder} holds no recording: {_brief(error)}") from error
+    except Exception as error:  # where a bag or a message is damaged, its reader may raise anything
+        # without the error's repr: for a decoding error that is the whole file
+        raise RecordingError(f"{wrong}: {type(error).__name__}: {error!s:.200}") from error
 
 
 def types_of(definitions: Mapping[str, str]) -> Typestore:
@@ -107,11 +104,6 @@ def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
     for msgtype, text in definitions:
         types.register(get_types_from_msg(text, msgtype))
     return types
-
-
-def _brief(error: Exception) -> str:
-    """Format an exception without its repr, which for a decoding error is the whole file."""
-    return f"{type(error).__name__}: {error!s:.200}"
 
 
 # Writing --------------------------------------------------------------------------------------

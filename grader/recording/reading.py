@@ -144,8 +144,7 @@ def _facts(folder: Path) -> dict[str, Any]:
             raise RecordingError(
                 "{path} is no part of a recording: it leads somewhere else", path=str(path)
             )
-        if path.exists() and path.stat().st_size > most:
-            size = path.stat().st_size
+        if path.exists() and (size := path.stat().st_size) > most:
             raise RecordingError(
                 "{path} has {size} bytes; expected {most} at most",
                 path=str(path),

@@ -269,10 +269,7 @@ class Plane(NamedTuple):
 
     def to_px(self, x: float, y: float) -> tuple[float, float]:
         """A place in metres as pixels (y down)."""
-        return (
-            (x - self.origin_m) * self.metre_px,
-            (self.end_m - y) * self.metre_px,
-        )
+        return (x - self.origin_m) * self.metre_px, (self.end_m - y) * self.metre_px
 
     def holds(self, x: float, y: float, slack_m: float = 0.01) -> bool:
         """Whether a place is in it."""

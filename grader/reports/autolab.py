@@ -27,10 +27,7 @@ def render(report: Report) -> str:
     }
     if report.not_shown:
         checks[report.not_shown_name] = {"passed": False, "hint": report.not_shown}
-    return _lines(
-        checks,
-        {verdict.check: text.number(verdict.score) for verdict in report.verdicts},
-    )
+    return _lines(checks, {each.check: text.number(each.score) for each in report.verdicts})
 
 
 def render_error(report: ErrorReport) -> str:

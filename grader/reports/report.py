@@ -112,11 +112,9 @@ class Report:
 
     def seen_by_students(self, verdict: Verdict) -> str:
         """Return, for a teacher, what students see of a verdict; '' for all, and for students."""
-        return (
-            translate(wording.SEEN_BY_STUDENTS.get(verdict.visible, NOTHING))
-            if self.view == "whole"
-            else ""
-        )
+        if self.view != "whole":
+            return ""
+        return translate(wording.SEEN_BY_STUDENTS.get(verdict.visible, NOTHING))
 
     @property
     def folder(self) -> Path:

@@ -61,8 +61,11 @@ def _captured(print_to: Callable[[Console], None]) -> str:
 
 
 def show(report: Report, console: Console) -> None:
-    """Print the report."""
-    _lead(report, console)
+    """Print the report; the first thing to fix is wrapped at words in a terminal."""
+    whole = not console.is_terminal
+    console.print(_text(report.first_line, "bold"), soft_wrap=whole)
+    for line in report.advice:
+        console.print(_text(line), soft_wrap=whole)
     console.print()
     head = tr("{submission}: {exercise}", submission=report.submission, exercise=report.exercise)
     console.print(_text(head, "bold"), soft_wrap=True)
@@ -103,14 +106,6 @@ class _PatientConsole(Console):
         self.quiet = True
         with Path(os.devnull).open("wb") as nowhere:
             os.dup2(nowhere.fileno(), sys.stdout.fileno())
-
-
-def _lead(report: Report, console: Console) -> None:
-    """Print the first thing to fix; in a terminal, lines are wrapped at words."""
-    whole = not console.is_terminal
-    console.print(_text(report.first_line, "bold"), soft_wrap=whole)
-    for line in report.advice:
-        console.print(_text(line), soft_wrap=whole)
 
 
 def _text(value: str, style: str = "") -> Text:

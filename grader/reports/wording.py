@@ -184,29 +184,17 @@ def attempt(result: Result) -> list[str]:
         sentence = tr("{who}, attempt {attempt}.", **who)
     if info.late_s <= 0:
         return [sentence]
-    late = duration(info.late_s)
+    values = {"late": duration(info.late_s), "less": points(info.deducted)}
     if not info.deducted:
-        return [sentence, tr("Handed in {late} late, which costs no points.", late=late)]
-    less = points(info.deducted)
-    if result.not_shown is not None:  # the total would reveal the points of hidden checks
-        return [
-            sentence,
-            tr(
-                "Handed in {late} late: {less} points less in the total of all checks.",
-                late=late,
-                less=less,
-            ),
-        ]
-    return [
-        sentence,
-        tr(
-            "Handed in {late} late: {less} points less; {final} instead of {score}.",
-            late=late,
-            less=less,
-            final=points(result.final),
-            score=points(result.score),
-        ),
-    ]
+        cost = tr("Handed in {late} late, which costs no points.", **values)
+    elif result.not_shown is not None:  # the total would reveal the points of hidden checks
+        cost = tr("Handed in {late} late: {less} points less in the total of all checks.", **values)
+    else:
+        values |= {"final": points(result.final), "score": points(result.score)}
+        cost = tr(
+            "Handed in {late} late: {less} points less; {final} instead of {score}.", **values
+        )
+    return [sentence, cost]
 
 
 def duration(seconds: float) -> str:

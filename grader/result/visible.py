@@ -99,8 +99,7 @@ def _counted(before: NotShown | None, hidden: Sequence[Verdict]) -> NotShown | N
         return before
     until_due = sum(verdict.visible == "after_due" for verdict in hidden)
     worth = sum(verdict.max_score for verdict in hidden)
-    if before is None:
-        return NotShown(len(hidden), round(worth, 2), until_due)
+    before = before or NotShown(0, 0.0)
     return NotShown(
         before.checks + len(hidden),
         round(before.max_score + worth, 2),
