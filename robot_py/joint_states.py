@@ -105,24 +105,21 @@ class JointStates:
         Raises:
             UnusableDescription: it cannot be used; the joints are as they were.
         """
-        try:
-            self._configure(description)
-        except RecursionError as error:  # minidom's, of elements within elements
-            raise UnusableDescription(str(error)) from None
-
-    def _configure(self, description: str) -> None:
         order: list[str] = []
         free: dict[str, FreeJoint] = {}
         dependent: dict[str, Dependence] = {}
-        for element in _joint_elements(description):
-            name = element.getAttribute("name")
-            limits = self._limits(element, name)
-            order.append(name)
-            if self._options.use_mimic_tags and (mimic := _only(element, "mimic")):
-                dependent[name] = _dependence(mimic)
-            elif name not in dependent:
-                is_continuous = element.getAttribute("type") == "continuous"
-                free[name] = self._free_joint(name, limits, is_continuous)
+        try:
+            for element in _joint_elements(description):
+                name = element.getAttribute("name")
+                limits = self._limits(element, name)
+                order.append(name)
+                if self._options.use_mimic_tags and (mimic := _only(element, "mimic")):
+                    dependent[name] = _dependence(mimic)
+                elif name not in dependent:
+                    is_continuous = element.getAttribute("type") == "continuous"
+                    free[name] = self._free_joint(name, limits, is_continuous)
+        except RecursionError as error:  # minidom's, of elements within elements
+            raise UnusableDescription(str(error)) from None
         self._order, self._free, self._dependent = order, free, dependent
 
     def hear(self, values: Values) -> None:

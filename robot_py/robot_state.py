@@ -204,7 +204,9 @@ class RobotState:
     def hear(self, state: JointState, now_ns: int) -> Published:
         """Return what is published when a joint state arrives now."""
         if len(state.names) != len(state.positions):
-            return Published(None, (_complaint(state),))
+            if len(state.positions):
+                return Published(None, (NodeLog("ERROR", INVALID),))
+            return Published(None, (NodeLog("WARN", NO_POSITIONS.format(state.names[0])),))
         if state.stamp_ns < 0:
             # the original ends here, by an uncaught exception
             return Published(None, (NodeLog("ERROR", NEGATIVE),))
@@ -238,9 +240,3 @@ class RobotState:
             for name in sorted(positions)
             if name in self._moving
         )
-
-
-def _complaint(state: JointState) -> NodeLog:
-    if not len(state.positions):
-        return NodeLog("WARN", NO_POSITIONS.format(state.names[0]))
-    return NodeLog("ERROR", INVALID)

@@ -10,9 +10,7 @@ from urllib.parse import urlsplit
 
 def show(address: str) -> bool:
     """Open an address if a browser can show it on this machine's screen; return whether one can."""
-    if not has_browser():
-        return False
-    return webbrowser.open(address)
+    return has_browser() and webbrowser.open(address)
 
 
 def has_browser() -> bool:

@@ -53,7 +53,7 @@ def picture(
         ways: lines on the ground, float64 (n, 2) each; all of them are in the picture.
         labels: lines of text in the picture's upper left corner.
     """
-    lines = [_on_ground(way, height_m) for way in ways]
+    lines = [np.column_stack((way, np.full(len(way), height_m))) for way in ways]
     everything = np.concatenate([robot.corners.reshape(-1, 3), *lines])
     if not len(everything):
         everything = np.array(((-1.0, -1.0, height_m), (1.0, 1.0, height_m)))
@@ -69,10 +69,6 @@ def picture(
     coarse = painted.reshape(size_px, _FINER, size_px, _FINER, 3).mean(axis=(1, 3))
     finished = np.clip(np.floor(coarse + 0.5), 0, 255).astype(np.uint8)
     return _labelled(finished, labels)
-
-
-def _on_ground(way: Floats, height_m: float) -> Floats:
-    return np.column_stack((way, np.full(len(way), height_m)))
 
 
 def _paint(

@@ -206,24 +206,18 @@ class _XmlReader:
             self._at += 1
             self._skip_blanks()
         while not self._at_end():
-            if not self._step():
+            if self._text[self._at] != "<":
+                self._pass_text()
+            elif passed_over := next(
+                (kind for kind in PASSED_OVER if self._text.startswith(kind[0], self._at)), None
+            ):
+                self._pass_over(*passed_over)
+            elif not self._pass_tag():  # nothing behind it counts
                 return self._open[0]
+            self._skip_blanks()
         if len(self._open) > 1:
             self._refuse(Trouble.XML_ERROR_PARSING, self._open[-1].line)
         return self._open[0]
-
-    def _step(self) -> bool:
-        """Read one more thing and the blanks behind it; False where nothing behind it counts."""
-        if self._text[self._at] != "<":
-            self._pass_text()
-        elif passed_over := next(
-            (kind for kind in PASSED_OVER if self._text.startswith(kind[0], self._at)), None
-        ):
-            self._pass_over(*passed_over)
-        elif not self._pass_tag():
-            return False
-        self._skip_blanks()
-        return True
 
     def _pass_text(self) -> None:
         end = self._text.find("<", self._at)

@@ -45,20 +45,13 @@ def _free_port() -> int:
 def _show(simulator: node.TurtlesimNode, stopped: Callable[[], bool]) -> None:
     page = simulator.live
     if page is not None:
-        print(
-            f"\nThe turtles: {page.address}\n"
-            f"Through a forwarded port, add to its address: {page.forwarded_address}\n"
-            f"{_by_ssh(page.address)}"
-            "Ctrl-C ends it.\n",
-            flush=True,
-        )
+        print(f"\nThe turtles: {page.address}")
+        print(f"Through a forwarded port, add to its address: {page.forwarded_address}")
+        if tunnel := browser.tunnel(page.address):
+            print(f"To see it where you are, type there: {tunnel}")
+        print("Ctrl-C ends it.\n", flush=True)
         browser.show(page.address)
     node.simulate(simulator, stopped)
-
-
-def _by_ssh(address: str) -> str:
-    tunnel = browser.tunnel(address)
-    return f"To see it where you are, type there: {tunnel}\n" if tunnel else ""
 
 
 if __name__ == "__main__":

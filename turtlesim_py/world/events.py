@@ -254,10 +254,6 @@ def _text(value: Any) -> str:
     return value
 
 
-def _as_it_is(value: Any) -> Any:
-    return value
-
-
 _READERS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "str": _text,
     "int": _whole,
@@ -268,7 +264,7 @@ _READERS: Final[Mapping[str, Callable[[Any], Any]]] = {
 #: op -> its fields but the tick, in order: how each is read from JSON, and whether it is needed.
 _FIELDS: Final = {
     kind.op: {
-        field.name: (_READERS.get(str(field.type), _as_it_is), field.default is MISSING)
+        field.name: (_READERS.get(str(field.type), lambda it: it), field.default is MISSING)
         for field in fields(kind)
         if field.name != "tick"
     }

@@ -151,28 +151,6 @@ class Appearance:
     pattern: Callable[[], Mask]
 
 
-class _Drawing:
-    """Opaque shapes, one over another."""
-
-    def __init__(self) -> None:
-        self._rgb = np.zeros((*_X.shape, 3), np.int64)
-        self._covered = np.zeros(_X.shape, np.bool_)
-
-    def fill(self, shape: Mask, color: Color) -> None:
-        self._rgb[shape] = color
-        self._covered |= shape
-
-    def pixels(self) -> NDArray[np.uint8]:
-        """Average the points of each pixel; alpha is the share of them that is covered."""
-        blocks = (SIZE_PX, _POINTS, SIZE_PX, _POINTS)
-        count = self._covered.reshape(blocks).sum(axis=(1, 3))
-        total = self._rgb.reshape(*blocks, 3).sum(axis=(1, 3))
-        divisor = np.maximum(count, 1)[..., None]
-        rgb = (total + divisor // 2) // divisor
-        alpha = (count * 255 + _POINTS**2 // 2) // _POINTS**2
-        return np.dstack((rgb, alpha)).astype(np.uint8)
-
-
 def _ellipse(
     x: float, y: float, rx: float, ry: float, tilt: tuple[float, float] = (1.0, 0.0)
 ) -> Mask:
@@ -199,29 +177,39 @@ def _limbs(grow: float = 0.0) -> Mask:
 
 
 def _draw(of: Appearance) -> NDArray[np.uint8]:
-    drawing = _Drawing()
-    drawing.fill(_limbs(_OUTLINE_PX), of.line)
-    drawing.fill(_limbs(), of.skin)
+    """Lay opaque shapes one over another, and average the points of each pixel.
+
+    Alpha is the share of these that is covered.
+    """
+    shapes = [(_limbs(_OUTLINE_PX), of.line), (_limbs(), of.skin)]
     for side in _SIDES:
-        drawing.fill(_ellipse(_MIDDLE + side * 3.0, 5.2, 1.7, 2.0), _WHITE)
-        drawing.fill(_ellipse(_MIDDLE + side * 2.9, 4.6, 1.05, 1.25), _PUPIL)
-    drawing.fill(_shell(_OUTLINE_PX), of.line)
-    drawing.fill(_shell(), of.shell)
-    drawing.fill(of.pattern() & _shell(-1.5), of.mark)
-    return drawing.pixels()
+        shapes.append((_ellipse(_MIDDLE + side * 3.0, 5.2, 1.7, 2.0), _WHITE))
+        shapes.append((_ellipse(_MIDDLE + side * 2.9, 4.6, 1.05, 1.25), _PUPIL))
+    shapes += [(_shell(_OUTLINE_PX), of.line), (_shell(), of.shell)]
+    shapes.append((of.pattern() & _shell(-1.5), of.mark))
+    points, covered = np.zeros((*_X.shape, 3), np.int64), np.zeros(_X.shape, np.bool_)
+    for shape, color in shapes:
+        points[shape] = color
+        covered |= shape
+    blocks = (SIZE_PX, _POINTS, SIZE_PX, _POINTS)
+    count = covered.reshape(blocks).sum(axis=(1, 3))
+    divisor = np.maximum(count, 1)[..., None]
+    rgb = (points.reshape(*blocks, 3).sum(axis=(1, 3)) + divisor // 2) // divisor
+    alpha = (count * 255 + _POINTS**2 // 2) // _POINTS**2
+    return np.dstack((rgb, alpha)).astype(np.uint8)
 
 
 # Patterns, as if the shell went on for ever
 
 
-def _plates(centers: list[tuple[float, float]], gap: float = 1.7) -> Mask:
+def _plates(centers: list[tuple[float, float]]) -> Mask:
     """Cover what is nearer to one centre, from the middle of the shell, than to all the others."""
     distances = []
     for x, y in centers:
         dx, dy = _X - (_SHELL_X + x), _Y - (_SHELL_Y + y)
         distances.append(np.sqrt(dx * dx + dy * dy))
     nearest, second = np.sort(np.stack(distances), axis=0)[:2]
-    plates: Mask = second - nearest > gap
+    plates: Mask = second - nearest > 1.7
     return plates
 
 
