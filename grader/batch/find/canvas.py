@@ -94,8 +94,7 @@ def _parsed(item: Item) -> re.Match[str] | None:
 
 
 def _file(item: Item, match: re.Match[str]) -> _File:
-    filename = match["filename"]
-    again = _AGAIN.fullmatch(filename)
+    again = _AGAIN.fullmatch(filename := match["filename"])
     if again is None:
         return _File(item, int(match["file"]), filename, filename, 0)
     plain = f"{again['stem']}{again['ending']}"

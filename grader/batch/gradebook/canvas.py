@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import PurePath
 
-from grader import files
 from grader.batch.gradebook import known
-from grader.batch.gradebook.feedback import Feedback, has_feedback
+from grader.batch.gradebook.feedback import has_feedback
 from grader.batch.gradebook.grade import Grade, decimal
 from grader.reports.csv import cell, table
 
 _HEADER = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
 _POINTS_POSSIBLE = "Points Possible"
 _ASSIGNMENT = re.compile(r"(.*)\s\((\d+)\)", re.DOTALL)
-FEEDBACK = "feedback.html"
 
 
 def gradebook(grades: Sequence[Grade], assignment: str) -> str:
@@ -67,22 +64,12 @@ def has_number(assignment: str) -> bool:
 
 
 def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
-    """Return the names in the zip: those of the downloaded files, one for a whole group."""
+    """Return the names in the zip: those of the downloaded files, one for a whole group.
+
+    Canvas shows the feedback under the name of the submission, so it has that one's format.
+    """
     named = ((known.canvas_file(grade.entry.hand_in), grade) for grade in grades)
     return {name: grade for name, grade in named if name and has_feedback(grade.entry)}
-
-
-def feedback_file(name: str, grade: Grade, feedback: Feedback) -> bytes:
-    """Return the content of a feedback file, in the format of the submission's name.
-
-    Canvas shows it under that name: a zip contains the page, HTML is the page, all else is text.
-    """
-    suffix = PurePath(name).suffix.lower()
-    if suffix == ".zip":
-        return files.zipped([(FEEDBACK, feedback.page(grade.entry))])
-    if suffix in (".html", ".htm"):
-        return feedback.page(grade.entry)
-    return feedback.markdown(grade.entry)
 
 
 def _row(grade: Grade) -> list[str]:

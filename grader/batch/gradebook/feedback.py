@@ -10,8 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import PurePath
 
-from grader import text
+from grader import files, text
 from grader.batch.entry import Entry
 from grader.batch.gradebook.grade import LONGEST, Grade, out_of
 from grader.message import Message, msg
@@ -26,6 +27,8 @@ from grader.translations import LANGUAGES, tr, translate
 
 #: The time of a line in ROS's log; and an address in memory, in Python's format.
 _LOGGED_AT, _ADDRESS = re.compile(r"\[\d{9,11}\.\d{9}\]"), re.compile(r"\b0x[0-9a-f]{8,16}\b")
+#: The name of a page.
+PAGE = "feedback.html"
 #: The begin of each comment: it shows that the grader wrote a comment that comes back.
 MARK = msg("Graded automatically:")
 
@@ -39,6 +42,16 @@ class Feedback:
     """
 
     view: View = "student"
+
+    def file(self, name: str, entry: Entry) -> bytes:
+        """Return the feedback in the format of a file's name.
+
+        A zip contains the page, HTML is the page, all else is text.
+        """
+        suffix = PurePath(name).suffix.lower()
+        if suffix == ".zip":
+            return files.zipped([(PAGE, self.page(entry))])
+        return self.page(entry) if suffix in (".html", ".htm") else self.markdown(entry)
 
     def page(self, entry: Entry) -> bytes:
         """Return a self-contained HTML page."""

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from grader import text
 from grader.batch.gradebook import known
-from grader.batch.gradebook.feedback import Feedback, has_feedback, is_ours
+from grader.batch.gradebook.feedback import PAGE, Feedback, has_feedback, is_ours
 from grader.batch.gradebook.grade import Grade, decimal
 from grader.reports.csv import cell, table
 
@@ -25,7 +25,6 @@ WORKSHEET = (
 )
 #: Moodle recognises a folder or file of feedback by this, after name and number.
 _PLUGIN = "assignsubmission_file"
-FEEDBACK = "feedback.html"
 #: The longest name of a person in a file name [characters]; Moodle does not read it.
 _LONGEST_NAME = 60
 _NOT_IN_FILE_NAMES = re.compile(r'[\x00-\x1f\x7f_/\\<>:"|?*\ufffd]+')
@@ -70,7 +69,7 @@ def grade_import_key(grades: Sequence[Grade]) -> tuple[str, ...]:
 def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
     """Return the names in the zip of feedback: Moodle reads the number, and shows the end."""
     return {
-        f"{_name(grade)}_{known.participant(grade.person)}_{_PLUGIN}_{FEEDBACK}": grade
+        f"{_name(grade)}_{known.participant(grade.person)}_{_PLUGIN}_{PAGE}": grade
         for grade in numbered(grades)
         if has_feedback(grade.entry)
     }

@@ -13,7 +13,7 @@ bytes, in each language.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -90,22 +90,16 @@ def write(
 def _feedback(everybody: Sequence[Grade], feedback: Feedback) -> dict[str, bytes]:
     """Return the zips of feedback; empty bytes for one that would be empty."""
 
-    def page(name: str, grade: Grade) -> bytes:
-        return feedback.page(grade.entry)
-
-    def as_submitted(name: str, grade: Grade) -> bytes:
-        return canvas.feedback_file(name, grade, feedback)
-
-    def made(members: Mapping[str, Grade], content: Callable[[str, Grade], bytes]) -> bytes:
-        each = ((name, content(name, members[name])) for name in sorted(members))
+    def made(members: Mapping[str, Grade]) -> bytes:
+        each = ((name, feedback.file(name, members[name].entry)) for name in sorted(members))
         return files.zipped(each) if members else b""
 
     for_moodle, for_canvas = moodle.feedback_files(everybody), canvas.feedback_files(everybody)
     others = {f"{g.entry.id}.html": g for g in everybody if has_feedback(g.entry)}
     return {
-        MOODLE_FEEDBACK: made(for_moodle, page),
-        CANVAS_FEEDBACK: made(for_canvas, as_submitted),
-        FEEDBACK: b"" if for_moodle or for_canvas else made(others, page),
+        MOODLE_FEEDBACK: made(for_moodle),
+        CANVAS_FEEDBACK: made(for_canvas),
+        FEEDBACK: b"" if for_moodle or for_canvas else made(others),
     }
 
 
@@ -114,16 +108,12 @@ def as_csv(grades: Sequence[Grade]) -> str:
 
     Each check has a column; its cell is empty where there is no verdict.
     """
-    checks = check_names(grades)
+    # in the order of the rubric
+    checks = list(dict.fromkeys(check for grade in grades for check in grade.entry.verdicts))
     reserved = {*_BEFORE, *_AFTER}
     titles = [f"{check} (check)" if check in reserved else check for check in checks]
     header = [cell(title) for title in (*_BEFORE, *titles, *_AFTER)]
     return BYTE_ORDER_MARK + table([header, *(_row(grade, checks) for grade in grades)])
-
-
-def check_names(grades: Sequence[Grade]) -> list[str]:
-    """Return the names of all checks, in the order of the rubric."""
-    return list(dict.fromkeys(check for grade in grades for check in grade.entry.verdicts))
 
 
 def _row(grade: Grade, checks: Sequence[str]) -> list[str]:

@@ -217,15 +217,8 @@ def _of_checks(before: Entry, after: Entry) -> Iterable[Difference]:
         if was is None or is_ is None or _visible(was) != _visible(is_):
             some = is_ or was
             assert some is not None
-            gained = (is_.score if is_ else 0.0) - (was.score if was else 0.0)
-            yield Difference(
-                name,
-                title_of(some),
-                was,
-                is_,
-                round(gained, 2),
-                _why(was, is_),
-            )
+            gained = round((is_.score if is_ else 0.0) - (was.score if was else 0.0), 2)
+            yield Difference(name, title_of(some), was, is_, gained, _why(was, is_))
 
 
 def _visible(verdict: Verdict) -> tuple[object, ...]:

@@ -17,6 +17,7 @@ import shutil
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 
 from grader import files, scratch, system
@@ -247,7 +248,8 @@ def keep(found: Regrade, store: Store) -> Path:
         UsageError: it cannot be written.
     """
     top = store.out / BEFORE
-    made, into = store.new_place() / BEFORE, _next(top)
+    made, numbered = store.new_place() / BEFORE, (top / str(number) for number in count(1))
+    into = next(path for path in numbered if not os.path.lexists(path))
     with files.writing(top):
         for name in (CLASS, *GRADEBOOKS):
             if (store.out / name).is_file():
@@ -264,13 +266,6 @@ def keep(found: Regrade, store: Store) -> Path:
     return into
 
 
-def _next(top: Path) -> Path:
-    number = 1
-    while os.path.lexists(top / str(number)):
-        number += 1
-    return top / str(number)
-
-
 def _special(folder: str, names: list[str]) -> list[str]:
     """Return the names that no recording has: pipes, links, devices."""
     paths = (Path(folder, name) for name in names)
@@ -282,11 +277,6 @@ def _put_unjudged(entry: Entry, found: Regrade, store: Store) -> None:
     place = store.new_place()
     folder = place / STUDENTS / entry.id
     files.make_folder(folder)
-    exercise = found.exercise
-    replace(
-        entry,
-        max_score=exercise.max_score,
-        exercise_sha256=exercise.sha256,
-        folder=folder,
-    ).put()
+    score, digest = found.exercise.max_score, found.exercise.sha256
+    replace(entry, max_score=score, exercise_sha256=digest, folder=folder).put()
     store.put("", place)

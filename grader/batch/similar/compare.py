@@ -166,7 +166,8 @@ class Commands:
             for other in by_length[at + 1 :]:
                 if len(one) < LEAST_SHARE * len(other):
                     break  # all others are longer still
-                if are_alike(one, other):
+                # nearly all n-grams in common
+                if len(one & other) >= max(FEWEST, LEAST_SHARE * len(other)):
                     self._alike[one].append(other)
                     self._alike[other].append(one)
 
@@ -199,11 +200,6 @@ def grams(commands: Sequence[TimedCommand]) -> Kind:
     return frozenset(
         hash_of(word for step in steps[at : at + LENGTH] for word in step) for at in range(last)
     )
-
-
-def are_alike(one: Kind, other: Kind) -> bool:
-    """Whether two kinds have nearly all n-grams in common."""
-    return len(one & other) >= max(FEWEST, LEAST_SHARE * max(len(one), len(other)))
 
 
 def equal(one: Sequence[TimedCommand], other: Sequence[TimedCommand]) -> tuple[float, float]:
