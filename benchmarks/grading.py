@@ -31,6 +31,7 @@ from measuring import ROOT, Cost, Group, load, median, ratio, row, spread
 
 import grader
 from grader import grading
+from grader.exercise import DEFAULT
 from grader.exercise.loading import load_exercise
 from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
@@ -74,13 +75,6 @@ def virtual_run(own: Group, path: Path, exercise: str = "") -> tuple[Cost, int]:
     return cost, recording.run.ticks
 
 
-def cast_grading(own: Group, path: Path, exercise: str) -> tuple[Cost, float]:
-    """Grade a submission with all its cases; also return the score."""
-    begun = own.now()
-    score = grader.grade(path, exercise).score
-    return own.since(begun), score
-
-
 def real_run(own: Group, path: Path) -> tuple[Cost, int]:
     """Run a submission once in real time; also return the ticks."""
     with grader.open_submission(path) as submission:
@@ -89,11 +83,12 @@ def real_run(own: Group, path: Path) -> tuple[Cost, int]:
         return own.since(begun), recording.run.ticks
 
 
-def gradings(own: Group, path: Path, at_once: int) -> tuple[Cost, list[float]]:
+def gradings(own: Group, path: Path, exercise: str, at_once: int = 1) -> tuple[Cost, list[float]]:
     """Grade a submission as many times at once, all its runs each; also return the scores."""
     begun = own.now()
     with ThreadPoolExecutor(at_once) as pool:
-        scores = [result.score for result in pool.map(grader.grade, [path] * at_once)]
+        results = pool.map(grader.grade, [path] * at_once, [exercise] * at_once)
+        scores = [result.score for result in results]
     return own.since(begun), scores
 
 
@@ -196,7 +191,7 @@ def table_of_casts(env: dict[str, str], repetitions: int) -> None:
     units = Units(env, 3)
     for name in TUTORIALS:
         path = ROOT / "tests" / "submissions" / "tutorials" / name / "right" / "official.py"
-        for what, work in (("run of the usual case", virtual_run), ("grading", cast_grading)):
+        for what, work in (("run of the usual case", virtual_run), ("grading", gradings)):
             with worker() as do:
                 do(work, path, name)
                 done = do(work, path, name, times=repetitions)
@@ -222,8 +217,9 @@ def table_of_rates(env: dict[str, str], repetitions: int) -> None:
     units = Units(env, 3, "gradings a minute", "peak [MiB]")
     for at_once in AT_ONCE:
         with worker() as do:
-            do(gradings, REFERENCE, at_once)
-            jobs = [cost for cost, _ in do(gradings, REFERENCE, at_once, times=repetitions)]
+            asked = (gradings, REFERENCE, DEFAULT, at_once)
+            do(*asked)
+            jobs = [cost for cost, _ in do(*asked, times=repetitions)]
         each = [
             Cost(s.wall_s / at_once, None if s.cpu_s is None else s.cpu_s / at_once) for s in jobs
         ]

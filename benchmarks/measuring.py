@@ -32,6 +32,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -296,11 +297,9 @@ def floor() -> None:
 
 def yardsticks(env: Mapping[str, str], repetitions: int) -> list[list[Cost]]:
     """Measure both yardsticks, in turns."""
-
-    def process(name: str) -> Callable[[], Cost]:
-        return lambda: command([sys.executable, __file__, name], env)
-
-    return in_turns(repetitions, process("start"), process("floor"))
+    names = ("start", "floor")
+    both = (partial(command, [sys.executable, __file__, name], env) for name in names)
+    return in_turns(repetitions, *both)
 
 
 if __name__ == "__main__":

@@ -362,15 +362,13 @@ def without_self_dot(ctx: type[ast.expr_context], methods: bool = False) -> Plac
     return places
 
 
-def arguments(
-    of: str, change: Callable[[list[str]], list[str]], methods_only: bool = False
-) -> Places:
-    """Change the arguments of a callback where it is defined."""
+def arguments(of: str, change: Callable[[list[str]], list[str]]) -> Places:
+    """Change the arguments of a callback where it is defined; '' for all methods."""
 
     def places(program: Program) -> Iterator[Change]:
         for each in program.callbacks(of) if of else program.functions:
             old = [program.code(arg) for arg in each.args.args]
-            if each.name == "__init__" or (methods_only and old[:1] != ["self"]):
+            if each.name == "__init__" or (not of and old[:1] != ["self"]):
                 continue
             begin = program.text.index("(", program.span(each)[0]) + 1
             end = program.text.index(")", begin)
@@ -644,7 +642,7 @@ OPERATORS: tuple[Operator, ...] = (
     Operator("callback_called", r"without (?:parentheses|brackets)|at once",
              called("create_timer", "create_subscription", "add_done_callback")),
     Operator("method_without_self", r"takes self|self before|def \w+\(self",
-             arguments("", lambda old: old[1:], methods_only=True)),
+             arguments("", lambda old: old[1:])),
     Operator("callback_without_message", r"takes no message|given the message",
              arguments("create_subscription", lambda old: old[:-1])),
     Operator("timer_with_message", r"timer is (?:given|called with) nothing|nothing but self",
@@ -765,8 +763,7 @@ OPERATORS: tuple[Operator, ...] = (
              insert("create_timer", "{name}()", last=True)),
     Operator("none_compared", r"(?-i:\bNone\b)", swap(r"^( +self\.(?:x|y) = )5\.5$", r"\1None")),
     Operator("guard_of_none_missing", r"(?-i:\bNone\b)",
-             drop(
-                  r"^ +if \w+\.(?:pose|x) is None:\n(?: +rate\.sleep\(\)\n)? +continue\n"),
+             drop(r"^ +if \w+\.(?:pose|x) is None:\n(?: +rate\.sleep\(\)\n)? +continue\n"),
              missing=True),
     Operator("return_missing", r"\breturn", swap(r"\breturn (?=\d|True)", "")),
     Operator("swallowed", r"hides|catches", swallowing),

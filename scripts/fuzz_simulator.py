@@ -26,8 +26,8 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -235,11 +235,8 @@ def _plain(name: str) -> str:
     return "/".join(name.split("/")[2:]) if name.count("/") > 1 else name
 
 
-@contextmanager
-def simulator(
-    chance: random.Random,
-) -> Iterator[tuple[subprocess.Popen[bytes], Caller, Callable[[], str]]]:
-    """Start a `turtlesim_node`; yield its process, a caller, and a function that reads its log."""
+def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
+    """Call everything of a `turtlesim_node`; return the counts, and what went wrong."""
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-m", "turtlesim_py.ros.node"]
     with (
@@ -252,24 +249,19 @@ def simulator(
             until = time.monotonic() + 30
             while not caller.find() and time.monotonic() < until:
                 time.sleep(0.1)
-            yield process, caller, lambda: (Path(folder) / "log").read_text(errors="replace")
+            until = time.monotonic() + seconds
+            while time.monotonic() < until and process.poll() is None:
+                caller.find()
+                caller.send()
+            alive = process.poll() is None and caller.is_answered()
         finally:
             caller.close()
             process.kill()
-
-
-def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
-    """Call everything; return the counts, and what went wrong."""
-    with simulator(chance) as (process, caller, log):
-        until = time.monotonic() + seconds
-        while time.monotonic() < until and process.poll() is None:
-            caller.find()
-            caller.send()
-        alive = process.poll() is None and caller.is_answered()
-        for line in log().splitlines():
-            if "Cannot serve [" in line:
-                caller.counts[line[line.index("Cannot") :][:150]] += 1
-        return caller.counts, "" if alive else f"it died or does not answer: {log()[-2000:]}"
+        said = (Path(folder) / "log").read_text(errors="replace")
+    for line in said.splitlines():
+        if "Cannot serve [" in line:
+            caller.counts[line[line.index("Cannot") :][:150]] += 1
+    return caller.counts, "" if alive else f"it died or does not answer: {said[-2000:]}"
 
 
 # On the link ------------------------------------------------------------------------------------

@@ -473,16 +473,12 @@ def answered(drawn: Drawn, exercise: Exercise) -> Answer:
     return Answer(drawn, time.monotonic() - began, loses=loses, found=result.diagnosis)
 
 
-def short(exercise: Exercise) -> Exercise:
-    """Return an exercise whose runs are over after `SHORT_S`, and that has one varied run."""
-    limits = replace(exercise.limits, total_s=SHORT_S)
-    return replace(exercise, limits=limits, varied=replace(exercise.varied, count=1))
-
-
 def search_mistakes(count: int, seed: int, until: float, show: bool, is_quick: bool) -> None:
     """Print how often the first line has the place and the words of a mistake, and where not."""
     exercise = replace(load_exercise("turtlesim_challenge"), cpu_s=CPU_S)
-    exercise = short(exercise) if is_quick else exercise
+    if is_quick:
+        limits = replace(exercise.limits, total_s=SHORT_S)
+        exercise = replace(exercise, limits=limits, varied=replace(exercise.varied, count=1))
     drawn = list(some_mistakes(count, random.Random(seed)))
 
     def answer(each: Drawn) -> Answer | None:
@@ -534,13 +530,12 @@ def main() -> None:
     kinds = ("right", "wrong", *KINDS, "mistakes")
     parser.add_argument("--only", choices=kinds, help="controllers of a kind")
     asked = parser.parse_args()
+    until = time.monotonic() + asked.limit_s
     if asked.only == "mistakes":
-        until = time.monotonic() + asked.limit_s
         search_mistakes(asked.count, asked.seed, until, asked.show, asked.quick)
         return
     exercise = load_exercise("turtlesim_challenge")
     chance = random.Random(asked.seed)
-    until = time.monotonic() + asked.limit_s
     of: Counter[str] = Counter()
     good: Counter[str] = Counter()
     for number in range(asked.count):

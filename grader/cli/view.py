@@ -62,7 +62,10 @@ def main(args: argparse.Namespace) -> int:
     place = find_recording(args.recording)
     if args.out is not None:
         files.check_writable(args.out)
-        _check_is_no_part(args.out, args)
+        for given in options.inputs(args):  # no file that the page is made of is overwritten
+            part = find_recording(given)
+            beside = (part.folder / name for name in (RESULT, PAGE, *ARTIFACTS.values()))
+            files.check_is_no_input(args.out, [given, *beside, *part.recording.rglob("*")])
     recordings = load_all(place.recording)
     render = load_subject(recordings.nominal.scene).player
     if render is None:
@@ -82,22 +85,12 @@ def main(args: argparse.Namespace) -> int:
     return 0
 
 
-def _check_is_no_part(out: Path, args: argparse.Namespace) -> None:
-    """Refuse to overwrite a file that the page is made of."""
-    for given in options.inputs(args):
-        place = find_recording(given)
-        beside = (place.folder / name for name in (RESULT, PAGE, *ARTIFACTS.values()))
-        files.check_is_no_input(out, [given, *beside, *place.recording.rglob("*")])
-
-
 def _not_played(place: RecordingPlace, recordings: Recordings) -> Message:
     scene = recordings.nominal.scene
     page = place.folder / PAGE
-    instead = (
-        msg("look at {page}", page=page)
-        if page.is_file()
-        else msg("{page} beside its result shows it", page=PAGE)
-    )
+    instead = msg("look at {page}", page=page)
+    if not page.is_file():
+        instead = msg("{page} beside its result shows it", page=PAGE)
     return msg(
         "a recording of the scene {scene!r} cannot be played; {instead}",
         scene=scene,

@@ -64,9 +64,8 @@ class ErrorReport:
     @property
     def name(self) -> str:
         """The name of the submission in a class: alice for alice.json and alice/error.json."""
-        if self.file is None:
+        if (file := self.file) is None:
             return ""
-        file = self.file
         return text.one_line(text.plain(file.parent.name if file.stem == "error" else file.stem))
 
     @property

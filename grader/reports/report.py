@@ -248,9 +248,9 @@ class Report:
             where = tr("{file}, line {line}, in {function}", **at)
         else:
             where = tr("{file}, line {line}", **at)
-        return text.one_line(
-            tr("{where}: {code}", where=where, code=place.text) if place.text else where
-        )
+        if place.text:
+            where = tr("{where}: {code}", where=where, code=place.text)
+        return text.one_line(where)
 
     def outcome(self, run: int) -> str:
         """Return how a run ended, as a key of `wording.OUTCOMES`."""

@@ -246,13 +246,10 @@ def provenance(origin: ResultProvenance) -> list[str]:
 
 def _when(date: str) -> str:
     """Format a date like '2026-11-21T23:52:52Z' for people."""
-    day, _, time = date.partition("T")
-    year, _, rest = day.partition("-")
-    month, _, of_month = rest.partition("-")
-    return tr(
-        "{year}-{month}-{day} at {time} UTC",
-        **{"year": year, "month": month, "day": of_month, "time": time[:5]},
-    )
+    date, _, time = date.partition("T")
+    year, _, rest = date.partition("-")
+    month, _, day = rest.partition("-")
+    return tr("{year}-{month}-{day} at {time} UTC", year=year, month=month, day=day, time=time[:5])
 
 
 def _short(sha256: str) -> str:
