@@ -26,7 +26,7 @@ from grader.recording.observations import (
     SourceLine,
     Standstill,
 )
-from grader.recording.recording import Recording, Run
+from grader.recording.recording import ProgramRun, Recording, Run
 from grader.recording.subject import Endpoint, EndpointKind, load_subject
 from grader.text import clip, one_line, plain
 
@@ -92,8 +92,24 @@ class Case:
 
     @property
     def tail(self) -> str:
-        """The end of its output, as far as that is searched."""
-        return self.recording.output[-_TAIL:]
+        """The end of its output, as far as that is searched; of several, that of who has failed."""
+        output = self.recording.output if self.failed is None else self.failed.output
+        return output[-_TAIL:]
+
+    @cached_property
+    def failed(self) -> ProgramRun | None:
+        """The one of several programs that the outcome is due to; None where none has failed."""
+        run = self.run
+        if len(run.programs) < 2 or run.outcome == "finished":
+            return None
+        ends = (each for each in run.programs if each.outcome == run.outcome)
+        return next((each for each in ends if each.exit_code == run.exit_code), None)
+
+    @cached_property
+    def heard(self) -> frozenset[str]:
+        """The topics on which the exercise hears what several programs send to each other."""
+        messages = getattr(self.recording.trace, "messages", ())
+        return frozenset(m.topic for m in messages if len(self.run.programs) > 1)
 
     @property
     def last_line(self) -> str:
@@ -125,7 +141,9 @@ class Case:
     def ended_s(self) -> float | None:
         """When the program ended by itself, without an error; None if it did not."""
         observed = self.observed
-        is_end = self.run.outcome == "exited" or self.is_shut_down
+        programs = self.run.programs if len(self.run.programs) > 1 else ()
+        is_end = self.run.outcome == "exited" or any(each.exit_code == 0 for each in programs)
+        is_end = is_end or self.is_shut_down
         if observed.is_known and observed.raised is not None and is_end:
             return observed.raised.time_s  # sys.exit()
         return observed.returned_s if observed.is_known else None

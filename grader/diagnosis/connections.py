@@ -24,6 +24,8 @@ _UNTIL_IT_IS_THERE = {
     "client": "while not client.wait_for_service(timeout_sec=1.0): pass",
     "action_client": "client.wait_for_server()",
 }
+#: A turtle that a program has to spawn.
+_TURTLE = re.compile(r"/(turtle(?:[2-9]|\d\d))/")
 #: A longer name is nobody's mistake.
 _LONGEST_NAME = 100
 #: rclpy's warning that the QoS of two ends of a topic is incompatible, from either side.
@@ -237,16 +239,22 @@ def _first(
             continue
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
+        if end.kind == "publisher" and end.name in case.heard and near not in case.scene_has:
+            continue  # as it is asked for: another program has the wrong name
         if end.name == near.name:
             place = lint_findings.imported_at(case, end.type, near.type) or end.place
             cause, of_unused = other_type, unused_of_type
         else:
             place = lint_findings.named_at(case, end.name, end.place)
             cause, of_unused = other_name, unused_of_name
+        fix = _fix(end, near)
+        if (other := _TURTLE.match(end.name)) and near.name.startswith("/turtle1/"):
+            fix = msg("Is {turtle} spawned? Else write '{name}' there.", turtle=other[1],
+                      name=near.name)  # fmt: skip
         return diagnosed(
             key,
             cause if end.used else of_unused or cause,
-            _fix(end, near),
+            fix,
             place,
             name=excerpt(end.name),
             type=excerpt(end.type),

@@ -50,6 +50,7 @@ RULES: Final[tuple[Rule, ...]] = (
     crash.killed,
     crash.thread_crashed,
     unnoticed.ended_by_caught,
+    standstill.starts_what_is_not_there,
     connections.waits_in_vain,
     connections.publishes_to_nobody,
     connections.has_unfit_qos,
@@ -107,7 +108,7 @@ def diagnose(
                 continue
             found = next((each for rule in rules if (each := rule(case)) is not None), None)
             if found is not None:
-                return _in_run(_at_its_line(found, case), number)
+                return _in_run(_at_its_line(found, case), case, number)
     found = costliest(verdicts)
     return found if found is None else _with_source(found, cases[found.run])
 
@@ -124,9 +125,11 @@ def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
     return replace(found, place=first_of(case, lines[found.key]) or found.place)
 
 
-def _in_run(found: Diagnosis, number: int) -> Diagnosis:
-    """Add the run's number to a diagnosis, and make it fit to be shown."""
+def _in_run(found: Diagnosis, case: Case, number: int) -> Diagnosis:
+    """Add the run's number to a diagnosis, and whose it is; make it fit to be shown."""
     cause = found.cause
+    if case.failed is not None:
+        cause = msg("{program}: {cause}", program=excerpt(case.failed.name), cause=cause)
     if number:
         cause = msg("In varied run {number}: {cause}", number=number, cause=cause)
     return _shown(replace(found, run=number, cause=cause))

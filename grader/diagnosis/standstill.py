@@ -16,8 +16,9 @@ from grader.diagnosis.case import (
     since,
 )
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.message import NOTHING, Message, msg, msg_many
+from grader.message import NOTHING, Message, joined, msg, msg_many
 from grader.recording.observations import SourceLine, Standstill
+from grader.recording.recording import NOT_THERE
 from grader.text import clip
 
 #: A program that comes to its end by itself before this has hardly spun [s].
@@ -183,6 +184,17 @@ def is_deaf(case: Case) -> Diagnosis | None:
     """The program never spins its node, which is to hear something or to get an answer."""
     is_to_hear = any(end.kind != "publisher" for end in case.observed.ends)
     return never_spins(case) if is_to_hear else None
+
+
+def starts_what_is_not_there(case: Case) -> Diagnosis | None:
+    """A launch file names a program that the set-up does not install."""
+    for flag in case.run.flags:
+        if flag.key == NOT_THERE.key:
+            help_ = msg(
+                "Write one of these names in the launch file, or add it to console_scripts."
+            )
+            return diagnosed("starts_what_is_not_there", joined([flag, "."]), help_)
+    return None
 
 
 def never_spins(case: Case) -> Diagnosis | None:

@@ -96,7 +96,7 @@ def remarks(recording: Recording, all_passed: bool = False) -> list[Message]:
         all_passed: whether every check of the exercise did.
     """
     found: list[Message] = []
-    if recording.run.outcome == "crashed" and all_passed:
+    if recording.run.outcome == "crashed" and all_passed and len(recording.run.programs) < 2:
         found.append(
             msg(
                 "After its work was done the node ended with an error: {error}; it costs no "

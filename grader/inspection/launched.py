@@ -8,6 +8,7 @@ from grader import text
 from grader.inspection.error_texts import described, placed
 from grader.inspection.trace import PREFIX, Lacking, LaunchedNode, LaunchFile, PackageTrace, Skipped
 from grader.message import NOTHING, Message, Text, joined, msg, msg_many, plain_text
+from grader.recording.recording import NOT_THERE
 from grader.recording.view import Cell, Table
 
 HEADINGS = (
@@ -185,15 +186,8 @@ def not_installed(trace: PackageTrace) -> list[Message]:
             )
         for node in launch.nodes:
             if node.package == setup.name and node.executable not in names:
-                found.append(
-                    msg(
-                        "{file} starts {program}, which setup.py does not install; it installs"
-                        " {names}",
-                        file=launch.file,
-                        program=node.executable,
-                        names=", ".join(names)[:200],
-                    )
-                )
+                program, installed = node.executable, ", ".join(names)[:200]
+                found.append(NOT_THERE.given(file=launch.file, program=program, names=installed))
     return found
 
 

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Final, Literal
 
-from grader.message import Message
+from grader.message import Message, msg
 from grader.recording.observations import Observations
 from grader.recording.subject import Start, Trace, load_subject
 from grader.recording.view import Pictures, Pixels
@@ -25,6 +25,10 @@ Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "kil
 Clock = Literal["virtual", "real"]
 #: Of what each program has printed, a run keeps so much beside the output of all [characters].
 LONGEST_OUTPUT: Final = 4_000
+#: A flag of a run whose launch file names a program that is not there.
+NOT_THERE: Final = msg(
+    "{file} starts {program}, which setup.py does not install; it installs {names}"
+)
 #: So many programs a run may have at once: they share its limits.
 MOST_PROGRAMS: Final = 8
 

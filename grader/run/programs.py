@@ -63,7 +63,8 @@ def observations_of(
 ) -> Observations:
     """Return what is known of the program that a run's outcome is due to.
 
-    Where none has failed, what they lack may be between them: then it is what is known of all.
+    Where none has failed, what they lack may be between them: then it is what is known of all, and
+    first of one that has ended and never spun its nodes.
 
     Args:
         computes: of each, whether it would have gone on without waiting for anything.
@@ -74,7 +75,12 @@ def observations_of(
         for each, end, is_busy in zip(running, ends, computes, strict=True)
         if not ends[number].has_failed or each is running[number]
     ]
-    its = known.pop(0 if ends[number].has_failed else number)
+    if ends[number].has_failed:
+        return known[0]
+    deaf = (each.is_known and bool(each.ends) and each.spun_s is None for each in known)
+    ended = (is_deaf and end.exit_code == 0 for end, is_deaf in zip(ends, deaf, strict=True))
+    number = next((place for place, has_ended in enumerate(ended) if has_ended), number)
+    its = known.pop(number)
     return its.joined(known)
 
 

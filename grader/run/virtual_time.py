@@ -55,6 +55,8 @@ STOPPED = msg("the node's process was stopped (SIGSTOP), and nobody let it go on
 FLOODING = msg(
     "the node sent so much that the simulator used more than {seconds} s of processor time"
 )
+ENDED = msg("{program} ended by itself at {at:.1f} s")
+OF_PROGRAM = msg("{program}: {flag}")
 TOO_LATE = msg("{program} was to start at {at:g} s, when the run was over")
 NEVER_ENDED = msg("{program} was to start at the end of {other}, which did not come")
 #: The silences of a program that still runs, and can be asked to dump where it is.
@@ -167,7 +169,17 @@ def _try(
         for (how, _), (_, told, code) in zip(judged, how_each_ended, strict=True)
     ]
     late = [flags for how, flags in judged if how == "not_run"]
-    flags = (*judged[blamed(ends)][1], *chain(*late), *map(Message.parse, message["flags"]))
+    late += [
+        [ENDED.given(program=its.program.name, at=end.at_s)]
+        for (its, *_), end in zip(how_each_ended, ends, strict=True)
+        if end.exit_code == 0 and any(each.exit_code is None for each in ends)
+    ]
+    number = blamed(ends)
+    its_flags = judged[number][1] if ends[number].outcome != "not_run" else []
+    if len(running) > 1:
+        name = running[number].program.name
+        its_flags = [OF_PROGRAM.given(program=name, flag=flag) for flag in its_flags]
+    flags = (*its_flags, *chain(*late), *map(Message.parse, message["flags"]))
     computes = [told["silence"] in COMPUTES for _, told, _ in how_each_ended]
     observations = observations_of(running, ends, computes)
     ending = ending_of("virtual", running, ends, context.isolation, started, flags)
@@ -284,8 +296,10 @@ def _judge(
     """Return the outcome of the run, and remarks on it."""
     silence, waits, at_rest = ending["silence"], ending["waits"], ending["was_at_rest"]
     if exit_code is None and waits:
+        # of several, one may well wait while others go on: nobody asks whether it is at rest
+        is_done = at_rest or (at_rest is None and waits == "for ever")
         flag = WAITS_FOR_EVER if waits == "for ever" else STUCK
-        return ("finished" if at_rest else "stalled"), ([] if at_rest else [flag])
+        return ("finished" if is_done else "stalled"), ([] if is_done else [flag])
     if silence == "stalled":
         used_s = patience.stall_cpu_s
         why = msg(

@@ -186,17 +186,20 @@ def _among(
 ) -> Submission:
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
     together = [] if executable or submitted.launch else packages.together(submitted.programs)
+    notes: tuple[Message, ...] = ()
     if inspection and executable is None and len(together) != 1:
         launched = find_launched(submitted, packages, inspection, is_needed=not together)
-        if launched is not None:
+        notes = launched.notes
+        if launched.scripts:
             found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
             found = replace(found, start=Launch(found.programs), found=launched.found)
-            return replace(found, notes=(*launched.notes, *found.notes))
+            return replace(found, notes=(*notes, *found.notes))
     if len(together) > 1:
-        started = [StartedScript.alone(*choice) for choice in together]
-        return _from_scripts(submitted, packages, started, unpacking.scratch)
+        started = [StartedScript.plain(*each, number) for number, each in enumerate(together, 1)]
+        found = _from_scripts(submitted, packages, started, unpacking.scratch)
+        return replace(found, notes=(*notes, *found.notes))
     if choice := packages.choose(executable):
-        started = [StartedScript.alone(*choice)]
+        started = [StartedScript.plain(*choice)]
         return _from_scripts(submitted, packages, started, unpacking.scratch)
     candidates = [file for file in files if may_be_node(file)]
     if not candidates:
@@ -213,8 +216,8 @@ def _among(
         return _without_script(submitted, package, chosen)
     others = [submitted.called(file) for file in starting if file != chosen]
     found = _from_file(submitted, chosen)
-    notes = [*(_unbuilt(submitted, chosen) or found.notes), *not_started("program", others)]
-    return replace(found, notes=tuple(notes))
+    more = [*(_unbuilt(submitted, chosen) or found.notes), *not_started("program", others)]
+    return replace(found, notes=tuple(more))
 
 
 def _no_launch_files(name: str, launch: str) -> SubmissionError:

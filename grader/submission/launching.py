@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from grader.errors import SubmissionError
-from grader.message import Message, msg
+from grader.message import Message, joined, msg
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import SubmissionFolder, listed, shown
@@ -27,6 +27,10 @@ LACKING: Final = msg("{program} of {file} was started without {names}")
 OTHERS: Final = msg("{file} starts programs of other packages, and these were not: {names}")
 LATER: Final = msg("{file} starts programs after an event, and these were not: {names}")
 NOT_FOLLOWED: Final = msg("of {file} was not followed: {names}")
+FAULTY: Final = msg("{file} cannot be launched: {why}")
+SEVERAL: Final = msg(
+    "several launch files start several programs, and none of them was used: {names}"
+)
 AGAIN: Final = msg("{program} of {file} is started again {n} times at most")
 #: How an inspection names the folder of the submission.
 _SOURCE: Final = "/source/"
@@ -70,9 +74,9 @@ class StartedScript(NamedTuple):
         return self.script.name
 
     @classmethod
-    def alone(cls, package: PackageFolder, script: ConsoleScript) -> StartedScript:
-        """Return one that is started by itself."""
-        return cls(package, script, f"{script.name}-1")
+    def plain(cls, package: PackageFolder, script: ConsoleScript, number: int = 1) -> StartedScript:
+        """Return one that is started without a launch file."""
+        return cls(package, script, f"{script.name}-{number}")
 
 
 @dataclass(frozen=True)
@@ -109,10 +113,11 @@ def find_launched(
     inspection: Inspection,
     *,
     is_needed: bool = True,
-) -> Launched | None:
+) -> Launched:
     """Find the launch file that is asked for, or the one that starts several programs.
 
-    Where the exercise is about several, it may be one that starts a single one.
+    Where the exercise is about several, it may be one that starts a single one. One that starts
+    nothing is returned where there is none, with notes.
 
     Args:
         is_needed: else there is none where one would have to be chosen.
@@ -134,11 +139,12 @@ def find_launched(
                 "{file} starts no program of {name}", file=shown(found.file), name=submitted.name
             )
     else:
+        faulty = [_faulty(each) for each in launches if each.problem is not None]
         included = {file for order in inspection.orders.values() for file in order.included}
         every = [
             launched(each)
             for each in launches
-            if each.file in inspection.orders and each.file not in included
+            if each.problem is None and each.file not in included
         ]
         least = 1 if len(submitted.programs) > 1 else 2
         several = {
@@ -147,7 +153,8 @@ def find_launched(
             if len(each.scripts) + len(each.compiled) >= least
         }
         if len(several) > 1 and not is_needed:
-            return None
+            names = listed(each.file for each in reversed(several.values()))
+            return Launched("", (), (*faulty, SEVERAL.given(names=names)), ())
         if len(several) > 1:
             commands = [f"--launch {shown(each.file)}" for each in reversed(several.values())]
             raise SubmissionError(
@@ -157,8 +164,9 @@ def find_launched(
                 commands=listed(commands),
             )
         if not several:
-            return None
+            return Launched("", (), tuple(faulty), ())
         (found,) = several.values()
+        found = replace(found, notes=(*faulty, *found.notes))
     if found.compiled:
         raise SubmissionError(
             "{file} starts {names}, which is not in Python. Only Python can be graded.",
@@ -209,13 +217,17 @@ def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: s
             text = msg("{name} has several launch files {file}: {names}. Give its path.")
         names = listed(each.file for each in named or launches) or msg("none")
         raise SubmissionError(text.given(name=submitted.name, file=shown(asked), names=names))
-    if problem := named[0].problem:
-        from grader.inspection.error_texts import described
-
-        raise SubmissionError(
-            "{file} cannot be launched: {why}", file=shown(named[0].file), why=described(problem)
-        )
+    if named[0].problem:
+        raise SubmissionError(_faulty(named[0]))
     return named[0]
+
+
+def _faulty(launch: LaunchFile) -> Message:
+    from grader.inspection.error_texts import described, placed
+
+    assert launch.problem is not None
+    why = joined([described(launch.problem), placed(launch.problem)])
+    return FAULTY.given(file=shown(launch.file), why=why)
 
 
 class _Launching:

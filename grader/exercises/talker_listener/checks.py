@@ -5,8 +5,8 @@ from __future__ import annotations
 from grader.cast.trace import CastTrace
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.trace import PackageTrace
-from grader.message import msg
+from grader.inspection.trace import Obstacle, PackageTrace
+from grader.message import Message, joined, msg
 from grader.recording.recording import Recordings
 
 checks = Checks()
@@ -37,7 +37,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
         started = [node for node in each.nodes if node.package in own]
         lacking = [f"{it.kind} {it.name}" for it in each.lacking if it.kind != "file"]
         if each.problem is not None:
-            text = msg("{file} cannot be launched: {why}", file=each.file, why=each.problem.text)
+            text = msg("{file} cannot be launched: {why}", file=each.file, why=_why(each.problem))
             worst = Finding(0, text, msg("Try it with ros2 launch."))
         elif lacking:
             text = msg("{file} starts what is not there: {name}.", file=each.file, name=lacking[0])
@@ -52,3 +52,9 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
         else:
             return Finding(1, msg("{file} starts both.", file=each.file))
     return worst
+
+
+def _why(problem: Obstacle) -> Message:
+    """What ended a launch file, with its line where that is known."""
+    where = msg(" ({file}, line {line})", file=problem.file, line=problem.line)
+    return joined([problem.text, where]) if problem.line else problem.text

@@ -317,7 +317,28 @@ def test_of_two_launch_files_none_is_needed_where_the_exercise_names_the_program
 ) -> None:
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER})
     found = opened(tmp_path, programs=("pen_node", "turtle_controller"))
-    assert names(found) == ["pen_node-1", "turtle_controller-1"]
+    assert names(found) == ["pen_node-1", "turtle_controller-2"]
+    assert "several launch files start several programs, and none of them was used: " in " ".join(
+        notes(found)
+    )
+
+
+def test_a_launch_file_that_fails_half_way_starts_nothing_and_is_told(tmp_path: Path) -> None:
+    fails = "from launch.actions import *\n" + LIST.format(
+        f"{DRIVE}, OpaqueFunction(function=lambda _: 1 / 0), {PENS}"
+    )
+    lay(tmp_path, TWO | {"launch/a.launch.py": fails})
+    found = opened(tmp_path, programs=("pen_node", "turtle_controller"))
+    assert names(found) == ["pen_node-1", "turtle_controller-2"]
+    said = "launch/a.launch.py cannot be launched: ZeroDivisionError: division by zero"
+    assert f"{said} (launch/a.launch.py, line 8)" in notes(found)
+
+
+def test_a_file_of_parameters_that_is_not_there_is_only_told(tmp_path: Path) -> None:
+    node = DRIVE.replace(")", ", parameters=['/nowhere/all.yaml'])")
+    found = opened(lay(tmp_path, TWO | {"launch/a.launch.py": LIST.format(f"{node}, {PENS}")}))
+    assert names(found) == ["turtle_controller-1", "pen_node-2"]
+    assert any("was started without --params-file, /nowhere/all.y" in each for each in notes(found))
 
 
 def test_a_launch_file_that_is_asked_for_and_not_there_is_told(tmp_path: Path) -> None:
@@ -336,9 +357,9 @@ def test_the_programs_of_an_exercise_are_started_where_they_are_there(tmp_path: 
     (tmp_path / "launch/a.launch.py").write_text(LIST.format(PENS))
     assert names(opened(tmp_path, programs=pair)) == ["pen_node-1"]  # as it is launched
     (tmp_path / "launch/a.launch.py").unlink()
-    assert names(opened(tmp_path, programs=pair)) == ["pen_node-1", "turtle_controller-1"]
+    assert names(opened(tmp_path, programs=pair)) == ["pen_node-1", "turtle_controller-2"]
     others = opened(tmp_path, programs=("talker", "listener"))
-    assert names(others) == ["turtle_controller-1", "pen_node-1"]  # as many
+    assert names(others) == ["turtle_controller-1", "pen_node-2"]  # as many
 
 
 def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path: Path) -> None:

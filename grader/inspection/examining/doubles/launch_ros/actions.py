@@ -201,6 +201,8 @@ def _of_mapping(
 
 
 def _of_file(path: str) -> Iterable[tuple[str, Any, bool]]:
+    if not os.path.isfile(path):
+        return  # with a warning
     data = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
     for node in data.values() if isinstance(data, dict) else ():
         found = node.get("ros__parameters") if isinstance(node, dict) else None
