@@ -218,9 +218,11 @@ def _param(element: ElementTree.Element, take: _Attributes) -> Any:
     if len(element):
         inner = [_param(each, _Attributes(each)) for each in element if each.tag == "param"]
         return {name: {k: v for each in inner for k, v in each.items()}}
-    value = take.needed("value")
-    take.ignore("value-sep", "sep")
+    text, separator = take.plain("value"), take.plain("value-sep", "")
     take.must_be_through()
+    if separator:  # a list, of texts or of what YAML reads
+        return {name: [substitutions(part) for part in text.split(separator)]}
+    value = substitutions(text)
     kinds = {"str": str, "string": str, "int": int, "float": float, "bool": bool}
     if kind and kind not in kinds:
         return {name: value}

@@ -22,6 +22,8 @@ from grader.scenes.scene import STEP_NS
 NAME: Final = "recorder"
 #: How often the graph is read [ticks], and how many of its topics.
 EVERY_TICKS, MOST_TOPICS = 5, 500
+#: A message may reach another before us, which has logged that when we get it [ns].
+LATE_NS = 500_000_000
 
 
 class WallWire:
@@ -80,7 +82,8 @@ class WallWire:
             while (found := tap.handle.take_message(tap.msg_type, True)) is not None:
                 data, facts = found
                 sent_ns = facts["source_timestamp"] - self._began_ns
-                yield topic, kind, min(max(sent_ns, self._heard_ns), now_ns), bytes(data), 0
+                at_ns = min(max(sent_ns, self._heard_ns - LATE_NS, 0), now_ns)
+                yield topic, kind, at_ns, bytes(data), 0
         self._heard_ns = now_ns
 
     def has_unread(self, node: str) -> bool:

@@ -21,7 +21,12 @@ from grader.recording.observations import (
     TimerLine,
     Wait,
 )
-from grader.recording.recording import OwnInterfaces, PublishedTopic, Recordings
+from grader.recording.recording import (
+    NOT_THERE,
+    OwnInterfaces,
+    PublishedTopic,
+    Recordings,
+)
 from grader.recording.subject import Endpoint
 from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
 
@@ -57,7 +62,14 @@ STAMPED = end("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped")
 NOT_A_POSE = end("subscription", "/pose", "geometry_msgs/msg/Pose", used=0)
 FLAG = plain_text("the node used 6 s of processor time without waiting for ROS")
 
+MISSPELT = {"file": "launch/a.launch.py", "program": "drvie", "names": "drive"}
 CAUSES = {
+    "a launch file with a wrong name": (
+        run_of(said(), flags=(NOT_THERE.given(**MISSPELT),)),
+        "starts_what_is_not_there",
+        "launch/a.launch.py starts drvie, which setup.py does not install; it installs drive. .* "
+        "Write one of these names",
+    ),
     "an exception": (
         raising("ZeroDivisionError", "division by zero"),
         "crashed",

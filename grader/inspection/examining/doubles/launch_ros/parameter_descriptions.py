@@ -71,13 +71,22 @@ def evaluated(context: LaunchContext, value: Any, kind: Any = None) -> Any:
     if isinstance(value, str) and kind not in (None, str):
         return _from_yaml(value, kind)
     if isinstance(value, list | tuple):
-        return [evaluated(context, each) for each in value]
+        made = [_of_list(context, each) for each in value]
+        is_number = all(type(each) in (int, float) for each in made)
+        return [*map(float, made)] if is_number and any(type(e) is float for e in made) else made
     if value is None or not isinstance(value, bool | int | float | str | bytes):
         raise TypeError(
             "Allowed value types are bytes, bool, int, float, str, Sequence[bool], Sequence[int], "
             f"Sequence[float], Sequence[str]. Got {type(value)}."
         )
     return value
+
+
+def _of_list(context: LaunchContext, given: Any) -> Any:
+    """The value of an entry; one in parts goes through YAML, as a substitution does."""
+    if isinstance(given, list | tuple):
+        return _from_yaml(text_of(context, normalize_to_list_of_substitutions(given)), None)
+    return evaluated(context, given)
 
 
 def _from_yaml(text: str, kind: Any) -> Any:

@@ -14,7 +14,7 @@ def generate_launch_description():
                 output="screen",
                 emulate_tty=True,
                 remappings=[("chatter", "/news"), ("~/state", "state")],
-                parameters=[{"rate": 2.0, "names": ["a", "b"], "on": True, "text": "5"}],
+                parameters=[{"rate": 2.0, "names": ["a", "b"], "on": True, "text": "5", "mixed": [1, 2.5]}],
                 arguments=["--fast", "--ros-args", "--log-level", "debug"],
             ),
         ]
