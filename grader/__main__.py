@@ -1,7 +1,5 @@
 """`python -m grader` is the command `grader`."""
 
-import sys
+from grader.cli import run_and_leave
 
-from grader.cli import main
-
-sys.exit(main())
+run_and_leave()

@@ -6,14 +6,17 @@ cannot be used; 3 the grader itself failed; 130 interrupted by the caller.
 
 from __future__ import annotations
 
+import atexit
 import errno
 import os
 import sys
+import threading
 import traceback
 from argparse import Namespace
 from collections.abc import Sequence
+from contextlib import suppress
 from io import TextIOWrapper
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from grader.message import Text, msg
 
@@ -74,6 +77,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:  # before a verb has started
         print(tr("{who}: interrupted", who="grader"), file=sys.stderr)
         return INTERRUPTED
+
+
+def run_and_leave() -> NoReturn:
+    """Be the program `grader`: end as soon as all is done, and not when Python is taken apart."""
+    code = main()
+    for thread in threading.enumerate():
+        if thread is not threading.current_thread() and not thread.daemon:
+            thread.join()
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):  # its reader is gone
+            stream.flush()
+    os._exit(code)
 
 
 def load(verb: str) -> Any:

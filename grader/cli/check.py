@@ -111,7 +111,7 @@ def _show(
             name=RESULT,
         )
         print(for_terminal(left), file=sys.stderr)
-    terminal.show_with_page(Report.of(result, folder, recordings), page)
+    terminal.show_first(Report.of(result, folder, recordings), lambda: page)
 
 
 def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) -> Exercise:

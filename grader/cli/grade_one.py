@@ -201,17 +201,20 @@ def _kept(
 
 
 def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> Report:
-    """Write the result and the files beside it, and print it."""
+    """Print the result, and write it and the files beside it."""
     from grader.reports import Report, render, terminal
 
-    put_artifacts(recordings.nominal, out)
-    result.put(out / RESULT)
-    if args.json:
-        result.write(args.json)
-    report = Report.of(result, out, recordings)
-    page = out / PAGE
-    files.put(page, render("html", [report]).encode("utf-8"))
-    terminal.show_with_page(report, page)
+    report, page = Report.of(result, out, recordings), out / PAGE
+
+    def write() -> Path:
+        put_artifacts(recordings.nominal, out)
+        result.put(out / RESULT)
+        if args.json:
+            result.write(args.json)
+        files.put(page, render("html", [report]).encode("utf-8"))
+        return page
+
+    terminal.show_first(report, write)
     return report
 
 

@@ -6,7 +6,8 @@ import io
 import os
 import shutil
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import groupby
 from pathlib import Path
 from typing import Final
@@ -86,20 +87,33 @@ def _score(report: Report | ErrorReport) -> Text:
     return _text(tr("Score: {score}", score=report.score_text), "bold")
 
 
-def show_with_page(report: Report, page: Path | None) -> None:
-    """Print the report of a new result, and the path of its page, if one was written."""
+def show_first(report: Report, write: Callable[[], Path | None]) -> None:
+    """Print the report of a new result, write its files, and print where its page is.
+
+    Args:
+        write: writes them; returns the page, if there is one.
+    """
     console = _PatientConsole()
-    try:
+    with console.without_reader():
         show(report, console)
+        console.file.flush()
+    page = write()
+    with console.without_reader():
         if page is not None:
             where = _text(tr("The page with picture and plots: {page}", page=page))
             console.print(where, highlight=False, soft_wrap=True)
-    except BrokenPipeError:  # rich before 13.8 leaves it to us
-        console.on_broken_pipe()
 
 
 class _PatientConsole(Console):
     """A console that survives the end of its reader, such as `| head -1`."""
+
+    @contextmanager
+    def without_reader(self) -> Iterator[None]:
+        """Go on where the reader is gone."""
+        try:
+            yield
+        except BrokenPipeError:  # rich before 13.8 leaves it to us
+            self.on_broken_pipe()
 
     def on_broken_pipe(self) -> None:
         """Print nothing more: the exit code depends on the score, not on the reader."""

@@ -23,6 +23,17 @@ def test_the_first_line_is_the_first_thing_to_mend_uncut():
     assert text.splitlines()[0] == f"Fix this first: {rationale.strip()}"
 
 
+def test_the_verdict_is_there_before_any_file_is_written(capfd):
+    def write():
+        said = capfd.readouterr().out
+        assert said.startswith("Fix this first: ")
+        assert "Score: " in said
+        return Path("report.html")
+
+    terminal.show_first(samples.report(verdict("a", "failed", 0)), write)
+    assert capfd.readouterr().out == "The page with picture and plots: report.html\n"
+
+
 def test_in_a_terminal_the_first_line_is_wrapped_at_words():
     out = io.StringIO()
     report = samples.report(verdict("a", "failed", 0, rationale="word " * 60))
