@@ -56,9 +56,6 @@ class Record:
     def path(self, path: str) -> str:
         return path
 
-    def later(self, entities: Any, *_: Any, **__: Any) -> None:
-        pass
-
     def command(self, words: list[str], on_stderr: str) -> str:
         raise not_known("a command")
 

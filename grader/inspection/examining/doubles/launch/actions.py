@@ -210,14 +210,14 @@ class ExecuteLocal(Action):
         self._has_executed = False
 
     def execute(self, context: LaunchContext) -> None:
+        self.must_be_first()
         words = [text_of(context, word) for word in self.process_description.cmd]
         context.record.process(words, self)
 
-    def visit(self, context: LaunchContext) -> list[Any] | None:
+    def must_be_first(self) -> None:
         if self._has_executed:
             raise RuntimeError(f"{type(self).__name__} action: executed more than once")
-        self._has_executed = self.condition is None or self.condition.evaluate(context)
-        return super().visit(context)
+        self._has_executed = True
 
     def respawns(self, context: LaunchContext) -> tuple[float, int]:
         """How long after its end it is started again [s], and how often; below 0: always."""

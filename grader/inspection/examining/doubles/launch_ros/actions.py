@@ -68,6 +68,7 @@ class Node(ExecuteProcess):
         self._ros = [normalize_to_list_of_substitutions(each) for each in _words(ros_arguments)]
 
     def execute(self, context: LaunchContext) -> None:
+        self.must_be_first()
         record = context.record
         package = "" if self._package is None else text_of(context, self._package)
         executable = text_of(context, self._executable)
@@ -84,8 +85,8 @@ class Node(ExecuteProcess):
         ]
         absolute = namespace if namespace.startswith("/") or not namespace else f"/{namespace}"
         names = [f"{old}:={new}" for old, new in (("__node", name), ("__ns", absolute)) if new]
-        parameters, lacking = self._given(context)
-        ros += [word for rule in names for word in ("-r", rule)] + parameters
+        parameters, words, lacking = self._evaluated(context)
+        ros += [word for rule in names for word in ("-r", rule)] + words
         ros += [word for rule in remappings for word in ("-r", rule)]
         record.node(
             {
@@ -94,7 +95,7 @@ class Node(ExecuteProcess):
                 "name": name,
                 "namespace": namespace,
                 "arguments": [*own, *ros[: len(self._ros)]],
-                "parameters": self._evaluated(context),
+                "parameters": parameters,
                 "remappings": remappings,
                 **self._told(),
             },
@@ -116,30 +117,25 @@ class Node(ExecuteProcess):
         condition = getattr(self.condition, "told", "")
         return {"made": self._made, "condition": condition if isinstance(condition, str) else ""}
 
-    def _all(self, context: LaunchContext) -> tuple[Any, ...]:
-        return (*context.launch_configurations.get(_PARAMETERS, ()), *self._parameters)
-
-    def _evaluated(self, context: LaunchContext) -> list[dict[str, Any]]:
+    def _evaluated(
+        self, context: LaunchContext
+    ) -> tuple[list[dict[str, Any]], list[str], list[str]]:
+        """The parameters, arguments that give them, and those that cannot be given."""
         found: dict[str, dict[str, Any]] = {}
-        for each in self._all(context):
-            for name, value, wrapped in _values(context, each):
-                found[name] = {"name": name, "value": value, "wrapped": wrapped}
-        return list(found.values())
-
-    def _given(self, context: LaunchContext) -> tuple[list[str], list[str]]:
-        """Arguments that give the parameters, and those that cannot be given."""
         words, lacking = list[str](), list[str]()
-        for each in self._all(context):
-            if not isinstance(each, Parameter | Mapping):
+        for each in (*context.launch_configurations.get(_PARAMETERS, ()), *self._parameters):
+            is_file = not isinstance(each, Parameter | Mapping)
+            if is_file:
                 path = text_of(context, getattr(each, "param_file", each))
                 is_template = getattr(each, "allow_substs", False)
                 is_there = os.path.isfile(path) and not is_template
                 (words if is_there else lacking).extend(("--params-file", os.path.abspath(path)))
-                continue
-            for name, value, _ in _values(context, each):
-                text = json.dumps(value, default=str, ensure_ascii=False)
-                words += ["-p", f"{name}:={text}"]
-        return words, lacking
+            for name, value, wrapped in _values(context, each):  # once: it may run a command
+                found[name] = {"name": name, "value": value, "wrapped": wrapped}
+                if not is_file:
+                    text = json.dumps(value, default=str, ensure_ascii=False)
+                    words += ["-p", f"{name}:={text}"]
+        return list(found.values()), words, lacking
 
 
 def _made_at() -> tuple[str, int]:
