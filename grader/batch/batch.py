@@ -9,7 +9,7 @@ from pathlib import Path
 from grader import content, files, system
 from grader.batch import grade
 from grader.batch.class_file import CLASS, MACHINE, ClassFile
-from grader.batch.entry import Entry, HandIn, entries
+from grader.batch.entry import Entry, HandIn
 from grader.batch.gradebook.write import CSV
 from grader.batch.gradebook.write import write as write_gradebook
 from grader.batch.page import html
@@ -140,9 +140,8 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
         raise UsageError("--again {again}: there is no hand-in of this name", again=order.again)
     by_key: dict[str, list[HandIn]] = {}
     trivial, done = [], []
-    there = {entry.id: entry for entry in entries(store.out)}
     for hand_in, run in _with_keys(hand_ins, order):
-        if _is_done(there.get(hand_in.id), hand_in, run, order):
+        if _is_done(_existing(store.student(hand_in.id)), hand_in, run, order):
             done.append(hand_in)
             continue
         if run:
@@ -213,6 +212,13 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
             continue
         seed = order.seed_of(hand_in)
         yield hand_in, of_run(content, order.exercise, order.time, seed)
+
+
+def _existing(folder: Path) -> Entry | None:
+    try:
+        return Entry.read(folder)
+    except UsageError:
+        return None  # not there, not finished, or gone bad
 
 
 def _is_done(entry: Entry | None, hand_in: HandIn, run: str, order: Order) -> bool:
