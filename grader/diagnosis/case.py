@@ -96,20 +96,25 @@ class Case:
         output = self.recording.output if self.failed is None else self.failed.output
         return output[-_TAIL:]
 
+    @property
+    def several(self) -> Sequence[ProgramRun]:
+        """The programs, where there are several; a single one is not told apart."""
+        return self.run.programs if len(self.run.programs) > 1 else ()
+
     @cached_property
     def failed(self) -> ProgramRun | None:
         """The one of several programs that the outcome is due to; None where none has failed."""
         run = self.run
-        if len(run.programs) < 2 or run.outcome == "finished":
+        if run.outcome == "finished":
             return None
-        ends = (each for each in run.programs if each.outcome == run.outcome)
+        ends = (each for each in self.several if each.outcome == run.outcome)
         return next((each for each in ends if each.exit_code == run.exit_code), None)
 
     @cached_property
     def heard(self) -> frozenset[str]:
         """The topics on which the exercise hears what several programs send to each other."""
-        messages = getattr(self.recording.trace, "messages", ())
-        return frozenset(m.topic for m in messages if len(self.run.programs) > 1)
+        messages = getattr(self.recording.trace, "messages", ()) if self.several else ()
+        return frozenset(each.topic for each in messages)
 
     @property
     def last_line(self) -> str:
@@ -141,9 +146,8 @@ class Case:
     def ended_s(self) -> float | None:
         """When the program ended by itself, without an error; None if it did not."""
         observed = self.observed
-        programs = self.run.programs if len(self.run.programs) > 1 else ()
-        is_end = self.run.outcome == "exited" or any(each.exit_code == 0 for each in programs)
-        is_end = is_end or self.is_shut_down
+        has_one_ended = any(each.exit_code == 0 for each in self.several)
+        is_end = self.run.outcome == "exited" or self.is_shut_down or has_one_ended
         if observed.is_known and observed.raised is not None and is_end:
             return observed.raised.time_s  # sys.exit()
         return observed.returned_s if observed.is_known else None
@@ -182,7 +186,7 @@ class Case:
     @property
     def _each_others(self) -> Sequence[End]:
         """The ends that several programs may have for each other; a single one has none."""
-        return self.observed.ends if len(self.run.programs) > 1 else ()
+        return self.observed.ends if self.several else ()
 
     def whose(self, endpoint: Endpoint) -> str | Message:
         """Return a name for the node of an endpoint."""

@@ -69,18 +69,21 @@ def observations_of(
     Args:
         computes: of each, whether it would have gone on without waiting for anything.
     """
+
+    def known_of(number: int) -> Observations:
+        each, is_busy = running[number], computes[number]
+        return each.account.observations(each.submission, ends[number].at_s, computes=is_busy)
+
     number = blamed(ends)
-    known = [
-        each.account.observations(each.submission, end.at_s, computes=is_busy)
-        for each, end, is_busy in zip(running, ends, computes, strict=True)
-        if not ends[number].has_failed or each is running[number]
-    ]
     if ends[number].has_failed:
-        return known[0]
-    deaf = (each.is_known and bool(each.ends) and each.spun_s is None for each in known)
-    ended = (is_deaf and end.exit_code == 0 for end, is_deaf in zip(ends, deaf, strict=True))
-    number = next((place for place, has_ended in enumerate(ended) if has_ended), number)
-    its = known.pop(number)
+        return known_of(number)
+    known = [known_of(each) for each in range(len(running))]
+    ended_deaf = (
+        place
+        for place, (end, each) in enumerate(zip(ends, known, strict=True))
+        if end.exit_code == 0 and each.is_known and each.ends and each.spun_s is None
+    )
+    its = known.pop(next(ended_deaf, number))
     return its.joined(known)
 
 

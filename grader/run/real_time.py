@@ -91,11 +91,10 @@ def run(
         except (NotNow, SceneFailure):  # it was never started, or is not to blame
             raise
         except GraderFailure as failure:
-            killed = lost("real", [*programs.running.values()], context.isolation, started)
+            killed = lost("real", programs.in_order, context.isolation, started)
             raise SimulatorLost(failure, killed) from failure
         flags = tuple(map(Message.parse, done["flags"]))
-        running = [*programs.running.values()]
-        ending = ending_of("real", running, ends, context.isolation, started, flags)
+        ending = ending_of("real", programs.in_order, ends, context.isolation, started, flags)
     return record(plan, trace, topics, ending, observations)
 
 
@@ -120,6 +119,11 @@ class _Programs:
         self._submission, self._plan, self._context = submission, plan, context
         self._interfaces, self._held = interfaces, held
         self.began_s = time.monotonic()
+
+    @property
+    def in_order(self) -> list[RunningProgram]:
+        """Those that were started, in the order of the launch."""
+        return [self.running[number] for number in sorted(self.running)]
 
     def start_due(self, now_s: float) -> None:
         """Start those whose turn has come."""
@@ -174,15 +178,14 @@ class _Programs:
         """
         now_s = time.monotonic() - self.began_s
         ends, computes = [], []
-        self.running = dict(sorted(self.running.items()))
-        for number, each in self.running.items():
+        for number, each in sorted(self.running.items()):
             code, at_s = self._ended.get(number, (None, now_s))
             ends.append(ProgramEnd(outcome(reason, code), code, at_s, has_failed=bool(code)))
             computes.append(linux.process_stat(each.process.pid).cpu_s > COMPUTES * at_s)
             if code is None:
                 each.account.request_dump(each.process.pid)
             each.account.close()  # later entries are only about the end that we ask for
-        return ends, observations_of([*self.running.values()], ends, computes)
+        return ends, observations_of(self.in_order, ends, computes)
 
 
 def command(

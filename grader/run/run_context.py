@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader import scratch
+from grader.recording.recording import MOST_PROGRAMS
 from grader.run.environment import environment
 from grader.run.limits import CpuBudget
 from grader.run.processes import levels, network
@@ -78,7 +79,7 @@ class RunContext:
             is_apart=bool(self.namespaces),
             more=more,
             meeting=meeting.fileno(),
-            is_first=beside is None,
+            others=MOST_PROGRAMS - 1 if beside is None else 0,
         )
         submission = submission.moved(confinement.copy)
         env = {**self.env, **env, **confinement.env}

@@ -130,7 +130,7 @@ def prepare(
     is_apart: bool,
     more: Sequence[Path] = (),
     meeting: int = -1,
-    is_first: bool = True,
+    others: int = 0,
 ) -> Confinement:
     """Prepare a submission's confinement in a run, with the copy that this run may write into.
 
@@ -143,7 +143,7 @@ def prepare(
         is_apart: whether the run has a network of its own.
         more: folders that this process may read besides.
         meeting: of the socket by which its programs share their view of the files; -1: it is alone.
-        is_first: whether this is the first of them.
+        others: so many may come to the view of this one, the first; 0: it comes to that itself.
     """
     uid = random.Random(folder.name).choice(USERS)  # one for all programs of a run
     user, copy, written, is_to_copy = level.user, submission, "/tmp", False
@@ -161,8 +161,9 @@ def prepare(
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
     order["rlimits"] = rlimits(is_alone=user != SAME)
     if level.level == NAMESPACES:
+        is_first = others > 0 or meeting < 0
         order["steps"] = view.steps(submission, uid, owner, more) if is_first else []
-        order["meeting"] = meeting
+        order |= {"meeting": meeting, "others": others}
     elif level.level == LANDLOCK:
         settings = [str(path) for path in folder.glob("*.xml")]
         read, listed = view.readable(copy, more)

@@ -10,6 +10,7 @@ An order is a dictionary that fits JSON, made by `grader.run.processes.levels`:
 | `user` | `separate`: as root can; `mapped`: in a user namespace of its own; `same`: not at all |
 | `steps` | for `.filesystem`; none where another program of the submission has made it |
 | `meeting` | a socket: whose one end gives that view, and whose other end gets it; or -1 |
+| `others` | so many programs may get it |
 | `read`, `write`, `listed` | for `.landlock` |
 | `is_apart` | whether the run has a network of its own |
 
@@ -29,8 +30,6 @@ from grader.run.sandbox import filesystem, landlock, seccomp
 
 NAMESPACES, LANDLOCK, LIMITS = "namespaces", "landlock", "limits"
 SEPARATE, MAPPED, SAME = "separate", "mapped", "same"
-#: So many programs may come to the view of the first.
-OTHERS = 7
 #: More than the kernel has.
 CAPABILITIES = range(64)
 #: Root has no special rights, no capability survives or is raised; all of it locked.
@@ -54,7 +53,7 @@ def confine(order: Mapping[str, Any]) -> None:
         if order["steps"]:
             filesystem.enter(order["steps"])
             if order["meeting"] >= 0:
-                filesystem.share(order["meeting"], OTHERS)
+                filesystem.share(order["meeting"], order["others"])
         else:
             filesystem.join(order["meeting"])
     else:
