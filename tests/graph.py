@@ -17,6 +17,8 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.task import Future
 
+from tests.programs import last_lines
+
 #: Only a failing test waits so long [s].
 DEADLINE_S = 90.0
 #: An answer that has not come by then is lost: its server had not met who asked [s].
@@ -63,7 +65,7 @@ class Graph:
         """Spin until `condition` returns something true; return that."""
         deadline = time.monotonic() + DEADLINE_S
         while not (found := condition()):
-            assert time.monotonic() < deadline, f"waited {DEADLINE_S} s for {what}"
+            assert time.monotonic() < deadline, f"waited {DEADLINE_S} s for {what}\n{last_lines()}"
             self._executor.spin_once(timeout_sec=0.02)
         return found
 

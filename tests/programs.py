@@ -16,6 +16,19 @@ ROOT = Path(__file__).resolve().parents[1]
 DEADLINE_S = 90.0
 
 
+#: Those that run now, in the order of their starts.
+_running: list[Program] = []
+
+
+def last_lines() -> str:
+    """What the programs that run now have written last: for a wait that was in vain."""
+    return "\n".join(
+        f"{program.process.args}, exit code {program.process.poll()}, its last lines:\n"
+        + "".join(program.lines[-20:])
+        for program in _running
+    )
+
+
 class Program:
     """`python -m MODULE ARGUMENTS`; what it writes to stderr is collected line by line."""
 
@@ -37,10 +50,12 @@ class Program:
         self._reader.start()
 
     def __enter__(self) -> Self:
+        _running.append(self)
         return self
 
     def __exit__(self, *_: object) -> None:
         """End it, so that it takes leave: others know for 20 s more of a node that is killed."""
+        _running.remove(self)
         with suppress(subprocess.TimeoutExpired):
             if self.process.poll() is None:
                 self.process.send_signal(signal.SIGINT)

@@ -4,11 +4,13 @@ import os
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from ament_index_python.packages import get_package_prefix
+
+from grader.run.processes.network import reserve_domain
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -62,12 +64,13 @@ class System:
 
 
 @pytest.fixture
-def shell() -> Environment:
+def shell() -> Iterator[Environment]:
     """A user's environment: not that of this Python, and on no one else's ROS graph."""
     env = dict(os.environ)
     if env.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None):
         env.pop("LD_LIBRARY_PATH", None)
-    return env | {"ROS_DOMAIN_ID": str(os.getpid() % 100 + 1)}
+    with reserve_domain() as number:
+        yield env | {"ROS_DOMAIN_ID": str(number)}
 
 
 @pytest.fixture
