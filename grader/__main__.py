@@ -1,5 +1,27 @@
-"""`python -m grader` is the command `grader`."""
+"""The command `grader`: the user's servers do a call where there are some, else this process."""
 
-from grader.cli import run_and_leave
+from __future__ import annotations
 
-run_and_leave()
+import os
+import sys
+from typing import NoReturn
+
+from grader.servers import client
+
+
+def main() -> NoReturn:
+    """Do the call of this process, and end."""
+    words = sys.argv[1:]
+    try:
+        code, refused = client.called(words), None
+    except client.Refused as error:
+        code, refused = None, error.why
+    if code is not None:
+        os._exit(code)
+    from grader import cli
+
+    cli.leave(cli.main(words, refused or ""))
+
+
+if __name__ == "__main__":
+    main()

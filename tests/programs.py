@@ -43,6 +43,7 @@ class Program:
             text=True,
             **options,
         )
+        _running.append(self)
         self.lines: list[str] = []
         self._news = threading.Condition()
         assert self.process.stderr is not None
@@ -50,12 +51,12 @@ class Program:
         self._reader.start()
 
     def __enter__(self) -> Self:
-        _running.append(self)
         return self
 
     def __exit__(self, *_: object) -> None:
         """End it, so that it takes leave: others know for 20 s more of a node that is killed."""
-        _running.remove(self)
+        with suppress(ValueError):
+            _running.remove(self)
         with suppress(subprocess.TimeoutExpired):
             if self.process.poll() is None:
                 self.process.send_signal(signal.SIGINT)

@@ -54,9 +54,12 @@ VERBS = {
         "Try an exercise on its right solutions and mutants: what each check catches, and what "
         "to fix."
     ),
+    "servers": msg(
+        "Start servers that outlive a call, so that verdicts come sooner; or stop them."
+    ),
 }
 #: The verbs that run submissions; the others work anywhere.
-NEED_LINUX = ("run", "batch", "check-exercise")
+NEED_LINUX = ("run", "batch", "check-exercise", "servers")
 ELSEWHERE = msg(
     "submissions are run on Linux with /proc, which this is not. Take WSL 2, a devcontainer or "
     "Codespaces (docs/your-machine.md); grader check, view, report and new work here."
@@ -67,21 +70,24 @@ JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 _OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run one verb, and return the exit code."""
+def main(argv: Sequence[str] | None = None, refused: Text = "") -> int:
+    """Run one verb, and return the exit code.
+
+    Args:
+        refused: why the user's servers do not do this call, where there are some.
+    """
     for stream in (sys.stdout, sys.stderr):  # a terminal may lack the letters of a language
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")
     try:
-        return _main(sys.argv[1:] if argv is None else argv)
+        return _main(sys.argv[1:] if argv is None else argv, refused)
     except KeyboardInterrupt:  # before a verb has started
         print(tr("{who}: interrupted", who="grader"), file=sys.stderr)
         return INTERRUPTED
 
 
-def run_and_leave() -> NoReturn:
-    """Be the program `grader`: end as soon as all is done, and not when Python is taken apart."""
-    code = main()
+def leave(code: int) -> NoReturn:
+    """End this process as soon as all is done, and not when Python is taken apart."""
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()
@@ -97,8 +103,11 @@ def load(verb: str) -> Any:
     return importlib.import_module(f"{__name__}.{verb.replace('-', '_')}")
 
 
-def _main(words: Sequence[str]) -> int:
+def _main(words: Sequence[str], refused: Text) -> int:
     options.choose_language(words)  # for help and errors of the call, too
+    if refused:
+        text = tr("The servers do not do this call: {why}", why=refused)
+        print(for_terminal(text), file=sys.stderr)
     if _asked(words) in NEED_LINUX and not system.runs_submissions():
         _print_error(_who(_asked(words)), ELSEWHERE)
         return UNUSABLE

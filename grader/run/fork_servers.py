@@ -16,7 +16,7 @@ import os
 import sys
 import threading
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from grader.run.environment import (
@@ -121,6 +121,22 @@ def server(side: str) -> ForkServer | None:
         except OSError:
             _losses[side] += 1
         return _servers.get(side)
+
+
+def branches() -> dict[str, ForkServer]:
+    """Return a branch of each, for a fork of this process, where `take` makes them its own.
+
+    Raises:
+        ServerLost: one of them does not work.
+    """
+    found = {side: server(side) for side in (SIMULATOR, STUDENT)}
+    return {side: each.branch() for side, each in found.items() if each is not None}
+
+
+def take(servers: Mapping[str, ForkServer]) -> None:
+    """Use these servers in this process, which has none yet."""
+    with _lock:
+        _servers.update(servers)
 
 
 def close() -> None:

@@ -12,6 +12,7 @@ import errno
 import json
 import os
 import select
+import signal
 import socket
 import subprocess
 import sys
@@ -91,11 +92,52 @@ class Child(NamedTuple):
     output: int
 
 
+class _Branch:
+    """A server's process that another server has forked; for others it is `subprocess.Popen`."""
+
+    stdout = None
+
+    def __init__(self, pid: int, pidfd: int) -> None:
+        #: -1 where the system has none, or it was forgotten
+        self.pid, self.pidfd = pid, pidfd
+        self.returncode: int | None = None
+
+    def kill(self) -> None:
+        with suppress(ProcessLookupError):
+            if self.pidfd >= 0:
+                signal.pidfd_send_signal(self.pidfd, signal.SIGKILL)
+            else:  # until its socket is closed, its number is its own
+                os.kill(self.pid, signal.SIGKILL)
+
+    def poll(self) -> int | None:
+        return self.wait(0.0)
+
+    def wait(self, timeout_s: float = PATIENCE_S) -> int | None:
+        """Wait for its end; without a pidfd it is that when it has been killed."""
+        if self.returncode is None and self.pidfd >= 0:
+            if not select.select([self.pidfd], [], [], timeout_s)[0]:
+                return None
+            self.close()
+        self.returncode = 0
+        return self.returncode
+
+    def close(self) -> None:
+        """Forget it."""
+        if self.pidfd >= 0:
+            os.close(self.pidfd)
+        self.pidfd = -1
+
+
 class ForkServer:
     """A process that forks itself for others; any thread may ask it."""
 
     def __init__(
-        self, command: Sequence[str], env: Mapping[str, str], *more: str, executes: bool = False
+        self,
+        command: Sequence[str],
+        env: Mapping[str, str],
+        *more: str,
+        executes: bool = False,
+        branch_of: ForkServer | None = None,
     ) -> None:
         """Start it; the first request waits until it is ready.
 
@@ -104,6 +146,11 @@ class ForkServer:
             env: its environment variables; its children get their own.
             more: arguments that follow those of `serve`.
             executes: whether its children execute their command.
+            branch_of: a server of the same command that forks itself for this one, which has then
+                loaded what that has; None: it starts from nothing.
+
+        Raises:
+            ServerLost: the server that was to be forked makes none.
         """
         self.command, self.env, self._executes = tuple(command), dict(env), executes
         self.is_lost = False
@@ -113,7 +160,11 @@ class ForkServer:
         self._preloaded: frozenset[str] | None = None
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket.settimeout(PATIENCE_S)
+        self._process: subprocess.Popen[bytes] | _Branch
         with theirs:
+            if branch_of is not None:
+                self._process = branch_of._give_branch(theirs)
+                return
             words = (FORK_SERVER, str(theirs.fileno()), *more)
             self._process = subprocess.Popen(
                 [*self.command, *words],
@@ -126,10 +177,29 @@ class ForkServer:
                 start_new_session=True,  # Ctrl-C is not for it
             )
 
+    def branch(self) -> ForkServer:
+        """Fork this server for another process to use, which alone its branch depends on.
+
+        Raises:
+            ServerLost: there is none.
+        """
+        return ForkServer(self.command, self.env, executes=self._executes, branch_of=self)
+
+    def _give_branch(self, theirs: socket.socket) -> _Branch:
+        with self._lock:
+            self._await_ready()
+            return _Branch(*self._ask(fork_server_main.BRANCH, [theirs.fileno()]))
+
     @property
     def pid(self) -> int:
         """Its process id."""
         return self._process.pid
+
+    def descriptors(self) -> Iterator[int]:
+        """Yield those by which a branch is reached."""
+        yield self._socket.fileno()
+        if isinstance(self._process, _Branch):
+            yield self._process.pidfd
 
     def preloaded(self) -> frozenset[str]:
         """Return the top-level modules that a child has loaded, but a cold start would not have.
@@ -163,7 +233,7 @@ class ForkServer:
             with self._lock:
                 self._await_ready()
                 fds = (printed, reported, *command.namespaces.values(), *command.fds)
-                pid, pidfd = self._ask([ordered, *fds])
+                pid, pidfd = self._ask(fork_server_main.ORDER, [ordered, *fds])
                 self.forks += 1
             ours.pop_all()
         return Child(pid, pidfd, ProcessReport(report), output)
@@ -181,14 +251,16 @@ class ForkServer:
         with self._lock:
             self._hang_up()
         self._process.wait()
-        assert self._process.stdout is not None
-        self._process.stdout.close()
+        if self._process.stdout is not None:
+            self._process.stdout.close()
 
     def forget(self) -> None:
         """Drop it in a fork of the grader: it belongs to the parent."""
         self._lock = threading.Lock()  # a thread of the parent's may have held it
         self._hang_up()
         self._process.returncode = 0
+        if isinstance(self._process, _Branch):
+            self._process.close()
 
     def has_ended(self) -> bool:
         """Whether nothing is left of it."""
@@ -205,12 +277,13 @@ class ForkServer:
             self._preloaded = frozenset(json.loads(data))
         return self._preloaded
 
-    def _ask(self, fds: list[int]) -> tuple[int, int]:
+    def _ask(self, what: bytes, fds: list[int]) -> tuple[int, int]:
+        """Have the server fork; the process id of the child, and a pidfd of it or -1."""
         if len(fds) > fork_server_main.MOST_FDS:
             why = f"{len(fds)} descriptors are more than {fork_server_main.MOST_FDS}"
             raise ServerLost(Refusal(errno.E2BIG, "", why))
         with self._exchanging():
-            socket.send_fds(self._socket, [b"order"], fds)
+            socket.send_fds(self._socket, [what], fds)
         try:
             data, got = self._receive()
         except ServerLost as lost:

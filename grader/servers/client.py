@@ -1,0 +1,133 @@
+"""The call's side of the servers: has them do a call, as if this process did it.
+
+Cheap to import: every call of the command line looks here first, and most find no servers.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import signal
+import socket
+from collections.abc import Sequence
+from contextlib import ExitStack, suppress
+from typing import Any
+
+from grader.message import Message, Text, msg
+from grader.servers import place, started_with
+
+#: The verbs that servers do; the others run for hours, or hardly at all.
+VERBS = ("run", "check")
+#: How long servers may take to answer [s]; only an overloaded machine does.
+PATIENCE_S = 10.0
+#: No packet is longer [bytes].
+LONGEST = 4096
+#: The exit code of a call during which the servers have ended: that of a failure of the grader.
+LOST = 3
+#: What is passed on to the call.
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+
+
+class Refused(Exception):
+    """The servers do not do something, for the reason `why`."""
+
+    def __init__(self, why: Text) -> None:
+        super().__init__(why)
+        self.why = why
+
+
+def called(words: Sequence[str]) -> int | None:
+    """Have the servers do a call, and return its exit code; None where there are no servers.
+
+    Raises:
+        Refused: there are, but they do not do this one.
+    """
+    if os.environ.get(place.SETTING) == place.OFF or next(iter(words), "") not in VERBS:
+        return None
+    try:
+        with place.opened() as folder, place.connected(folder) as servers, ExitStack() as held:
+            here = os.open(".", os.O_RDONLY | os.O_DIRECTORY)
+            held.callback(os.close, here)
+            _ask(servers, folder, "call", _call(words), [0, 1, 2, here])
+            return _followed(servers)
+    except (FileNotFoundError, ConnectionRefusedError):
+        return None
+    except place.Occupied as occupied:
+        raise Refused(occupied.message) from None
+    except (OSError, ValueError) as error:
+        raise Refused(str(error)) from None
+
+
+def asked(what: str) -> dict[str, Any]:
+    """Ask the servers for something else than a call, and return their answer.
+
+    Raises:
+        OSError: there are none, or they do not answer.
+        Refused, place.Occupied: they refuse; another has their place.
+    """
+    with place.opened() as folder, place.connected(folder) as servers:
+        _ask(servers, folder, what, {}, [])
+        return _answer(servers)[0]
+
+
+def _ask(
+    servers: socket.socket, folder: int, what: str, more: dict[str, Any], fds: Sequence[int]
+) -> None:
+    """Send a request, a file in memory, with the token in it, and descriptors."""
+    servers.settimeout(PATIENCE_S)
+    request = os.memfd_create("request")
+    try:
+        os.write(
+            request, json.dumps({"token": place.read_token(folder), "ask": what, **more}).encode()
+        )
+        socket.send_fds(servers, [b"request"], [request, *fds])
+    finally:
+        os.close(request)
+
+
+def _answer(servers: socket.socket) -> tuple[dict[str, Any], list[int]]:
+    """Receive an answer, and the descriptors that come with it."""
+    data, fds, _, _ = socket.recv_fds(servers, LONGEST, 1)
+    if not data:
+        raise Refused(msg("they have ended"))
+    said: dict[str, Any] = json.loads(data)
+    if "refused" in said:
+        raise Refused(Message.parse(said["refused"]))
+    return said, fds
+
+
+def _call(words: Sequence[str]) -> dict[str, Any]:
+    """Return what a call has besides its descriptors."""
+    import resource  # here: Windows lacks it
+
+    os.umask(mask := os.umask(0o077))
+    kinds = (getattr(resource, name) for name in dir(resource) if name.startswith("RLIMIT_"))
+    return {
+        "words": list(words),
+        "environment": dict(os.environ),
+        "started_with": [started_with.environment(), started_with.python()],
+        "umask": mask,
+        "limits": [(kind, *resource.getrlimit(kind)) for kind in kinds],
+        "cores": sorted(os.sched_getaffinity(0)),
+        "ignored": [each for each in SIGNALS if signal.getsignal(each) == signal.SIG_IGN],
+    }
+
+
+def _followed(servers: socket.socket) -> int:
+    """Wait for the end of a call that has begun, and pass on to it what this process is told."""
+    _, (process,) = _answer(servers)
+
+    def pass_on(number: int, _: object) -> None:
+        with suppress(ProcessLookupError):
+            signal.pidfd_send_signal(process, number)
+
+    for number in SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, pass_on)
+    servers.settimeout(None)
+    try:
+        select.select([servers], [], [])
+        return int(_answer(servers)[0]["exit"])
+    except (Refused, OSError):
+        return LOST
