@@ -8,7 +8,6 @@ is confined by Landlock alone could connect to a socket; it cannot read the toke
 from __future__ import annotations
 
 import os
-import secrets
 import socket
 import stat
 import struct
@@ -61,6 +60,8 @@ def listening() -> Iterator[tuple[socket.socket, str]]:
         GraderFailure: there is no place that is this user's alone.
         UsageError: others listen there.
     """
+    import secrets  # here: no call needs it
+
     with suppress(FileExistsError):
         (scratch.home() / FOLDER).mkdir(mode=0o700)
     lock = scratch.acquire_lock(FOLDER)
