@@ -1,8 +1,7 @@
 """One grading of `grader run`: from the submission to the files of its result.
 
-Modules that only those files need are imported when the first run is over, or at once if a core is
-free: on two cores the third run leaves one idle. Each recording is written and drawn as soon as its
-run is over.
+The verdict is printed as soon as it is known; recordings, pictures and page are written after that,
+and modules that only they need are imported then, or during the runs if a core is free.
 """
 
 from __future__ import annotations
@@ -133,7 +132,7 @@ def _run_and_judge(
     held: ExitStack,
     live: Live | None,
 ) -> tuple[Result, Recordings]:
-    """Run a submission, judge it, and save its recordings; `held` keeps the folder locked."""
+    """Run a submission and judge it; `held` keeps the folder locked."""
     messages = Console(stderr=True, highlight=False)
     say(messages, msg("Found: {found}", found=submission.found))
     secret, seed = options.secret_of(args), args.seed
@@ -161,17 +160,15 @@ def _run_and_judge(
 
     runner = grading.runner(exercise, args.time, live)
     at_once = None if live is None else 1
-    with saving.into(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
-        with (
-            _shown(messages, tr("running")) as show,
-            grading.start(submission, plans, runner, show, origin, at_once) as runs,
-        ):
-            if cores.share() > len(plans):
-                for module in LATER:
-                    importlib.import_module(module)
-            recordings = grading.gather(_kept(runs, len(plans), unsaved, show_nominal))
-        result = judging.judge(recordings, exercise, submission=submission.name)
-        unsaved.put()
+    with (
+        _shown(messages, tr("running")) as show,
+        grading.start(submission, plans, runner, show, origin, at_once) as runs,
+    ):
+        if cores.share() > len(plans):
+            for module in LATER:
+                importlib.import_module(module)
+        recordings = grading.gather(_watched(runs, len(plans), show_nominal))
+    result = judging.judge(recordings, exercise, submission=submission.name)
     return replace(result, artifacts=artifacts(recordings.nominal)), recordings
 
 
@@ -183,20 +180,13 @@ def _how(time: str, is_started: bool) -> str:
     return tr("Running it beside a simulator, in real time ...")
 
 
-def _kept(
-    runs: Iterable[Finished],
-    count: int,
-    unsaved: saving.Unsaved,
-    show_nominal: Callable[[Recording], None],
+def _watched(
+    runs: Iterable[Finished], count: int, show_nominal: Callable[[Recording], None]
 ) -> Iterator[Finished]:
-    """Save and draw each run while the others go on, and yield it."""
-    from grader.reports.page import html
-
+    """Yield each run, and show the nominal one while others go on."""
     for over, (number, recording) in enumerate(runs, 1):
         if number == 0 and over < count:
             show_nominal(recording)
-        unsaved.write(number, recording)
-        html.draw(recording)
         yield number, recording
 
 
@@ -207,6 +197,7 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     report, page = Report.of(result, out, recordings), out / PAGE
 
     def write() -> Path:
+        saving.save_all(recordings, out / ARTIFACTS["recording"])
         put_artifacts(recordings.nominal, out)
         result.put(out / RESULT)
         if args.json:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -46,67 +45,36 @@ def save_all(recordings: Recordings, folder: Path) -> None:
     Raises:
         OSError: they cannot be written.
     """
-    with into(folder, len(recordings.varied)) as unsaved:
-        for number, recording in enumerate(recordings):
-            unsaved.write(number, recording)
-        unsaved.put()
-
-
-class Unsaved:
-    """Recordings on their way into a folder: written one by one, put there all at once.
-
-    Args:
-        place: where they are written first.
-        folder: where they are put.
-        varied_runs: how many varied ones there will be.
-    """
-
-    def __init__(self, place: Path, folder: Path, varied_runs: int) -> None:
-        self._place = place
-        self._folder = folder
-        self._varied_runs = varied_runs
-
-    def write(self, number: int, recording: Recording) -> None:
-        """Write a recording: 0 the nominal one, 1, 2, ... varied ones, in any order."""
-        _write(recording, self._of(number), 0 if number else self._varied_runs)
-
-    def put(self) -> None:
-        """Put all of them in place of older ones, of which none is left."""
-        (self._folder / METADATA).unlink(missing_ok=True)  # comes back as the last file of all
-        for number in range(1, self._varied_runs + 1):
-            into = self._folder / f"varied_{number}"
-            if into.is_symlink():
-                into.unlink()
-            _put(self._of(number), into)
-        for number in varied_in(self._folder):
-            older = self._folder / f"varied_{number}"
-            if number > self._varied_runs and not older.is_symlink() and (older / RUN).exists():
-                shutil.rmtree(older)
-        _put(self._of(0), self._folder)
-
-    def _of(self, number: int) -> Path:
-        return self._place / str(number) / NAME
-
-
-@contextmanager
-def into(folder: Path, varied_runs: int) -> Iterator[Unsaved]:
-    """Write recordings as they come; nothing of an older one changes before `Unsaved.put`.
-
-    Raises:
-        OSError: they cannot be written; also from `Unsaved`.
-    """
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     place = folder / UNFINISHED
     remove(place)  # the rest of a save that was cut off
     place.mkdir()
+    varied_runs = len(recordings.varied)
     try:
-        yield Unsaved(place, folder, varied_runs)
+        for number, recording in enumerate(recordings):
+            _write(recording, place / str(number) / NAME, 0 if number else varied_runs)
+        _put_all(place, folder, varied_runs)
     finally:
         remove(place)
         if is_new:
             with suppress(OSError):  # it holds what was put there
                 folder.rmdir()
+
+
+def _put_all(place: Path, folder: Path, varied_runs: int) -> None:
+    """Put written recordings in place of older ones, of which none is left."""
+    (folder / METADATA).unlink(missing_ok=True)  # comes back as the last file of all
+    for number in range(1, varied_runs + 1):
+        into = folder / f"varied_{number}"
+        if into.is_symlink():
+            into.unlink()
+        _put(place / str(number) / NAME, into)
+    for number in varied_in(folder):
+        older = folder / f"varied_{number}"
+        if number > varied_runs and not older.is_symlink() and (older / RUN).exists():
+            shutil.rmtree(older)
+    _put(place / "0" / NAME, folder)
 
 
 def _put(made: Path, folder: Path) -> None:

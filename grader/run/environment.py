@@ -26,7 +26,9 @@ ROS = (
     *("ROS_DISTRO", "ROS_PYTHON_CHECK_FIELDS", "ROS_PYTHON_VERSION", "ROS_VERSION"),
     *("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH"),
 )
-KEPT = frozenset((*PLACES, *MANNERS, *ROS))
+#: ROS's wheels start Python once more, with the path of their libraries, unless this is set.
+STARTED_TWICE = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
+KEPT = frozenset((*PLACES, *MANNERS, *ROS, STARTED_TWICE))
 
 
 def lasting_environment() -> dict[str, str]:

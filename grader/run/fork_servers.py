@@ -33,6 +33,8 @@ MESSAGES = (
     *("geometry_msgs", "std_msgs", "std_srvs", "turtlesim", "turtlesim_msgs"),
     *("sensor_msgs", "tf2_msgs"),
 )
+#: The scene of nearly every exercise; another is loaded with the first run that needs it.
+SCENE = "turtlesim"
 #: What runs as the submission's.
 SCRIPT = Path(__file__).parent / "student" / "virtual_main.py"
 STUDENT, SIMULATOR = "student", "simulator"
@@ -103,7 +105,9 @@ def server(side: str) -> ForkServer | None:
     """
     words = command(side)
     made = virtual_environment if side == STUDENT else simulator_environment
-    env, needs = made(lasting_environment()), json.dumps(MESSAGES)
+    env, needs = made(lasting_environment()), [json.dumps(MESSAGES)]
+    if side == SIMULATOR:
+        needs.append(SCENE)
     if not _is_absolute(env.get("PYTHONPATH", "")):
         return None
     with _lock:
@@ -117,7 +121,7 @@ def server(side: str) -> ForkServer | None:
         if _losses[side] >= MOST_LOSSES:
             return None
         try:
-            _servers[side] = ForkServer(words, env, needs)
+            _servers[side] = ForkServer(words, env, *needs)
         except OSError:
             _losses[side] += 1
         return _servers.get(side)

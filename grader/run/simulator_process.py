@@ -240,6 +240,7 @@ def start_simulator(
                 here,
                 (*fds, *feed.fds),
                 context.namespaces,
+                needs=plan.scene,
             )
             process = StartedProcess(command, server)
         with process.ended_at_exit():

@@ -150,7 +150,8 @@ def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     counts = np.isfinite(values) & (places < size)
     lowest = first[:, 0] + np.argmin(np.where(counts, values, np.inf), axis=1)
     highest = first[:, 0] + np.argmax(np.where(counts, values, -np.inf), axis=1)
-    rows = np.unique(np.concatenate((edges[:-1], lowest, highest, edges[1:] - 1)))
+    chosen = np.concatenate((edges[:-1], lowest, highest, edges[1:] - 1))
+    rows = np.array(sorted(set(chosen.tolist())))  # np.unique would import masked arrays
     # A point in the middle of a level line adds nothing.
     inner = (y[rows[1:-1]] == y[rows[:-2]]) & (y[rows[1:-1]] == y[rows[2:]])
     rows = rows[~np.concatenate(([False], inner, [False]))]

@@ -233,7 +233,8 @@ class ForkServer:
             with self._lock:
                 self._await_ready()
                 fds = (printed, reported, *command.namespaces.values(), *command.fds)
-                pid, pidfd = self._ask(fork_server_main.ORDER, [ordered, *fds])
+                what = b" ".join((fork_server_main.ORDER, command.needs.encode()))
+                pid, pidfd = self._ask(what, [ordered, *fds])
                 self.forks += 1
             ours.pop_all()
         return Child(pid, pidfd, ProcessReport(report), output)

@@ -34,7 +34,7 @@ import signal
 import socket
 import sys
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -69,6 +69,7 @@ class ProcessCommand(NamedTuple):
         namespaces: its namespaces: kind, a key of `NAMESPACES`, -> descriptor, in the order in
             which they are entered.
         confinement: how it is confined; see `grader.run.sandbox.confinement`.
+        needs: what a fork server may load before it forks for the first such command.
     """
 
     words: Sequence[str]
@@ -77,6 +78,7 @@ class ProcessCommand(NamedTuple):
     fds: Sequence[int] = ()
     namespaces: Mapping[str, int] = {}
     confinement: Mapping[str, Any] | None = None
+    needs: str = ""
 
 
 class ForkOrder(NamedTuple):
@@ -106,13 +108,14 @@ class ForkOrder(NamedTuple):
 # In the server --------------------------------------------------------------------------------
 
 
-def serve(number: str, preloaded: Iterable[str]) -> list[str]:
+def serve(number: str, preloaded: Iterable[str], load: Callable[[str], object] = bool) -> list[str]:
     """Fork for each order. The server itself never returns from here.
 
     Args:
         number: of the socket.
         preloaded: modules that a cold start would not have loaded, for
             `grader.run.fork_servers.shadows`.
+        load: called with what a command needs, if it needs something.
 
     Returns:
         The command; in each child that goes on with what the server has loaded.
@@ -137,12 +140,14 @@ def serve(number: str, preloaded: Iterable[str]) -> list[str]:
             elif events & select.POLLHUP:
                 os._exit(0)  # the grader is gone
             elif (request := _receive(grader))[1]:
-                what, fds = request
+                (what, _, needs), fds = request[0].partition(b" "), request[1]
+                if needs:
+                    load(needs.decode())
                 if what == BRANCH:
                     child = _fork(grader)
                     if child == 0:
                         grader.detach()  # it is closed with all else
-                        return _be_branch(fds[0], preloaded)
+                        return _be_branch(fds[0], preloaded, load)
                     for fd in fds:
                         os.close(fd)
                     if child is not None:
@@ -227,11 +232,11 @@ def _answer(grader: socket.socket, **fact: object) -> None:
 # In a child -----------------------------------------------------------------------------------
 
 
-def _be_branch(number: int, preloaded: Iterable[str]) -> list[str]:
+def _be_branch(number: int, preloaded: Iterable[str], load: Callable[[str], object]) -> list[str]:
     """Be a server as this one, but for another process, and without what this one has begun."""
     signal.set_wakeup_fd(-1)
     linux.close_descriptors({0, 1, 2, number})
-    return serve(str(number), preloaded)
+    return serve(str(number), preloaded, load)
 
 
 def _be_child(server: int, report: int, ordered: int, *fds: int) -> list[str]:

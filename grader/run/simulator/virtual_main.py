@@ -1,14 +1,15 @@
 """Starts the simulator of a run in virtual time; where that cannot work, reports it and ends.
 
     python -m grader.run.simulator.virtual_main ...
-    python -m grader.run.simulator.virtual_main --fork-server SOCKET NEEDED
+    python -m grader.run.simulator.virtual_main --fork-server SOCKET MESSAGES SCENE
 
 The arguments are those of `grader.run.simulator.hub`. Whatever fails in this process
 fails here: the grader then runs the submission in real time, and the result says why. Should that
 fail as well, it is the grader's failure.
 
-As a fork server it imports packages of messages (NEEDED: a JSON list of names) and all scenes that
-are installed, and forks for each order; a child goes on with the arguments of the first form.
+As a fork server it imports a scene and packages of messages (MESSAGES: a JSON list of names), and
+forks for each order; a child goes on with the arguments of the first form. Another scene is
+imported when the first order for it comes.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ import sys
 import traceback
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
-from grader import extensions
 from grader.message import Message, msg
 from grader.run.processes import FORK_SERVER
 from grader.run.simulator.process import send_message
@@ -49,7 +50,7 @@ def serve_runs(words: Sequence[str]) -> list[str]:
     """Be a fork server; returns in each child, with the arguments of a start of its own.
 
     Args:
-        words: the number of the socket, and what to import.
+        words: the number of the socket, and what to import beforehand.
     """
     from grader.run.lockstep import contract
 
@@ -60,12 +61,15 @@ def serve_runs(words: Sequence[str]) -> list[str]:
     from grader.run.simulator import hub  # noqa: F401
     from grader.scenes import load_scene
 
-    number, needed = words
-    endpoints.import_messages(json.loads(needed))
-    for name in extensions.points(extensions.SCENES):
+    @cache
+    def load(scene: str) -> None:
         with suppress(Exception):  # a scene that cannot be loaded fails in its own runs
-            load_scene(name).preload()
-    command = fork_server_main.serve(number, ())
+            load_scene(scene).preload()
+
+    number, messages, scene = words
+    load(scene)
+    endpoints.import_messages(json.loads(messages))
+    command = fork_server_main.serve(number, (), load)
     return command[command.index("-m") + 2 :]
 
 

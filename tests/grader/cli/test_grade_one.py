@@ -19,7 +19,6 @@ from grader.cli.grade_one import grade, out_of
 from grader.errors import GraderFailure, UsageError
 from grader.exercise.loading import load_exercise
 from grader.recording import reading
-from grader.reports.page import html
 from tests.grader.driving import Spiral, drive
 
 ROOT = Path(__file__).parents[3]
@@ -60,24 +59,18 @@ def call(submission, tmp_path):
     return called
 
 
-@pytest.fixture
-def in_turn(monkeypatch, drawn):
-    """Varied runs that are over only when all that can be done with the nominal one is done."""
-    worked_off = threading.Event()
-    draw = html.draw
-
-    def noted(recording):
-        made = draw(recording)
-        if recording.start is None:
-            worked_off.set()
-        return made
+@pytest.fixture(params=["nominal first", "varied first"])
+def in_turn(monkeypatch, drawn, request):
+    """Varied runs that are over only when the nominal one is, or the other way round."""
+    is_over = threading.Event()
 
     def run(submission, plan, progress=None):
-        assert plan.start is None or worked_off.wait(60)
+        if (plan.start is None) == (request.param == "nominal first"):
+            is_over.set()
+        assert is_over.wait(60)
         return replace(drawn, start=plan.start)
 
     monkeypatch.setitem(grading.RUNNERS, "virtual", run)
-    monkeypatch.setattr(html, "draw", noted)
 
 
 @pytest.mark.parametrize("words", [(), ("--watch",)])
@@ -164,11 +157,12 @@ def test_a_call_that_is_refused_leaves_no_older_result(
 
 
 def test_ctrl_c_between_two_runs_leaves_nothing(submission, monkeypatch, drawn, tmp_path, capsys):
-    def interrupted(_):
-        raise KeyboardInterrupt
+    def interrupted(submission, plan, progress=None):
+        if plan.start is not None:
+            raise KeyboardInterrupt
+        return drawn
 
-    monkeypatch.setitem(grading.RUNNERS, "virtual", lambda *_: drawn)
-    monkeypatch.setattr(html, "draw", interrupted)
+    monkeypatch.setitem(grading.RUNNERS, "virtual", interrupted)
     assert main(["run", str(submission), "--out", str(tmp_path / "out")]) == 130
     assert capsys.readouterr().err.endswith("grader run: interrupted\n")
     assert list((tmp_path / "out").iterdir()) == []

@@ -185,23 +185,21 @@ def test_an_older_recording_stays_whole_until_the_new_one_is_written(recorded, f
     assert contents(folder) == before
 
 
-def test_nothing_of_an_older_one_changes_before_the_new_ones_are_put_in_place(recorded, tmp_path):
-    saving.save_all(Recordings(recorded, (recorded,) * 2), tmp_path)
-    before = contents(tmp_path)
-    newer = drive(Spiral(), ticks=50)
-    with saving.into(tmp_path, 1) as unsaved:
-        for number in (1, 0):  # as they come
-            unsaved.write(number, newer)
-        outside = {path: data for path, data in contents(tmp_path).items() if path in before}
-        assert outside == before
-        unsaved.put()
-    assert [r.run.ticks for r in reading.load_all(tmp_path)] == [newer.run.ticks] * 2
+def test_a_save_that_is_interrupted_leaves_all_as_it_was(recorded, tmp_path, monkeypatch):
+    saving.save_all(Recordings(recorded, (recorded,) * 2), tmp_path / "old")
+    before = contents(tmp_path / "old")
+    write = saving._write_json
 
+    def interrupted(path, facts, **more):
+        if "1" in path.parts:  # the nominal one is written by then
+            raise KeyboardInterrupt
+        write(path, facts, **more)
 
-def test_what_is_never_put_in_place_leaves_nothing(recorded, tmp_path):
-    with pytest.raises(KeyboardInterrupt), saving.into(tmp_path / "new", 0) as unsaved:
-        unsaved.write(0, recorded)
-        raise KeyboardInterrupt
+    monkeypatch.setattr(saving, "_write_json", interrupted)
+    for name in ("old", "new"):
+        with pytest.raises(KeyboardInterrupt):
+            saving.save_all(Recordings(drive(Spiral(), ticks=50), (recorded,)), tmp_path / name)
+    assert contents(tmp_path / "old") == before
     assert not (tmp_path / "new").exists()
 
 
