@@ -181,13 +181,16 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"grader.run.processes.levels"}
     | below("grader", "exercise.exercise", "recording.recording", "result.json_file"),
     # a worker: its process, and what it opens
+    "grader.batch.pool": GROUND
+    | {"grader.batch", "grader.recording.recording"}
+    | below("grader.run", "fork_servers", "processes.fork_server"),
     **dict.fromkeys(
         ("grader.batch.grade", "grader.batch.remote"),
         GROUND
         | {"grader.batch"}
         | below("grader", "grading", "judging", "result", "run.opening", "recording.recording")
         | below("grader", "exercise.exercise", "exercise.loading", "exercise.places")
-        | below("grader", "reports.__init__", "run.processes", "submission"),
+        | below("grader", "reports.__init__", "run.processes", "run.fork_servers", "submission"),
     ),
     # a page is shown as the simulator's is
     "grader.cli.live": GROUND

@@ -43,6 +43,7 @@ from grader.reports import Report, render
 from grader.result import json_file
 from grader.result.error import ErrorResult
 from grader.result.result import PAGE, RESULT, SubmissionInfo, artifacts, put_artifacts
+from grader.run import fork_servers
 from grader.run.opening import open_submission
 from grader.run.processes import levels, started_process
 from grader.submission.start import Submission
@@ -62,8 +63,13 @@ _STATES: dict[type[GraderError], Ending] = {
 }
 
 
-def serve() -> None:
-    """Do the tasks on standard input, one a line, until it ends."""
+def serve(servers: str) -> None:
+    """Do the tasks on standard input, one a line, until it ends.
+
+    Args:
+        servers: `fork_servers.described` of those that this process is given.
+    """
+    fork_servers.take(fork_servers.inherited(servers))
     # what anything prints by mistake must not be read as an answer
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)

@@ -21,8 +21,11 @@ from typing import Literal
 
 from grader import strict_json
 from grader.batch.entry import HandIn
+from grader.errors import GraderFailure
 from grader.message import NOTHING, Message, Text, msg
 from grader.recording.recording import Clock
+from grader.run import fork_servers
+from grader.run.processes.fork_server import Branch, ServerLost
 from grader.translations import current
 
 
@@ -93,7 +96,7 @@ _TRIES = 2
 _COMMAND = (
     *("-P", "-c"),
     "import sys; sys.argv[1] in sys.path or sys.path.insert(0, sys.argv[1]); "
-    "from grader.batch import grade; grade.serve()",
+    "from grader.batch import grade; grade.serve(sys.argv[2])",
     str(Path(__file__).parents[2]),
 )
 
@@ -216,10 +219,22 @@ class Process:
 
 
 def start() -> subprocess.Popen[bytes]:
-    """Start a worker with the modules of this grader; Ctrl-C in a terminal does not reach it."""
-    return subprocess.Popen(
-        [sys.executable, *_COMMAND],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        start_new_session=True,
-    )
+    """Start a worker with the modules of this grader; Ctrl-C in a terminal does not reach it.
+
+    It gets branches of this process's fork servers, which share their memory; where there are none,
+    it starts its own.
+    """
+    branches: dict[str, Branch] = {}
+    with suppress(ServerLost, GraderFailure, OSError):
+        branches = fork_servers.branches()
+    try:
+        return subprocess.Popen(
+            [sys.executable, *_COMMAND, fork_servers.described(branches)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            pass_fds=[fd for each in branches.values() for fd in each.descriptors()],
+            start_new_session=True,
+        )
+    finally:
+        for each in branches.values():
+            each.close()

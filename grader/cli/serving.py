@@ -42,7 +42,7 @@ from grader.exercise.loading import load_exercise
 from grader.message import NOTHING, Message, msg
 from grader.run import fork_servers
 from grader.run.processes import levels, network
-from grader.run.processes.fork_server import ForkServer, ServerLost
+from grader.run.processes.fork_server import Branch, ServerLost
 from grader.run.sandbox.confinement import LANDLOCK
 from grader.servers import place, started_with
 
@@ -183,7 +183,7 @@ class Servers:
         self._calls, self._last = self._calls + 1, time.monotonic()
         self._running[pid] = peer
         for each in branches.values():
-            each.forget()
+            each.close()
         pidfd = os.pidfd_open(pid)
         try:
             socket.send_fds(peer, [b"{}"], [pidfd])
@@ -244,7 +244,7 @@ def _tell(peer: socket.socket, **what: object) -> None:
 
 
 def _be_call(
-    server: int, request: Mapping[str, Any], fds: list[int], branches: Mapping[str, ForkServer]
+    server: int, request: Mapping[str, Any], fds: list[int], branches: Mapping[str, Branch]
 ) -> NoReturn:
     """Be the process that a call would have been."""
     code = cli.GRADER_FAILED
@@ -331,6 +331,10 @@ def _ready() -> Iterator[str]:
         found = levels.best(isolated)
     if not found.is_at_least(LANDLOCK):
         raise UsageError(AT_LIMITS.given(level=found.level))
+    try:
+        os.close(os.pidfd_open(os.getpid()))
+    except OSError:
+        raise UsageError(msg("this system gives no descriptors of processes")) from None
     # as long as one of the trial's runs, a fork could inherit what it holds
     for thread in threading.enumerate():
         if thread is not threading.current_thread():

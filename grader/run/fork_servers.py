@@ -13,6 +13,7 @@ from __future__ import annotations
 import atexit
 import json
 import os
+import socket
 import sys
 import threading
 from collections import Counter
@@ -24,7 +25,7 @@ from grader.run.environment import (
     simulator_environment,
     virtual_environment,
 )
-from grader.run.processes.fork_server import ForkServer, ServerLost
+from grader.run.processes.fork_server import Branch, ForkServer, ServerLost
 
 #: What runs as the simulator's process in virtual time.
 MODULE = "grader.run.simulator.virtual_main"
@@ -97,15 +98,18 @@ def command(side: str) -> list[str]:
     return [sys.executable, "-m", MODULE]
 
 
+def _environment(side: str) -> dict[str, str]:
+    made = virtual_environment if side == STUDENT else simulator_environment
+    return made(lasting_environment())
+
+
 def server(side: str) -> ForkServer | None:
     """Return the server of a side, started if none with its present environment runs.
 
     Returns:
         None where it does not start, or was lost too often.
     """
-    words = command(side)
-    made = virtual_environment if side == STUDENT else simulator_environment
-    env, needs = made(lasting_environment()), [json.dumps(MESSAGES)]
+    words, env, needs = command(side), _environment(side), [json.dumps(MESSAGES)]
     if side == SIMULATOR:
         needs.append(SCENE)
     if not _is_absolute(env.get("PYTHONPATH", "")):
@@ -127,8 +131,8 @@ def server(side: str) -> ForkServer | None:
         return _servers.get(side)
 
 
-def branches() -> dict[str, ForkServer]:
-    """Return a branch of each, for a fork of this process, where `take` makes them its own.
+def branches() -> dict[str, Branch]:
+    """Return a branch of each for another process of this grader, which then may `take` them.
 
     Raises:
         ServerLost: one of them does not work.
@@ -137,10 +141,24 @@ def branches() -> dict[str, ForkServer]:
     return {side: each.branch() for side, each in found.items() if each is not None}
 
 
-def take(servers: Mapping[str, ForkServer]) -> None:
-    """Use these servers in this process, which has none yet."""
+def described(found: Mapping[str, Branch]) -> str:
+    """Return branches as an argument of a process that inherits their descriptors."""
+    return json.dumps({side: [e.socket.fileno(), e.pid, e.pidfd] for side, e in found.items()})
+
+
+def inherited(words: str) -> dict[str, Branch]:
+    """Return the branches that `described` has described to this process."""
+    return {
+        side: Branch(socket.socket(fileno=fd), pid, pidfd)
+        for side, (fd, pid, pidfd) in json.loads(words).items()
+    }
+
+
+def take(found: Mapping[str, Branch]) -> None:
+    """Use these servers in this process, which has none yet and the environment of theirs."""
     with _lock:
-        _servers.update(servers)
+        for side, branch in found.items():
+            _servers[side] = ForkServer(command(side), _environment(side), branch=branch)
 
 
 def close() -> None:

@@ -17,7 +17,7 @@ import grader
 #: things are. A call brings all others with it.
 READ_AT_START = re.compile(
     r"(PYTHON|LD_|DYLD_|LC_|ROS_|RMW_|RCUTILS_|AMENT_|COLCON_|CONDA_|FASTRTPS_|FASTDDS_|CYCLONEDDS_"
-    r"|MALLOC_)\w*|XDG_\w+_(DIR|HOME)|PATH|HOME|USER|TMPDIR|TMP|TEMP|TZ|LANG|VIRTUAL_ENV"
+    r"|MALLOC_)\w*|XDG_\w+_(DIR|HOME)|PATH|TERM|HOME|USER|TMPDIR|TMP|TEMP|TZ|LANG|VIRTUAL_ENV"
 )
 #: A file's inode, size and time of change [ns].
 State = tuple[int, int, int]

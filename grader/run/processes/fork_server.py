@@ -92,17 +92,34 @@ class Child(NamedTuple):
     output: int
 
 
-class _Branch:
-    """A server's process that another server has forked; for others it is `subprocess.Popen`."""
+class Branch:
+    """A server that another one has forked; of what `subprocess.Popen` is for others it has some.
+
+    Attributes:
+        socket: over which it is asked.
+        pid: its process id.
+        pidfd: a descriptor of it; -1 where the system has none.
+    """
 
     stdout = None
 
-    def __init__(self, pid: int, pidfd: int) -> None:
-        #: -1 where the system has none, or it was forgotten
-        self.pid, self.pidfd = pid, pidfd
+    def __init__(self, socket: socket.socket, pid: int, pidfd: int) -> None:
+        self.socket, self.pid, self.pidfd = socket, pid, pidfd
         self.returncode: int | None = None
 
+    def descriptors(self) -> list[int]:
+        """Return those by which a process reaches it."""
+        return [fd for fd in (self.socket.fileno(), self.pidfd) if fd >= 0]
+
+    def close(self) -> None:
+        """Forget it; whoever else has its socket goes on with it."""
+        self.socket.close()
+        if self.pidfd >= 0:
+            os.close(self.pidfd)
+        self.pidfd = -1
+
     def kill(self) -> None:
+        """Kill it."""
         with suppress(ProcessLookupError):
             if self.pidfd >= 0:
                 signal.pidfd_send_signal(self.pidfd, signal.SIGKILL)
@@ -110,22 +127,17 @@ class _Branch:
                 os.kill(self.pid, signal.SIGKILL)
 
     def poll(self) -> int | None:
+        """0 where it has ended, else None."""
         return self.wait(0.0)
 
     def wait(self, timeout_s: float = PATIENCE_S) -> int | None:
-        """Wait for its end; without a pidfd it is that when it has been killed."""
-        if self.returncode is None and self.pidfd >= 0:
-            if not select.select([self.pidfd], [], [], timeout_s)[0]:
+        """Wait for its end, where that can be noticed."""
+        if self.returncode is None:
+            if self.pidfd >= 0 and not select.select([self.pidfd], [], [], timeout_s)[0]:
                 return None
+            self.returncode = 0
             self.close()
-        self.returncode = 0
         return self.returncode
-
-    def close(self) -> None:
-        """Forget it."""
-        if self.pidfd >= 0:
-            os.close(self.pidfd)
-        self.pidfd = -1
 
 
 class ForkServer:
@@ -137,7 +149,7 @@ class ForkServer:
         env: Mapping[str, str],
         *more: str,
         executes: bool = False,
-        branch_of: ForkServer | None = None,
+        branch: Branch | None = None,
     ) -> None:
         """Start it; the first request waits until it is ready.
 
@@ -146,11 +158,7 @@ class ForkServer:
             env: its environment variables; its children get their own.
             more: arguments that follow those of `serve`.
             executes: whether its children execute their command.
-            branch_of: a server of the same command that forks itself for this one, which has then
-                loaded what that has; None: it starts from nothing.
-
-        Raises:
-            ServerLost: the server that was to be forked makes none.
+            branch: a server of this command that runs already; None: it is started.
         """
         self.command, self.env, self._executes = tuple(command), dict(env), executes
         self.is_lost = False
@@ -158,13 +166,13 @@ class ForkServer:
         self.forks = 0
         self._lock = threading.Lock()
         self._preloaded: frozenset[str] | None = None
-        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self._socket.settimeout(PATIENCE_S)
-        self._process: subprocess.Popen[bytes] | _Branch
+        self._process: subprocess.Popen[bytes] | Branch
+        if branch is not None:
+            self._process, self._socket = branch, branch.socket
+            self._socket.settimeout(PATIENCE_S)
+            return
+        self._socket, theirs = _pair()
         with theirs:
-            if branch_of is not None:
-                self._process = branch_of._give_branch(theirs)
-                return
             words = (FORK_SERVER, str(theirs.fileno()), *more)
             self._process = subprocess.Popen(
                 [*self.command, *words],
@@ -177,29 +185,24 @@ class ForkServer:
                 start_new_session=True,  # Ctrl-C is not for it
             )
 
-    def branch(self) -> ForkServer:
-        """Fork this server for another process to use, which alone its branch depends on.
+    def branch(self) -> Branch:
+        """Fork this server for another process: a server that has loaded the same.
 
         Raises:
             ServerLost: there is none.
         """
-        return ForkServer(self.command, self.env, executes=self._executes, branch_of=self)
-
-    def _give_branch(self, theirs: socket.socket) -> _Branch:
-        with self._lock:
+        ours, theirs = _pair()
+        with ExitStack() as held, theirs, self._lock:
+            held.callback(ours.close)
             self._await_ready()
-            return _Branch(*self._ask(fork_server_main.BRANCH, [theirs.fileno()]))
+            made = Branch(ours, *self._ask(fork_server_main.BRANCH, [theirs.fileno()]))
+            held.pop_all()
+        return made
 
     @property
     def pid(self) -> int:
         """Its process id."""
         return self._process.pid
-
-    def descriptors(self) -> Iterator[int]:
-        """Yield those by which a branch is reached."""
-        yield self._socket.fileno()
-        if isinstance(self._process, _Branch):
-            yield self._process.pidfd
 
     def preloaded(self) -> frozenset[str]:
         """Return the top-level modules that a child has loaded, but a cold start would not have.
@@ -260,7 +263,7 @@ class ForkServer:
         self._lock = threading.Lock()  # a thread of the parent's may have held it
         self._hang_up()
         self._process.returncode = 0
-        if isinstance(self._process, _Branch):
+        if isinstance(self._process, Branch):
             self._process.close()
 
     def has_ended(self) -> bool:
@@ -322,6 +325,13 @@ class ForkServer:
         """Close the socket; not while another thread waits for an answer: it would never come."""
         self.is_lost = True
         self._socket.close()
+
+
+def _pair() -> tuple[socket.socket, socket.socket]:
+    """Return both ends of a server's socket."""
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    ours.settimeout(PATIENCE_S)
+    return ours, theirs
 
 
 def cold_server(env: Mapping[str, str]) -> ForkServer:
