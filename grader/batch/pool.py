@@ -8,6 +8,7 @@ fails if that dies too. So does the task of a worker that cannot confine it now,
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -99,6 +100,10 @@ _COMMAND = (
     "from grader.batch import grade; grade.serve(sys.argv[2])",
     str(Path(__file__).parents[2]),
 )
+
+#: Memory that is free goes back to the system: pictures and messages of several runs at once would
+#: else keep a third more, each in a place of its own.
+_MEMORY = {"MALLOC_ARENA_MAX": "1", "MALLOC_MMAP_THRESHOLD_": "131072"}
 
 Done = tuple[Task, Answer]
 
@@ -232,6 +237,7 @@ def start() -> subprocess.Popen[bytes]:
             [sys.executable, *_COMMAND, fork_servers.described(branches)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            env=os.environ | _MEMORY,
             pass_fds=[fd for each in branches.values() for fd in each.descriptors()],
             start_new_session=True,
         )

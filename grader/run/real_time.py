@@ -17,7 +17,7 @@ from grader.errors import GraderFailure, NotNow, SceneFailure
 from grader.message import Message
 from grader.recording.observations import Observations
 from grader.recording.recording import Recording
-from grader.run import compiling, handover, run_context
+from grader.run import compiling, fork_servers, handover, run_context
 from grader.run.environment import student_environment
 from grader.run.evidence import EvidencePage
 from grader.run.finish import SimulatorLost, not_run, outcome, record
@@ -77,8 +77,10 @@ def run(
         except compiling.NotCompiled as why:
             return not_run(plan, why.message)
         its = replace(context, env={**context.env, **ours.env})
+        # where interfaces were compiled, libraries have to be found that the server does not know
+        server = None if ours.env else fork_servers.server(fork_servers.SIMULATOR)
         simulator = stack.enter_context(
-            start_simulator(MODULE, its, plan, (), str(FIRST_NODE_S), feed=feed)
+            start_simulator(MODULE, its, plan, (), str(FIRST_NODE_S), server=server, feed=feed)
         )
         simulator.expect("ready")
         programs = _Programs(submission, plan, context, theirs, stack)

@@ -8,12 +8,13 @@ fails here: the grader then runs the submission in real time, and the result say
 fail as well, it is the grader's failure.
 
 As a fork server it imports a scene and packages of messages (MESSAGES: a JSON list of names), and
-forks for each order; a child goes on with the arguments of the first form. Another scene is
-imported when the first order for it comes.
+forks for each order; a child goes on with the arguments of the first form, or is the simulator of a
+run in real time. Another scene is imported when the first order for it comes.
 """
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import socket
@@ -28,11 +29,15 @@ from grader.message import Message, msg
 from grader.run.processes import FORK_SERVER
 from grader.run.simulator.process import send_message
 
+IN_REAL_TIME = "grader.run.simulator.real_time"
+
 
 def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
     if argv[0] == FORK_SERVER:
-        argv = serve_runs(argv[1:])
+        module, *argv = serve_runs(argv[1:])
+        if module == IN_REAL_TIME:
+            return int(importlib.import_module(module).main(argv))
     try:
         from grader.run.lockstep import contract
 
@@ -47,7 +52,7 @@ def main(argv: list[str]) -> int:
 
 
 def serve_runs(words: Sequence[str]) -> list[str]:
-    """Be a fork server; returns in each child, with the arguments of a start of its own.
+    """Be a fork server; returns in each child, with its module and the arguments of its start.
 
     Args:
         words: the number of the socket, and what to import beforehand.
@@ -70,7 +75,7 @@ def serve_runs(words: Sequence[str]) -> list[str]:
     load(scene)
     endpoints.import_messages(json.loads(messages))
     command = fork_server_main.serve(number, (), load)
-    return command[command.index("-m") + 2 :]
+    return command[command.index("-m") + 1 :]
 
 
 def _where(error: Exception) -> str:

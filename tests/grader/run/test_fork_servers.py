@@ -347,14 +347,16 @@ print(*sorted({{"numpy", "rosbags", "rclpy", "PIL", "yaml", "rich"}} & set(sys.m
     assert done.stdout == b"\n"
 
 
-def test_real_time_starts_none(tmp_path: Path) -> None:
+def test_in_real_time_the_simulator_alone_is_forked(tmp_path: Path) -> None:
     from grader.run import real_time
 
+    fork_servers.warm()
     before = {side: each.forks for side, each in fork_servers._servers.items()}
     script = tmp_path / "submitted.py"
     script.write_text("print('here')")
     with open_submission(script) as submission:
         assert real_time.run(submission, PLAN).output == "here\n"
+    before["simulator"] += 1
     assert {side: each.forks for side, each in fork_servers._servers.items()} == before
 
 
