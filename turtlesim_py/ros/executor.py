@@ -18,7 +18,10 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.waitable import NumberOfEntities, Waitable
 
-#: How often it polls QoS events [spins], which bring no more than a warning in the log.
+from turtlesim_py.ros.arrivals import Arrivals
+
+#: How often it polls whatever may have arrived [spins]: QoS events, which bring no more than a
+#: warning in the log, and with `rely_on_arrivals` also the expiry of results.
 QUIET_SPINS = 16
 
 #: Gets the name of what was served, and the exception.
@@ -45,7 +48,14 @@ class TickExecutor:
         self._actions: list[Waitable] = []
         self._events: list[Waitable] = []
         self._spins = 0
+        self._found = False
+        self._arrivals: Arrivals | None = None
         node.executor = self
+
+    def rely_on_arrivals(self) -> None:
+        """From now on, poll in most spins only when the middleware has told of an arrival."""
+        self._arrivals = Arrivals()
+        self._wait_set = None  # so that they get to know the entities
 
     def spin_some(self) -> None:
         """Serve at most one message or request of every entity that has one.
@@ -58,11 +68,16 @@ class TickExecutor:
             self._collect()
         self._spins += 1
         is_quiet = self._spins % QUIET_SPINS != 0
+        has_news = self._arrivals is None or self._arrivals.take()
+        # where something was found, more may be waiting behind it
+        if is_quiet and not (has_news or self._found):
+            return
         waitables = self._actions if is_quiet else self._actions + self._events
         wait_set = self._polled(waitables)
         subscriptions = wait_set.get_ready_entities("subscription")
         services = wait_set.get_ready_entities("service")
         ready = [waitable for waitable in waitables if waitable.is_ready(wait_set)]
+        self._found = bool(subscriptions or services or ready)
         # What is not in these dictionaries belongs to an action.
         for pointer in subscriptions:
             if pointer in self._subscriptions:
@@ -136,6 +151,10 @@ class TickExecutor:
             count.num_events,
             node.context.handle,
         )
+        if self._arrivals is not None and not self._arrivals.watch(
+            self._subscriptions.values(), self._services.values(), self._actions
+        ):
+            self._arrivals = None
 
 
 def _name(entity: Any) -> str:

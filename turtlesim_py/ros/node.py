@@ -300,6 +300,7 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
         else f"This turtlesim shows no window. To see it: ros2 run rqt_image_view rqt_image_view "
         f"{name}/image, or as a file: ros2 service call {name}/save_canvas std_srvs/srv/Trigger"
     )
+    node.tick_executor.rely_on_arrivals()
     # What exists now stays: no search through it in the middle of a tick
     gc.collect()
     gc.freeze()
