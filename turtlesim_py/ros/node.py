@@ -94,9 +94,7 @@ class TurtlesimNode(RclcppNode):
         window.declare_parameters(self)
         if self.MAY_BE_SEEN:
             window.declare_page_parameters(self)
-        self.get_logger().info(
-            f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
-        )
+        self.log("INFO", f"Starting turtlesim with node name {self.get_fully_qualified_name()}")
         self.arena = Arena((self._on_notice,), sprite=sprite)
         self._window = window.Window(self, self.arena)
         self._logs_positions = self.get_logger().is_enabled_for(LoggingSeverity.DEBUG)
@@ -180,7 +178,7 @@ class TurtlesimNode(RclcppNode):
     def on_failure(self, what: str, error: Exception) -> None:
         """Log that a message or request could not be served; the node goes on."""
         reason = f"{type(error).__name__}: {error}"
-        self.get_logger().error(f"Cannot serve [{what}]: {reason[:LONGEST_REASON]}")
+        self.log("ERROR", f"Cannot serve [{what}]: {reason[:LONGEST_REASON]}")
 
     # Parameters -------------------------------------------------------------------------------
 
@@ -219,7 +217,7 @@ class TurtlesimNode(RclcppNode):
     def _on_spawn(self, request: Any, response: Any) -> Any:
         problem = self._problem_with_name(request.name)
         if problem:
-            self.get_logger().error(f"Cannot spawn a turtle named [{request.name}]: {problem}")
+            self.log("ERROR", f"Cannot spawn a turtle named [{request.name}]: {problem}")
             response.name = ""
             return response
         response.name = self.arena.spawn(request.x, request.y, request.theta, request.name)
@@ -264,14 +262,7 @@ class TurtlesimNode(RclcppNode):
     def _on_notice(self, notice: Notice) -> None:
         match notice:
             case LogLine(severity, text):
-                logger = self.get_logger()
-                # One call a severity: rclpy refuses a call site that changes its severity.
-                if severity == "INFO":
-                    logger.info(text)
-                elif severity == "WARN":
-                    logger.warning(text)
-                else:
-                    logger.error(text)
+                self.log(severity, text)
             case GoalFeedback(turtle) | GoalResult(turtle):
                 action = self._endpoints[turtle].action
                 send: Any = action.feedback if isinstance(notice, GoalFeedback) else action.finish
@@ -286,23 +277,21 @@ class TurtlesimNode(RclcppNode):
             numbers = (turtle.x_m, turtle.y_down_m, turtle.heading_rad)
             x, y, theta = map(printf_f, numbers)
             # The brackets have the namespace, not the turtle, as in the original.
-            self.get_logger().debug(
-                f"[{self.get_namespace()}]: pos_x: {x} pos_y: {y} theta: {theta}"
-            )
+            self.log("DEBUG", f"[{self.get_namespace()}]: pos_x: {x} pos_y: {y} theta: {theta}")
 
 
 def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
     """Let the clock that the node follows move the turtles until it is stopped."""
     name = node.get_fully_qualified_name()
-    node.get_logger().info(
+    node.log(
+        "INFO",
         f"This turtlesim shows no window, but a page: {node.live.address}"
         if node.live is not None
         else f"This turtlesim shows no window. To see it: ros2 run rqt_image_view rqt_image_view "
-        f"{name}/image, or as a file: ros2 service call {name}/save_canvas std_srvs/srv/Trigger"
+        f"{name}/image, or as a file: ros2 service call {name}/save_canvas std_srvs/srv/Trigger",
     )
     node.tick_executor.rely_on_arrivals()
-    # What exists now stays: no search through it in the middle of a tick
-    gc.collect()
+    # What exists now stays, with hardly any garbage: no search through it in the middle of a tick
     gc.freeze()
 
     def goes_on(with_ros_clock: bool, _: object) -> bool:

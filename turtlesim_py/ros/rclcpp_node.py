@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
@@ -15,6 +16,8 @@ from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_policy_name_from_kind
@@ -63,6 +66,17 @@ class RclcppNode(Node):
         setters = {SetParameters: self._on_set, SetParametersAtomically: self._on_set_atomically}
         for service in self.services:
             service.callback = setters.get(service.srv_type, service.callback)
+
+    def log(self, severity: str, text: str) -> None:
+        """Log a line with a severity of rcutils ("INFO", "WARN", ...).
+
+        rclpy's logger looks through the files of all modules for the caller of the first line,
+        which takes most of a tick, and refuses a caller that changes its severity.
+        """
+        caller = sys._getframe(1)
+        code, name = caller.f_code, self.get_logger().name
+        where = code.co_name, code.co_filename, caller.f_lineno
+        _rclpy.rclpy_logging_rcutils_log(LoggingSeverity[severity], name, text, *where)
 
     # Parameters -------------------------------------------------------------------------------
 
@@ -168,7 +182,7 @@ class RclcppNode(Node):
 
         def warn(event: Any) -> None:
             policy = qos_policy_name_from_kind(event.last_policy_kind)
-            self.get_logger().warning(begin + NO_MESSAGES.format(policy))
+            self.log("WARN", begin + NO_MESSAGES.format(policy))
 
         return warn
 

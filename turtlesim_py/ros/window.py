@@ -195,5 +195,5 @@ def serve_page(node: RclcppNode, arena: Arena, interfaces: str) -> tuple[LiveSer
         why = getattr(error, "strerror", None) or str(error)
         found = f"{port}, at {host}"
         raise UnusableParameter("view_port", found, f"a port that is free ({why})") from None
-    node.get_logger().info(f"The turtles are to be seen at {server.address}")
+    node.log("INFO", f"The turtles are to be seen at {server.address}")
     return server, feed
