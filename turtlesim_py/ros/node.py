@@ -6,6 +6,7 @@ import gc
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rcl_interfaces.msg import ParameterEvent
@@ -25,7 +26,7 @@ from turtlesim_py.ros.turtle_endpoints import TurtleEndpoints
 from turtlesim_py.world.arena import BY_NAME, PARAMETERS, Arena
 from turtlesim_py.world.events import GoalFeedback, GoalResult, LogLine, Notice
 from turtlesim_py.world.floats import printf_f
-from turtlesim_py.world.picture import NAMES
+from turtlesim_py.world.sprite import NAMES
 from turtlesim_py.world.turtle import Reading
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ class TurtlesimNode(RclcppNode):
 
     Args:
         arguments: ROS arguments (`--ros-args ...`) of this node alone; the global ones count too.
+        opens_window: whether `open_window` is called here.
 
     Attributes:
         arena: the turtles and what they have drawn.
@@ -81,7 +83,7 @@ class TurtlesimNode(RclcppNode):
     #: Whether it may serve a page; a graded one has the parameters that it always had.
     MAY_BE_SEEN: ClassVar = True
 
-    def __init__(self, arguments: list[str] | None = None) -> None:
+    def __init__(self, arguments: list[str] | None = None, opens_window: bool = True) -> None:
         # first, since a node that comes no further is destroyed as well
         self._endpoints: dict[str, TurtleEndpoints] = {}
         self.live: LiveServer | None = None
@@ -97,6 +99,8 @@ class TurtlesimNode(RclcppNode):
         self.log("INFO", f"Starting turtlesim with node name {self.get_fully_qualified_name()}")
         self.arena = Arena((self._on_notice,), sprite=sprite)
         self._window = window.Window(self, self.arena)
+        if opens_window:
+            self.open_window()
         self._logs_positions = self.get_logger().is_enabled_for(LoggingSeverity.DEBUG)
         self._last_ns = 0
         self._set_back_ns = 0
@@ -119,6 +123,10 @@ class TurtlesimNode(RclcppNode):
             served := window.serve_page(self, self.arena, self.interfaces.package)
         ):
             self.live, self._feed = served
+
+    def open_window(self) -> None:
+        """Offer the window's topics and service, if that has not been done."""
+        self._window.open()
 
     def destroy_node(self) -> None:
         """Leave the graph."""
@@ -282,6 +290,10 @@ class TurtlesimNode(RclcppNode):
 
 def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
     """Let the clock that the node follows move the turtles until it is stopped."""
+    node.tick_executor.rely_on_arrivals()
+    if not node.follows_ros_clock:
+        node.tick(time.time_ns())  # before the window: a program may be waiting for the first pose
+    node.open_window()
     name = node.get_fully_qualified_name()
     node.log(
         "INFO",
@@ -290,7 +302,6 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
         else f"This turtlesim shows no window. To see it: ros2 run rqt_image_view rqt_image_view "
         f"{name}/image, or as a file: ros2 service call {name}/save_canvas std_srvs/srv/Trigger",
     )
-    node.tick_executor.rely_on_arrivals()
     # What exists now stays, with hardly any garbage: no search through it in the middle of a tick
     gc.freeze()
 
@@ -311,7 +322,9 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
 
 def main(argv: list[str] | None = None) -> int:
     """Run the simulator until SIGINT or SIGTERM; 2 where its arguments cannot be used."""
-    return program.run("turtlesim_node", TurtlesimNode, simulate, argv, ABOUT)
+    return program.run(
+        "turtlesim_node", partial(TurtlesimNode, opens_window=False), simulate, argv, ABOUT
+    )
 
 
 if __name__ == "__main__":

@@ -8,21 +8,20 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import PIL.Image
-from numpy.typing import NDArray
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
-from sensor_msgs.msg import CompressedImage, Image
 from std_srvs.srv import Trigger
 
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableParameter
-from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import TICK_S
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+    from sensor_msgs.msg import CompressedImage, Image
+
     from turtlesim_py.live.feed import Feed
     from turtlesim_py.live.server import LiveServer
 
@@ -75,18 +74,26 @@ class Window:
         self._arena = arena
         self._rate_hz: float = node.get_parameter("image_rate").value
         self._due_ns = 0
+        self._raw: Publisher | None = None
         node.add_post_set_parameters_callback(self._on_parameters)
+
+    def open(self) -> None:
+        """Create the topics and the service, if they are not there yet."""
+        if self._raw is not None:
+            return
+        from sensor_msgs.msg import CompressedImage, Image  # here: the first pose needs none
+
         only_the_newest = QoSProfile(depth=1)
-        self._raw = node.create_publisher(Image, "~/image", only_the_newest)
-        self._compressed = node.create_publisher(
+        self._raw = self._node.create_publisher(Image, "~/image", only_the_newest)
+        self._compressed = self._node.create_publisher(
             CompressedImage, "~/image/compressed", only_the_newest
         )
-        node.create_service(Trigger, "~/save_canvas", self._on_save)
+        self._node.create_service(Trigger, "~/save_canvas", self._on_save)
 
     def publish_if_due(self) -> None:
         """Send the picture if somebody subscribes and the last is old enough; after each tick."""
         late_ns = self._arena.now_ns - self._due_ns
-        if late_ns < 0 or self._rate_hz == 0.0:
+        if late_ns < 0 or self._rate_hz == 0.0 or self._raw is None:
             return
         period_ns = round(min(1e9 / self._rate_hz, LONGEST_PERIOD_NS))
         # counted from when it was due: waiting for a tick does not make pictures rarer
@@ -97,9 +104,9 @@ class Window:
             return
         pixels = self._picture()
         if raw:
-            self._publish(self._raw, _raw_image(pixels))
+            self._publish(self._raw, _fill(self._raw.msg_type(), pixels))
         if compressed:
-            self._publish(self._compressed, _compressed_image(pixels))
+            self._publish(self._compressed, _compress(self._compressed.msg_type(), pixels))
 
     def _publish(self, publisher: Publisher, message: Image | CompressedImage) -> None:
         message.header.stamp = self._node.get_clock().now().to_msg()
@@ -118,7 +125,7 @@ class Window:
             folder = folder.expanduser().resolve()
             folder.mkdir(parents=True, exist_ok=True)
             path = _reserve_next(folder)
-            PIL.Image.fromarray(self._picture()).save(path, format="PNG")
+            path.write_bytes(_png(self._picture()))
         # an unknown home, a circle of links, a name that no file can have
         except (OSError, RuntimeError, ValueError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
@@ -130,22 +137,31 @@ class Window:
         return response
 
     def _picture(self) -> NDArray[np.uint8]:
+        from turtlesim_py.world import picture  # here: often nobody looks
+
         arena = self._arena
         return picture.render(arena.canvas, arena.background, arena.sprites())
 
 
-def _raw_image(pixels: NDArray[np.uint8]) -> Image:
-    height, width, channels = pixels.shape
-    image = Image(height=height, width=width, encoding="rgb8", step=width * channels)
+def _fill(image: Image, pixels: NDArray[np.uint8]) -> Image:
+    image.height, image.width, channels = pixels.shape
+    image.encoding, image.step = "rgb8", image.width * channels
     # rclpy copies an array of bytes as a whole, anything else byte by byte
     image.data = array("B", pixels.tobytes())
     return image
 
 
-def _compressed_image(pixels: NDArray[np.uint8]) -> CompressedImage:
+def _compress(image: CompressedImage, pixels: NDArray[np.uint8]) -> CompressedImage:
+    image.format, image.data = "png", array("B", _png(pixels))
+    return image
+
+
+def _png(pixels: NDArray[np.uint8]) -> bytes:
+    import PIL.Image  # here: often nobody looks
+
     file = BytesIO()
     PIL.Image.fromarray(pixels).save(file, format="PNG")
-    return CompressedImage(format="png", data=array("B", file.getvalue()))
+    return file.getvalue()
 
 
 def _reserve_next(folder: Path) -> Path:

@@ -12,7 +12,7 @@ from turtlesim_py.world import events
 from turtlesim_py.world.canvas import Canvas
 from turtlesim_py.world.events import LogLine, Notice, Severity
 from turtlesim_py.world.floats import float32, printf_f
-from turtlesim_py.world.picture import NAMES, Sprite
+from turtlesim_py.world.sprite import NAMES, Sprite
 from turtlesim_py.world.turtle import METER_PX, SIZE_M, Reading, Teleport, Turtle
 
 #: A tick's length on the arena's clock [ns].

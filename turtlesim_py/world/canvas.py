@@ -60,12 +60,11 @@ class Canvas:
         self.watcher: Callable[[Pen, Sequence[Span]], None] | None = None
         # One 32-bit item a pixel, row after row, with the bytes r, g, b, a in memory: painting a
         # run is one slice assignment, and numpy reads the same bytes without conversion.
-        self._blank = array("I", bytes(UNPAINTED)) * SIZE_PX**2
-        self._pixels = self._blank[:]
+        self.clear()
 
     def clear(self) -> None:
         """Remove all paint."""
-        self._pixels = self._blank[:]
+        self._pixels = array("I", bytes(UNPAINTED)) * SIZE_PX**2
 
     def copy(self) -> Self:
         """Return a canvas with the same pixels that later strokes do not change."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from turtlesim_py.world.canvas import Canvas
 from turtlesim_py.world.floats import PI
+from turtlesim_py.world.sprite import NAMES, Sprite
 
 Color = tuple[int, int, int]
 Mask = NDArray[np.bool_]
@@ -26,24 +27,6 @@ _QUARTER_TURNS = {
     270.0: (0.0, -1.0),
     -90.0: (0.0, -1.0),
 }
-
-
-@dataclass(frozen=True)
-class Sprite:
-    """A turtle as the window shows it.
-
-    Attributes:
-        x_px, y_px: its centre on the canvas, y down. Where one is not finite, the edge of the
-            turtle's picture lies on the edge of the window, as in the original.
-        heading_rad: 0 is to the right, positive turns to the left. A turtle whose heading is
-            not finite is invisible, as in the original.
-        name: one of `NAMES`.
-    """
-
-    x_px: float
-    y_px: float
-    heading_rad: float
-    name: str
 
 
 def render(
@@ -270,9 +253,6 @@ _APPEARANCES: Final = {
     "rolling": Appearance((240, 214, 90), (20, 120, 84), (96, 206, 140), (8, 58, 44), _rings),
 }
 
-#: The names of the pictures, in the original's order.
-NAMES: Final = tuple(_APPEARANCES)
-
 
 @cache
 def sprite(name: str) -> NDArray[np.uint8]:
@@ -281,7 +261,7 @@ def sprite(name: str) -> NDArray[np.uint8]:
     Raises:
         KeyError: no picture has this name.
     """
-    if name not in _APPEARANCES:
+    if name not in NAMES:
         raise KeyError(f"no turtle picture is named {name!r}, expected one of {', '.join(NAMES)}")
     pixels = _draw(_APPEARANCES[name])
     pixels.setflags(write=False)

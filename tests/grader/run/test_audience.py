@@ -15,6 +15,7 @@ from tests.grader.run.conftest import LIMITS
 from tests.runs import SUBMISSIONS
 from turtlesim_py.live.feed import News
 from turtlesim_py.world import picture
+from turtlesim_py.world.sprite import Sprite
 
 
 class Onlooker:
@@ -42,7 +43,7 @@ class Onlooker:
         self.mirror.ask(self)
         whole = self.wholes[-1]
         turtles = [
-            picture.Sprite(*map(float, (*turtle["px"], turtle["heading"])), turtle["sprite"])
+            Sprite(*map(float, (*turtle["px"], turtle["heading"])), turtle["sprite"])
             for turtle in whole.content["turtles"]
         ]
         return picture.render(whole.canvas, tuple(whole.content["background"]), turtles)

@@ -28,6 +28,7 @@ from tests.tiers import others_are_more
 from tests.turtlesim_py.live.conftest import Page
 from turtlesim_py.world import picture
 from turtlesim_py.world.canvas import Canvas, Pen
+from turtlesim_py.world.sprite import Sprite
 
 pytestmark = needs_browser
 
@@ -178,13 +179,13 @@ def test_turtles_are_turned_and_laid_over_as_the_simulator_does(browser, page):
     canvas = Canvas()
     canvas.draw_line(20.0, 30.0, 400.5, 310.25, Pen(10, 200, 30, 12))
     turtles = [
-        picture.Sprite(*places[n % len(places)], float(heading), name)
+        Sprite(*places[n % len(places)], float(heading), name)
         for n, heading in enumerate(headings)
         for name in ("jazzy", "foxy")
     ]
     turtles += [
-        picture.Sprite(float("nan"), 60.0, 1.0, "iron"),
-        picture.Sprite(60.0, 60.0, float("inf"), "iron"),
+        Sprite(float("nan"), 60.0, 1.0, "iron"),
+        Sprite(60.0, 60.0, float("inf"), "iron"),
     ]
     runs = []
     canvas.watcher = lambda pen, spans: runs.extend(n for span in spans for n in span)

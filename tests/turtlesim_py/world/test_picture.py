@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from turtlesim_py.world.canvas import Canvas, Pen
 from turtlesim_py.world.floats import PI
-from turtlesim_py.world.picture import NAMES, Sprite, render, sprite
+from turtlesim_py.world.picture import render, sprite
+from turtlesim_py.world.sprite import NAMES, Sprite
 
 BLUE = (69, 86, 255)
 MIDDLE = 250.5  # a picture of 45 pixels lies on whole pixels around it

@@ -5,7 +5,8 @@ import hashlib
 import numpy as np
 import pytest
 
-from turtlesim_py.world.picture import NAMES, sprite
+from turtlesim_py.world.picture import sprite
+from turtlesim_py.world.sprite import NAMES
 
 
 def test_there_is_a_picture_for_each_name_of_the_original_in_its_order():
