@@ -103,6 +103,8 @@ class Turtle:
         self.x_m = float32(x)
         self.y_down_m = float32(SIZE_M - float32(y))
         self.heading_rad = float32(theta)
+        #: What is published until the next input; None while an update may change something.
+        self._rest: Pose | None = None
 
     # Inputs -----------------------------------------------------------------------------------
 
@@ -112,6 +114,7 @@ class Turtle:
         A sideways speed of None leaves the old one acting, as the original does when it is not
         holonomic. Any command aborts a running rotation goal.
         """
+        self._rest = None
         self._last_command_ns = now_ns
         self.lin_x = linear_x
         if linear_y is not None:
@@ -129,6 +132,7 @@ class Turtle:
 
     def teleport(self, teleport: Teleport) -> None:
         """Queue a jump for the next update."""
+        self._rest = None
         self._teleports.append(teleport)
 
     def rotate_to(self, goal_id: object, theta: float) -> None:
@@ -138,6 +142,7 @@ class Turtle:
                 "Rotation goal received before a previous goal finished. Aborting previous goal"
             )
             self._end_goal("ABORTED", self.goal.delta)
+        self._rest = None
         self.goal = RotationGoal(goal_id, theta, self.heading_rad)
 
     def abandon_goal(self) -> None:
@@ -149,19 +154,23 @@ class Turtle:
 
     def update(self, canvas: Canvas, now_ns: int) -> Reading:
         """Update for one tick and draw on the canvas; return what is published."""
+        if self._rest is not None:
+            return Reading(self._rest, self._color(canvas))
         for teleport in self._teleports:
             self._jump(teleport, canvas)
         self._teleports.clear()
         self._pursue_goal(now_ns)
-        if now_ns - self._last_command_ns > COMMAND_TIMEOUT_NS:
+        is_halted = now_ns - self._last_command_ns > COMMAND_TIMEOUT_NS
+        if is_halted:
             self._halt()
-        old_x, old_y = self.x_m, self.y_down_m
+        old_x, old_y, old_heading = self.x_m, self.y_down_m, self.heading_rad
         self._move()
         self._stay_inside()
-        reading = Reading(
-            self._pose(), canvas.color_at(self.x_m * METER_PX, self.y_down_m * METER_PX)
-        )
+        reading = Reading(self._pose(), self._color(canvas))
         self._draw_way(old_x, old_y, canvas)
+        # without speed, the same sums leave the same numbers for ever
+        if is_halted and (old_x, old_y, old_heading) == (self.x_m, self.y_down_m, self.heading_rad):
+            self._rest = reading.pose
         return reading
 
     def go_to(self, x: float, y: float, theta: float, canvas: Canvas) -> None:
@@ -243,6 +252,9 @@ class Turtle:
         speed = math.sqrt(self.lin_x * self.lin_x + self.lin_y * self.lin_y)
         place = (self.x_m, SIZE_M - self.y_down_m, self.heading_rad)
         return Pose._make(map(float32, (*place, speed, self.ang)))
+
+    def _color(self, canvas: Canvas) -> tuple[int, int, int]:
+        return canvas.color_at(self.x_m * METER_PX, self.y_down_m * METER_PX)
 
     def _draw_way(self, old_x: float, old_y: float, canvas: Canvas) -> None:
         if not (fuzzy_equal(self.x_m, old_x) and fuzzy_equal(self.y_down_m, old_y)):

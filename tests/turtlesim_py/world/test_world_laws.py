@@ -104,3 +104,23 @@ def test_a_number_of_17_digits_in_json_is_the_number(value):
     found = json_number(value, 17)
     assert found == value == float(f"{value:.17g}")
     assert isinstance(found, int) == (float(value).is_integer() and abs(value) < 1e15)
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from(["drive", "put", "turn"]), anything, anything), max_size=6)
+)
+def test_a_turtle_at_rest_publishes_what_its_sums_would_give(inputs):
+    shortcut, summed = Arena(sprite="rolling"), Arena(sprite="rolling")
+    for kind, x, angle in inputs:
+        for arena in (shortcut, summed):
+            if kind == "drive":
+                arena.command("turtle1", (x, 0.0, 0.0), (0.0, 0.0, angle))
+            elif kind == "put":
+                arena.teleport_absolute("turtle1", x, 1.0, angle)
+            else:
+                arena.rotate_absolute("turtle1", angle, "goal")
+        for _ in range(70):  # longer than a command moves it
+            summed.turtles["turtle1"]._rest = None
+            expected, found = (repr(arena.tick()["turtle1"]) for arena in (summed, shortcut))
+            assert found == expected
+    assert (shortcut.canvas.rgba() == summed.canvas.rgba()).all()
