@@ -1,4 +1,4 @@
-"""Measure what the simulator costs, beside the original: a table, in about three minutes.
+"""Measure what the simulator costs, beside the original: a table, in about five minutes.
 
     .venv/bin/python benchmarks/node.py
 
@@ -21,8 +21,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
+import measuring
 import psutil
 import rclpy
 from geometry_msgs.msg import Twist, Vector3
@@ -38,9 +40,27 @@ from grader.run.processes import network
 REPETITIONS = 5
 #: How often and how long a process is measured for a figure of its cost [s].
 WINDOWS = 3
-WINDOW_S = 2.5
+WINDOW_S = 5.0
 #: The rate of commands of the original's measurement [Hz].
 COMMANDS_HZ = 10.0
+#: A simulator that ends with its first pose: that to be heard varies by seconds, by discovery.
+TO_FIRST_POSE = """
+import os
+from turtlesim_py.ros import node
+
+def tick(self, now_ns, tick=node.TurtlesimNode.tick):
+    tick(self, now_ns)
+    os._exit(0)
+
+node.TurtlesimNode.tick = tick
+node.main(["turtlesim_node"])
+"""
+#: Processes that the simulator's memory is compared with; they wait for the end of their input.
+IMPORTS = "import rclpy, rclpy.action, geometry_msgs.msg"
+BARE = {
+    "the imports of rclpy, rclpy.action, geometry_msgs": IMPORTS,
+    "the same with a node": f"{IMPORTS}; rclpy.init(); node = rclpy.create_node('bare')",
+}
 
 
 def figure(
@@ -120,40 +140,85 @@ def heard(subscriber: Subscriber, *arguments: str) -> Iterator[psutil.Process]:
 
 def cpu_percent(process: psutil.Process, subscriber: Subscriber, drive: bool = False) -> float:
     """Return the share of a core that a process uses for a while."""
-    process.cpu_percent()
+    begin, begin_s = time.monotonic(), cpu_s(process)
     subscriber.spin_for(WINDOW_S, drive)
-    return process.cpu_percent()
+    return 100.0 * (cpu_s(process) - begin_s) / (time.monotonic() - begin)
+
+
+def cpu_s(process: psutil.Process) -> float:
+    """Return the processor time of all its threads [s]; what psutil has is counted in 10 ms."""
+    files = Path(f"/proc/{process.pid}/task").glob("*/schedstat")
+    return sum(int(file.read_text().split()[0]) for file in files) / 1e9
+
+
+def memory_mib(process: psutil.Process) -> float:
+    """Return how much of a process is in memory [MiB]."""
+    return float(process.memory_info().rss) / 2**20
+
+
+def bare_memory_mib(statements: str) -> float:
+    """Return the memory of a process that has executed these statements [MiB]."""
+    words = [sys.executable, "-c", f"{statements}; print(flush=True); input()"]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as bare:
+        assert bare.stdin is not None and bare.stdout is not None
+        bare.stdout.readline()
+        mib = memory_mib(psutil.Process(bare.pid))
+        bare.stdin.write(b"\n")
+        bare.stdin.flush()
+    return mib
 
 
 def cost_of_node(subscriber: Subscriber) -> None:
     """Print CPU and memory of the node, idle and driven, with one turtle and with ten."""
-
-    def shares(drive: bool) -> list[float]:
-        return [cpu_percent(process, subscriber, drive) for _ in range(WINDOWS)]
-
-    def memory_mib() -> list[float]:
-        return [process.memory_info().rss / 2**20]
-
     with heard(subscriber) as process:
-        figure("CPU, idle, 1 subscriber", "%", shares(drive=False), original="2.7")
-        figure("CPU, driven at 10 Hz, 1 subscriber", "%", shares(drive=True), original="6.8")
-        figure("memory, 1 turtle", "MiB", memory_mib(), 0, "52")
+        idle = partial(cpu_percent, process, subscriber)
+        driven = partial(idle, drive=True)
+        mib = partial(memory_mib, process)
+        bare = (partial(bare_memory_mib, statements) for statements in BARE.values())
+        idle_percents, driven_percents, all_mib, *bare_mib = in_turns(
+            REPETITIONS, idle, driven, mib, *bare
+        )
+        figure("CPU, idle, 1 subscriber", "%", idle_percents, 2, "2.7")
+        figure("CPU, driven at 10 Hz, 1 subscriber", "%", driven_percents, 2, "6.8")
+        figure("memory, 1 turtle", "MiB", all_mib, 1, "52")
+        for name, others in zip(BARE, bare_mib, strict=True):
+            above = [ours - other for ours, other in zip(all_mib, others, strict=True)]
+            figure(f"... above {name}", "MiB", above)
         subscriber.spawn(9)
-        figure("CPU, 10 turtles, 1 driven", "%", shares(drive=True), original="10.1")
-        figure("memory, 10 turtles", "MiB", memory_mib(), 0, "60")
+        (percents,) = in_turns(WINDOWS, driven)
+        figure("CPU, 10 turtles, 1 driven", "%", percents, 2, "10.1")
+        figure("memory, 10 turtles", "MiB", [mib()], 1, "60")
 
 
 def start_to_first_pose() -> None:
-    """Print the time from the start of the process until a waiting client has a pose."""
-    waits = []
-    for _ in range(REPETITIONS):
+    """Print the time until the first pose, beside that of a whole bare rclpy process."""
+
+    def heard_s() -> float:
         subscriber = Subscriber()
         begin = time.monotonic()
         with simulator():
-            subscriber.spin_until(lambda s=subscriber: s.stamps_ns)  # type: ignore[misc]
-            waits.append(time.monotonic() - begin)
+            subscriber.spin_until(lambda: subscriber.stamps_ns)
+            waited_s = time.monotonic() - begin
         subscriber.node.destroy_node()
-    figure("start to first pose", "s", waits, 2, "0.15 – 0.43")
+        return waited_s
+
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    words = [sys.executable, "-c", TO_FIRST_POSE]
+    bare_words = [sys.executable, measuring.__file__, "start"]
+    bare, first = in_turns(
+        2 * REPETITIONS + 1,
+        *(partial(measuring.command, each, env) for each in (bare_words, words)),
+    )
+    pairs = list(zip(bare, first, strict=True))
+    figure("start to first pose", "s", [cost.wall_s for cost in first], 3)
+    walls = [ours.wall_s / other.wall_s for other, ours in pairs]
+    figure("... in bare rclpy processes", "", walls, 2)
+    cpus = [
+        ours.cpu_s / other.cpu_s if ours.cpu_s and other.cpu_s else None for other, ours in pairs
+    ]
+    row("... the same in processor time", "", spread(cpus, 2), "")
+    (waits,) = in_turns(REPETITIONS, heard_s)
+    figure("start to first pose at a subscriber", "s", waits, 2, "0.15 – 0.43")
 
 
 def pose_interval(subscriber: Subscriber) -> None:
