@@ -22,16 +22,14 @@ SEMAPHORE_BYTES: Final = 64
 #: What an action server is asked for.
 REQUESTS: Final = ("goal", "cancel", "result")
 
-#: Never freed: the middleware's threads may still count while the process ends.
-_semaphores: list[Any] = []
-
 
 class Arrivals:
     """Whether anything has arrived for the entities that are watched."""
 
     def __init__(self) -> None:
         semaphore = ctypes.create_string_buffer(SEMAPHORE_BYTES)  # all zeros: it counts 0
-        _semaphores.append(semaphore)
+        # never freed: the middleware's threads may still count while Python ends
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(semaphore))
         self._where = ctypes.c_void_p(ctypes.addressof(semaphore))
         self._count = ctypes.c_uint32.from_buffer(semaphore)
 
