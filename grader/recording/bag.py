@@ -5,39 +5,35 @@ The scene defines the topics, in its module `messages`.
 A message's time is counted from the start of the run: a date would be the only thing in the bag
 that differs between equal runs. Messages of equal times stand in the file in the order in which
 they happened.
-
-Two things are added that rosbag2 writes and rosbags does not:
-
-| what | where |
-|---|---|
-| `topic_type_hash`, by which a type is known on the graph | metadata of each channel in the .mcap |
-| `ros_distro`, whose types these are | metadata.yaml, and its copy in the .mcap |
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from functools import cache
-from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import yaml
-from rosbags.interfaces import Connection
-from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
-from rosbags.rosbag2.storage_mcap import McapReader, McapWriter, write_channel, write_string
+from rosbags.rosbag2.storage_mcap import McapReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
 from grader.recording.channel import Channel, divided
+from grader.recording.mcap import McapWriter
 from grader.recording.subject import Subject, Trace
 
 #: Under whichever ROS a run was made: the bag's definitions are those of Jazzy.
 DISTRO = "jazzy"
 #: The C library's, where PyYAML has it: ten times as fast, and as safe.
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+#: A value that is too long for its line: bags have always had it in the next one.
+_LONG: Final = re.compile(r"(?m)^(?=.{81})( *)(\w+:) (\S+)$")
 #: Of metadata.yaml.
 _VERSION: Final = 9
 
@@ -51,21 +47,37 @@ def write(trace: Trace, subject: Subject, folder: Path) -> Path:
         OSError: it cannot be written, e.g. because the disk is full.
     """
     types = types_of(subject.definitions_of(trace))
-    writer = Rosbag2Writer(folder)
-    connections: dict[str, Connection] = {}
+    folder.mkdir(parents=True)
+    mcap = folder / f"{folder.name}.mcap"
+    writer = McapWriter(mcap)
+    #: topic -> the number of its channel, its type and the hash of that
+    channels: dict[str, tuple[int, str, str]] = {}
 
-    def connection(topic: str, msgtype: str) -> Connection:
-        # No QoS: `ros2 bag play` then offers the default, which suits every subscription here.
-        if topic not in connections:
-            connections[topic] = writer.add_connection(topic, msgtype, typestore=types)
-        return connections[topic]
+    def channel(topic: str, kind: str) -> int:
+        if topic not in channels:
+            type_hash = types.hash_rihs01(kind)
+            definition, _ = types.generate_msgdef(kind, ros_version=2)
+            number = writer.add_channel(topic, kind, definition, type_hash)
+            channels[topic] = number, kind, type_hash
+        return channels[topic][0]
 
-    with writer:
-        for topic, msgtype in subject.bag_topics(trace):
-            connection(topic, msgtype)
-        for time_ns, topic, msgtype, data in subject.to_messages(trace):
-            writer.write(connection(topic, msgtype), time_ns, data)
-    return folder / f"{folder.name}.mcap"
+    try:
+        for topic, kind in subject.bag_topics(trace):
+            channel(topic, kind)
+        for time_ns, topic, kind, data in subject.to_messages(trace):
+            writer.write(channel(topic, kind), time_ns, data)
+        topics = [
+            (topic, kind, type_hash, writer.counts[number])
+            for topic, (number, kind, type_hash) in channels.items()
+        ]
+        about = _about(mcap.name, writer.times_ns, topics)
+        writer.finish(_yaml(about).strip())
+    finally:
+        writer.close()
+    whole = mcap.with_name("metadata.yaml.tmp")
+    whole.write_text(_yaml({"rosbag2_bagfile_information": about}), encoding="utf-8")
+    whole.replace(whole.with_suffix(""))
+    return mcap
 
 
 def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
@@ -109,52 +121,51 @@ def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
 # Writing --------------------------------------------------------------------------------------
 
 
-class _Storage(McapWriter):
-    """The .mcap."""
+def _about(
+    file: str, times_ns: tuple[int, int], topics: Sequence[tuple[str, str, str, int]]
+) -> dict[str, Any]:
+    """Return rosbag2's metadata of a bag.
 
-    def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
-        """Write a channel with the hash of its type."""
-        records = self.chunk.bio
-        begin = records.tell()
-        super().add_connection(connection, offered_qos_profiles)
-        more = BytesIO()
-        write_string(more, "topic_type_hash")
-        write_string(more, connection.digest)
-        channel = self.channels.pop()
-        channel = channel._replace(metadata=channel.metadata + more.getvalue())
-        self.channels.append(channel)
-        # A channel's record stands among the messages too, and may be there once only.
-        records.seek(begin)
-        records.truncate()
-        write_channel(records, channel, self.schemas)
-
-    def close(self, version: int, metadata: str) -> None:
-        """Write the rest, the metadata too."""
-        super().close(version, _with_distro(metadata))
-
-
-class Rosbag2Writer(Writer):
-    """Writes a bag into a new folder; a context manager, as rosbags' own."""
-
-    STORAGE_PLUGINS: Mapping[StoragePlugin, type[McapWriter]] = {StoragePlugin.MCAP: _Storage}
-
-    def __init__(self, folder: Path) -> None:
-        super().__init__(folder, version=_VERSION, storage_plugin=StoragePlugin.MCAP)
-        # Chunks inside the file: 0.2 MB instead of 2 MB a run, and every reader of MCAP can
-        # unpack it.
-        self.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
-
-    def close(self) -> None:
-        """Finish the bag; last comes metadata.yaml."""
-        super().close()
-        text = self.metapath.read_text(encoding="utf-8")
-        whole = self.metapath.with_suffix(".yaml.tmp")
-        whole.write_text(_with_distro(text), encoding="utf-8")
-        whole.replace(self.metapath)
+    Args:
+        times_ns: of the first and the last message.
+        topics: name, type, its hash, number of messages.
+    """
+    first_ns, last_ns = times_ns
+    span = {
+        "starting_time": {"nanoseconds_since_epoch": first_ns},
+        "duration": {"nanoseconds": max(0, last_ns - first_ns)},
+        "message_count": sum(count for *_, count in topics),
+    }
+    return {
+        "version": _VERSION,
+        "storage_identifier": "mcap",
+        "relative_file_paths": [file],
+        **span,
+        "topics_with_message_count": [
+            {
+                "topic_metadata": {
+                    "name": topic,
+                    "type": kind,
+                    "serialization_format": "cdr",
+                    "offered_qos_profiles": [],
+                    "type_description_hash": type_hash,
+                },
+                "message_count": count,
+            }
+            for topic, kind, type_hash, count in topics
+        ],
+        # of the file as a whole: its chunks are compressed, which is no matter of rosbag2
+        "compression_format": "",
+        "compression_mode": "",
+        "files": [{"path": file, **deepcopy(span)}],  # else YAML refers to what was there
+        "custom_data": None,
+        "ros_distro": DISTRO,
+    }
 
 
-def _with_distro(metadata: str) -> str:
-    return metadata.replace("ros_distro: rosbags", f"ros_distro: {DISTRO}")
+def _yaml(about: Mapping[str, Any]) -> str:
+    text = yaml.dump(about, Dumper=_Dumper, default_flow_style=False)
+    return _LONG.sub(r"\1\2 \n\1  \3", text)
 
 
 # Reading --------------------------------------------------------------------------------------

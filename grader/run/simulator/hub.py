@@ -420,11 +420,11 @@ class Hub:
 
     def _catch_up(self, reached: int, member: LinkedProgram) -> None:
         """Make the forecast ticks that a program has used."""
-        while self._tick < min(reached, self._foresight.end) and not self._reason:
-            self._count_tick()
-            with scene_in_time(self._scene.name):
+        with scene_in_time(self._scene.name):  # a second's ticks at most
+            while self._tick < min(reached, self._foresight.end) and not self._reason:
+                self._count_tick()
                 reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
-            self._reason = expect_reason(self._scene.name, reason)
+                self._reason = expect_reason(self._scene.name, reason)
         self._clocks.set_now(self.now_ns)
         used = [p for p in self._foresight.parcels if p.time_ns <= self.now_ns]
         self._foresight.forget()

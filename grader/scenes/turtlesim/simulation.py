@@ -155,10 +155,10 @@ class EndOfRun:
         return "no_motion" if tick * TICK_S >= limits.first_motion_s else ""
 
     def _watch(self, poses: Mapping[str, Pose]) -> None:
-        known = self._last_poses
-        both = [(known[name], pose) for name, pose in poses.items() if name in known]
-        still = all(before[:3] == pose[:3] for before, pose in both)
-        self._moved = self._moved or not still
-        self._driven = self._driven or any(before[:2] != pose[:2] for before, pose in both)
-        self._still_ticks = self._still_ticks + 1 if still else 0
+        self._still_ticks += 1
+        for name, pose in poses.items():
+            before = self._last_poses.get(name, pose)
+            if before[:3] != pose[:3]:
+                self._moved, self._still_ticks = True, 0
+                self._driven = self._driven or before[:2] != pose[:2]
         self._last_poses = poses

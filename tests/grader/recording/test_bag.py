@@ -16,13 +16,14 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from grader.recording import bag, saving
-from grader.recording.bag import Rosbag2Writer, types_of
+from grader.recording.bag import types_of
 from grader.recording.recording import Recording, Recordings
 from grader.rosidl.cdr import serialise
 from grader.rosidl.definitions import Definitions
 from grader.scenes import load_scene
 from grader.scenes.turtlesim import messages as bag_messages
 from tests.grader.driving import drive, pen, twist
+from tests.grader.recording.slow_bag import Rosbag2Writer
 
 TICK_NS = 16_000_000
 DEFINITIONS = Path(__file__).parents[3] / "interfaces" / "packages" / "turtlesim" / "msg"

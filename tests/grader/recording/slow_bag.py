@@ -1,0 +1,59 @@
+"""A bag as rosbags writes it, with what rosbag2 adds: one message after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+
+from rosbags.interfaces import Connection
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.rosbag2.storage_mcap import McapWriter, write_channel, write_string
+
+
+class _Storage(McapWriter):
+    """The .mcap."""
+
+    def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
+        """Write a channel with the hash of its type."""
+        records = self.chunk.bio
+        begin = records.tell()
+        super().add_connection(connection, offered_qos_profiles)
+        more = BytesIO()
+        write_string(more, "topic_type_hash")
+        write_string(more, connection.digest)
+        channel = self.channels.pop()
+        channel = channel._replace(metadata=channel.metadata + more.getvalue())
+        self.channels.append(channel)
+        # A channel's record stands among the messages too, and may be there once only.
+        records.seek(begin)
+        records.truncate()
+        write_channel(records, channel, self.schemas)
+
+    def close(self, version: int, metadata: str) -> None:
+        """Write the rest, the metadata too."""
+        super().close(version, _with_distro(metadata))
+
+
+class Rosbag2Writer(Writer):
+    """Writes a bag into a new folder; a context manager, as rosbags' own."""
+
+    STORAGE_PLUGINS: Mapping[StoragePlugin, type[McapWriter]] = {StoragePlugin.MCAP: _Storage}
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder, version=9, storage_plugin=StoragePlugin.MCAP)
+        # Chunks inside the file: 0.2 MB instead of 2 MB a run, and every reader of MCAP can
+        # unpack it.
+        self.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+
+    def close(self) -> None:
+        """Finish the bag; last comes metadata.yaml."""
+        super().close()
+        text = self.metapath.read_text(encoding="utf-8")
+        whole = self.metapath.with_suffix(".yaml.tmp")
+        whole.write_text(_with_distro(text), encoding="utf-8")
+        whole.replace(self.metapath)
+
+
+def _with_distro(metadata: str) -> str:
+    return metadata.replace("ros_distro: rosbags", "ros_distro: jazzy")
