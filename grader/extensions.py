@@ -34,6 +34,11 @@ def points(group: Group) -> Mapping[str, list[EntryPoint]]:
     return _points(group, tuple(sys.path))
 
 
+def is_there(group: Group, name: str) -> bool:
+    """Whether there is an entry point of a name; ours are found sooner than others'."""
+    return name in _ours(group) or name in points(group)
+
+
 def find(group: Group, name: str) -> EntryPoint:
     """Return the entry point of a name. A name of ours is ours, whatever else is installed.
 
@@ -99,7 +104,16 @@ def _installed(_path: tuple[str, ...]) -> Any:
 
 @lru_cache(maxsize=8)
 def _points(group: Group, path: tuple[str, ...]) -> Mapping[str, list[EntryPoint]]:
-    found: dict[str, dict[str, EntryPoint]] = {}
-    for point in (*_ours(group).values(), *_installed(path).select(group=group)):
-        found.setdefault(point.name, {}).setdefault(described(point), point)
-    return {name: list(each.values()) for name, each in sorted(found.items())}
+    ours = _ours(group)
+    found = {name: [point] for name, point in ours.items()}
+    for point in _installed(path).select(group=group):
+        if point.name not in ours or point.value != ours[point.name].value:
+            found.setdefault(point.name, []).append(point)
+    return {name: _each_once(points) for name, points in sorted(found.items())}
+
+
+def _each_once(points: list[EntryPoint]) -> list[EntryPoint]:
+    # whose one is, stands in a file of its distribution that is long to parse
+    if len(points) == 1:
+        return points
+    return list({described(point): point for point in reversed(points)}.values())[::-1]

@@ -64,7 +64,7 @@ def names() -> list[str]:
 
 def is_installed(name: str) -> bool:
     """Whether there is an installed exercise of this name."""
-    return name in extensions.points(EXERCISES)
+    return extensions.is_there(EXERCISES, name)
 
 
 def installed(name: str) -> Place:
