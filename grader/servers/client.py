@@ -62,13 +62,18 @@ def called(words: Sequence[str]) -> int | None:
 def asked(what: str) -> dict[str, Any]:
     """Ask the servers for something else than a call, and return their answer.
 
+    Where they end, and nothing goes on, this waits until they have ended.
+
     Raises:
         OSError: there are none, or they do not answer.
         Refused, place.Occupied: they refuse; another has their place.
     """
     with place.opened() as folder, place.connected(folder) as servers:
         _ask(servers, folder, what, {}, [])
-        return _answer(servers)[0]
+        known = _answer(servers)[0]
+        if what == "stop" and not known["running"]:
+            select.select([servers], [], [], PATIENCE_S)
+        return known
 
 
 def _ask(
