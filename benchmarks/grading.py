@@ -16,6 +16,7 @@ import argparse
 import multiprocessing
 import os
 import signal
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -109,39 +111,86 @@ def worker() -> Iterator[Do]:
         yield do
 
 
-def command_cold(repetitions: int) -> list[Cost]:
-    """Measure `grader run` of the reference, each in a fresh process, everything written."""
-    with tempfile.TemporaryDirectory() as folder:
-        words = [sys.executable, "-m", "grader", "run", str(REFERENCE), "--out", folder]
-        return [measuring.command(words) for _ in range(repetitions)]
+def graded_once(env: dict[str, str], own: Group | None = None) -> tuple[Cost, float]:
+    """Measure `grader run` of the reference, everything written; also when its first line came.
+
+    Args:
+        own: the group of servers that do it.
+    """
+    with tempfile.TemporaryDirectory() as folder, measuring.group() as measured:
+        words = [sys.executable, "-P", "-m", "grader", "run", str(REFERENCE), "--out", folder]
+        env = env | {"PYTHONPATH": str(ROOT)}
+        begun, theirs = measured.now(), own.now() if own else None
+        with measured.entered():
+            process = subprocess.Popen(
+                words, env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+            )
+        assert process.stdout is not None
+        process.stdout.readline()
+        first_s = time.monotonic() - begun.wall_s
+        process.stdout.read()
+        if process.wait():
+            raise SystemExit("grader run failed")
+        cost = measured.since(begun)
+        if own and theirs:
+            more = own.since(theirs).cpu_s
+            both = None if cost.cpu_s is None or more is None else cost.cpu_s + more
+            cost = Cost(cost.wall_s, both)
+        return cost, first_s
 
 
-def command_warm(repetitions: int) -> list[Cost]:
-    """Measure later verdicts of `grader run --watch`, from save to verdict."""
-    samples = []
+@contextmanager
+def servers(env: dict[str, str]) -> Iterator[Group]:
+    """Start servers in a group, and stop them."""
+    words = [sys.executable, "-P", "-m", "grader", "servers"]
+    env = env | {"PYTHONPATH": str(ROOT)}
+    with measuring.group() as own:
+        with own.entered():
+            subprocess.run([*words, "start"], env=env, check=True, stdout=subprocess.DEVNULL)
+        yield own
+        subprocess.run([*words, "stop"], env=env, check=True, stdout=subprocess.DEVNULL)
+
+
+@contextmanager
+def watching() -> Iterator[Callable[[], tuple[Cost, float]]]:
+    """Start `grader run --watch`; each call saves, and measures up to the files of the verdict."""
     with tempfile.TemporaryDirectory() as folder, measuring.group() as measured:
         path = Path(folder) / "turtle_controller.py"
         path.write_bytes(REFERENCE.read_bytes())
-        words = [sys.executable, "-m", "grader", "run", str(path), "--watch"]
+        words = [sys.executable, "-P", "-m", "grader", "run", str(path), "--watch"]
         words += ["--out", f"{folder}/graded"]
+        env = os.environ | {"PYTHONPATH": str(ROOT), "GRADER_SERVERS": "off"}
         with measured.entered():
             process = subprocess.Popen(
-                words, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+                words, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
             )
-        assert process.stderr
-        for number in range(repetitions + 1):
+        printed, said = process.stdout, process.stderr
+        assert printed is not None and said is not None
+
+        def verdict() -> tuple[Cost, float]:
             begun = measured.now()
-            if number:
-                path.write_bytes(REFERENCE.read_bytes() + b"# saved again\n" * number)
-            if not any(line.startswith(GRADED) for line in process.stderr):
+            with path.open("ab") as file:
+                file.write(b"# saved again\n")
+            return waited(begun)
+
+        def waited(begun: Cost) -> tuple[Cost, float]:
+            os.read(printed.fileno(), 1 << 16)
+            first_s = time.monotonic() - begun.wall_s
+            if not any(line.startswith(GRADED) for line in said):
                 raise SystemExit("grader run --watch ended")
-            if number:
-                samples.append(measured.since(begun))
+            cost = measured.since(begun)
+            os.set_blocking(printed.fileno(), False)
+            with suppress(BlockingIOError):
+                while os.read(printed.fileno(), 1 << 16):
+                    pass
+            os.set_blocking(printed.fileno(), True)
+            return cost, first_s
+
+        waited(measured.now())
+        yield verdict
         process.send_signal(signal.SIGINT)
         with suppress(subprocess.TimeoutExpired):
             process.wait(10)
-        process.stderr.close()
-    return samples
 
 
 # Tables -------------------------------------------------------------------------------------------
@@ -200,14 +249,46 @@ def table_of_casts(env: dict[str, str], repetitions: int) -> None:
 
 
 def table_of_commands(env: dict[str, str], repetitions: int) -> None:
-    """Print the costs of `grader run`, cold and warm."""
-    print("\n## `grader run` of the reference: three runs, everything written")
-    units = Units(env, 3, "peak [MiB]")
-    for name, samples in (
-        ("cold: a fresh process", command_cold(repetitions)),
-        ("warm: `--watch`, from a save to its verdict", command_warm(repetitions)),
-    ):
-        units.row(name, samples, spread((s.peak_mib for s in samples), 0))
+    """Print the costs of `grader run`, all in one series, in turns."""
+    print("\n## `grader run` of the reference: four runs, 176 simulated s, everything written\n")
+    off = os.environ | {"GRADER_SERVERS": "off"}
+
+    def bare() -> tuple[Cost, float]:
+        cost = measuring.bare(env)
+        return cost, cost.wall_s
+
+    with servers(dict(os.environ)) as own, watching() as verdict:
+        samples = measuring.in_turns(
+            repetitions,
+            bare,
+            partial(graded_once, off),
+            partial(graded_once, dict(os.environ), own),
+            verdict,
+        )
+    names = (
+        "a bare rclpy process",
+        "a fresh process",
+        "with `grader servers`",
+        "`--watch`: a save",
+    )
+    titles = ("first line [s]", "all files [s]", "CPU [s]", "in bare processes: first, all, CPU")
+    measuring.head("", *titles)
+    unit = median([cost for cost, _ in samples[0]])
+    for name, found in zip(names, samples, strict=True):
+        costs, firsts = [cost for cost, _ in found], [first_s for _, first_s in found]
+        middle = median(costs)
+        first = statistics.median(firsts) / unit.wall_s
+        row(
+            name,
+            spread(firsts),
+            spread(cost.wall_s for cost in costs),
+            spread(cost.cpu_s for cost in costs),
+            f"{first:.1f}, " + ratio(middle, unit).replace(" / ", ", "),
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        words = [sys.executable, "-P", "-m", "grader", "run", str(REFERENCE), "--out", folder]
+        peak = measuring.peak_pss_mib(words, off | {"PYTHONPATH": str(ROOT)})
+    print(f"\nMemory of all processes of a call at its peak (PSS): {peak:.0f} MiB")
 
 
 def table_of_rates(env: dict[str, str], repetitions: int) -> None:

@@ -36,6 +36,8 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
+import psutil
+
 #: Ticks of the reference controller's nominal run.
 POSES = 3449
 ROOT = Path(__file__).resolve().parents[1]
@@ -260,6 +262,29 @@ def command(words: Sequence[str], env: Mapping[str, str] | None = None) -> Cost:
         return cost
 
 
+def peak_pss_mib(words: Sequence[str], env: Mapping[str, str] | None = None) -> float:
+    """Run a command, and return the most memory of it and all below it at once [MiB].
+
+    Shared pages count once, in proportion. Looking takes time: measure none beside it.
+    """
+    most = 0.0
+    null = subprocess.DEVNULL
+    with psutil.Popen(words, cwd=ROOT, env=env, stdout=null, stderr=null) as process:
+        while process.poll() is None:
+            with suppress(psutil.Error):
+                family = [process.pid, *(each.pid for each in process.children(recursive=True))]
+                most = max(most, sum(map(_pss_mib, family)))
+            time.sleep(0.03)
+    return most
+
+
+def _pss_mib(pid: int) -> float:
+    with suppress(OSError, StopIteration, ValueError):
+        lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+        return int(next(line for line in lines if line.startswith("Pss:")).split()[1]) / 1024
+    return 0.0
+
+
 # Yardsticks -----------------------------------------------------------------------------------
 
 
@@ -293,6 +318,11 @@ def floor() -> None:
     executor.shutdown()
     node.destroy_node()
     rclpy.shutdown()
+
+
+def bare(env: Mapping[str, str]) -> Cost:
+    """Measure the yardstick `start`."""
+    return command([sys.executable, __file__, "start"], env)
 
 
 def yardsticks(env: Mapping[str, str], repetitions: int) -> list[list[Cost]]:
