@@ -11,6 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, islice
+from math import ceil
 from typing import Final
 
 import numpy as np
@@ -161,15 +162,17 @@ class Commands:
                 members[kind].append(number)
         self._members = members
         self._alike: dict[Kind, list[Kind]] = {kind: [kind] for kind in members}
-        by_length = sorted(members, key=len)
-        for at, one in enumerate(by_length):
-            for other in by_length[at + 1 :]:
-                if len(one) < LEAST_SHARE * len(other):
-                    break  # all others are longer still
-                # nearly all n-grams in common
-                if len(one & other) >= max(FEWEST, LEAST_SHARE * len(other)):
+        by_gram: dict[int, list[Kind]] = defaultdict(list)
+        for one in sorted(members, key=len):
+            fewest = max(FEWEST, ceil(LEAST_SHARE * len(one)))
+            # two kinds with so many in common share one of these, too
+            first = sorted(one)[: len(one) - fewest + 1]
+            for other in dict.fromkeys(kind for gram in first for kind in by_gram[gram]):
+                if len(one & other) >= fewest:
                     self._alike[one].append(other)
                     self._alike[other].append(one)
+            for gram in first:
+                by_gram[gram].append(one)
 
     def hands(self, first: int, second: int) -> int:
         """Return how many send such commands as one of two, both included; 0: not alike."""
@@ -230,6 +233,7 @@ class Paths:
         longest = max(map(len, ways), default=0)
         flat = np.array([ways[number] for number in self._who], dtype=np.float64)
         self._points = flat.reshape(len(self._who), longest)
+        self._squares = (self._points**2).sum(axis=1)
 
     def distance(self, first: int, second: int) -> int | None:
         """Return the mean distance of two paths [mm]; None where one hand-in has none."""
@@ -240,14 +244,15 @@ class Paths:
 
     def hands(self, first: int, second: int, within_mm: int) -> int:
         """Return how many paths are so near to one of the two, itself included; the greater one."""
-        rows = [self._place[first], self._place[second]]
-        return int((self._distances(self._points[rows]) <= within_mm).sum(axis=1).max())
+        rows = np.array([self._place[first], self._place[second]])
+        return int((self._distances(rows) <= within_mm).sum(axis=1).max())
 
     def rarely_near(self, within_mm: int, most: int) -> list[tuple[int, int]]:
         """Return the pairs so near to each other, where each has at most so many near it."""
         near: dict[int, list[int]] = {}
         for begin in range(0, len(self._who), _ROWS):
-            close = self._distances(self._points[begin : begin + _ROWS]) <= within_mm
+            rows = np.arange(begin, min(begin + _ROWS, len(self._who)))
+            close = self._distances(rows) <= within_mm
             for row in np.flatnonzero(close.sum(axis=1) <= most).tolist():
                 near[begin + row] = np.flatnonzero(close[row]).tolist()
         return [
@@ -257,11 +262,10 @@ class Paths:
             if row < other and other in near
         ]
 
-    def _distances(self, rows: Floats) -> Floats:
-        """Return the distances of some paths to all paths [mm]."""
-        squares = (self._points**2).sum(axis=1)
-        apart = (rows**2).sum(axis=1)[:, None] + squares - 2 * (rows @ self._points.T)
-        return self._mm(apart)
+    def _distances(self, rows: npt.NDArray[np.int_]) -> Floats:
+        """Return the distances of some paths, by their rows, to all paths [mm]."""
+        both = self._points[rows] @ self._points.T
+        return self._mm(self._squares[rows][:, None] + self._squares - 2 * both)
 
     def _mm(self, squares: Floats) -> Floats:
         return np.floor(np.sqrt(squares / max(1, self._points.shape[1] // 2)))

@@ -1,8 +1,20 @@
 """Behaviour alone lists two only where it is unusual in a class that is large enough to tell."""
 
+import random
+from itertools import combinations
+
 import pytest
 
-from grader.batch.similar.compare import LARGE_CLASS, Compared, compare, equal
+from grader.batch.similar.compare import (
+    FEWEST,
+    LARGE_CLASS,
+    LEAST_SHARE,
+    Commands,
+    Compared,
+    compare,
+    equal,
+    grams,
+)
 from grader.batch.similar.features import POINTS, Features, TimedCommand
 
 
@@ -53,6 +65,25 @@ def test_commands_of_which_nearly_all_are_the_same_are_alike():
     changed = Compared("", Features((), other, other_way))
     (pair,) = compare([*usual(60), behaves(50), changed]).pairs
     assert (pair.first, pair.second, pair.commands_hands) == (60, 61, 2)
+
+
+def test_commands_of_any_two_are_alike_if_nearly_all_are_the_same_and_never_otherwise():
+    chance = random.Random(1)
+    originals = [[chance.randrange(1000) for _ in range(many)] for many in (9, 40, 90)]
+    of_each = []
+    for number in range(90):
+        hashes = list(originals[number % 3][: -chance.randrange(1, 5)])
+        for _ in range(chance.randrange(3)):
+            hashes[chance.randrange(len(hashes))] = chance.randrange(1000)
+        of_each.append([TimedCommand(31 * n, each) for n, each in enumerate(hashes)])
+    found, expected = Commands(of_each), set()
+    for first, second in combinations(range(len(of_each)), 2):
+        one, other = grams(of_each[first]), grams(of_each[second])
+        if len(one & other) >= max(FEWEST, LEAST_SHARE * max(len(one), len(other))):
+            expected.add((first, second))
+    assert {pair for pair in combinations(range(90), 2) if found.hands(*pair)} == expected
+    assert 50 < len(expected) < 1000
+    assert set(found.pairs(90)) == expected
 
 
 def test_what_three_in_a_class_of_sixty_do_lists_nobody():
