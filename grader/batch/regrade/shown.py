@@ -26,8 +26,8 @@ from grader.result.result import PAGE
 from grader.text import clip, for_terminal, number, one_line, plain
 from grader.translations import tr, tr_many, translate
 
-#: Hand-ins in the terminal; the table and the page have all.
-MOST = 40
+#: Hand-ins in the terminal, and on the page, which a browser must open fast. The table has all.
+MOST, MOST_ON_PAGE = 40, 2000
 _MOST_WHYS = 5
 _LONGEST = 160
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -154,6 +154,8 @@ def page(found: Regrade, to_class: str) -> str:
         found=found,
         title=plain(translate(found.exercise.title)),
         checks=found.of_checks,
+        changes=found.changes[:MOST_ON_PAGE],
+        failures=found.failures[:MOST_ON_PAGE],
         link=lambda id: f"{to_class}/{SUBMISSIONS}/{quote(id, safe='')}/{PAGE}",
     )
 

@@ -536,6 +536,17 @@ def test_the_page_stands_alone_and_leads_to_each_report(found):
     assert "default-src 'none'" in page
 
 
+def test_the_page_of_a_large_class_shows_the_largest_changes_and_names_the_table(
+    found, monkeypatch
+):
+    assert "changes.csv" not in shown.page(found, "..")
+    monkeypatch.setattr(shown, "MOST_ON_PAGE", 1)
+    page = shown.page(found, "..")
+    largest = max(found.changes, key=lambda change: abs(change.points))
+    assert re.findall(r'href="../submissions/(\w+)/report.html"', page) == [largest.before.id]
+    assert f"the first 1 of {len(found.changes)}; changes.csv has all" in page
+
+
 def test_the_terminal_tells_the_largest_changes_first_and_how_many_more(found, monkeypatch):
     monkeypatch.setattr(shown, "MOST", 1)
     said = io.StringIO()
