@@ -24,6 +24,8 @@ from grader.text import clip, for_terminal
 from grader.translations import tr, tr_many, translate
 
 MINUTE_S = 60.0
+#: The time that is left follows from the speed within the last so many [s].
+SPEED_OF_S = 3600.0
 _STATES: dict[State, Message] = {
     "judged": msg("judged"),
     "unusable": msg("cannot be started"),
@@ -79,7 +81,12 @@ def bar(
     """
     counted = tr("{done} of {total}", done="{task.completed}", total="{task.total}")
     before = TextColumn(f"{what} {counted}".lstrip())
-    with Progress(before, BarColumn(), *columns, console=console, transient=True) as progress:
+    with Progress(
+        *(before, BarColumn(), *columns),
+        console=console,
+        transient=True,
+        speed_estimate_period=SPEED_OF_S,
+    ) as progress:
         yield partial(progress.update, progress.add_task("", total=total, **task), advance=1)
 
 
@@ -93,11 +100,14 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
         TimeRemainingColumn(),
         TextColumn("{task.description}"),
     )
-    done, fields = len(planned.done), {"rate": "", "failed": ""}
+    # those that need no run are over at once, and tell nothing of the time that runs take
+    done, fields = len(planned.done) + len(planned.trivial), {"rate": "", "failed": ""}
     with bar(console, "", planned.hand_ins, *columns, completed=done, **fields) as advance:
 
         def show(hand_in: HandIn) -> None:
             nonlocal over, failed
+            if hand_in.path is None:
+                return
             over += 1
             entry = Entry.read(store.student(hand_in.id))
             failed += entry.state == "failed"
