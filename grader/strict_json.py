@@ -200,7 +200,7 @@ def _value(kind: Any, data: Any, bounds: Bounds) -> Any:
         texts = _is(data, dict)
         return {_value(args[0], n, bounds): _value(args[1], d, bounds) for n, d in texts.items()}
     if hasattr(kind, "_fields"):
-        return kind(*_list(tuple(get_type_hints(kind).values()), data, bounds))
+        return kind(*_list(_kinds(kind), data, bounds))
     if hasattr(kind, "parse"):
         if bounds.read:
             return bounds.read(data)
@@ -272,6 +272,11 @@ class _Part(NamedTuple):
 
     def is_left_out(self, value: object) -> bool:
         return not self.is_stored or (self.is_sparse and value == self.default)
+
+
+@cache
+def _kinds(named_tuple: Any) -> tuple[Any, ...]:
+    return tuple(get_type_hints(named_tuple).values())
 
 
 @cache
