@@ -1,6 +1,6 @@
 """Measure a large course: what `grader batch` costs beside the runs, for ever more hand-ins.
 
-    .venv/bin/python benchmarks/large_course.py [--count 200 2000 20000] [--folder DIR]
+    .venv/bin/python benchmarks/large_course.py [--count 200 2000 20000] [--folder DIR] [--quick]
 
 Some dozens of programs are really graded once. Each hand-in has the text of one of them and a last
 line of its own. Where it would be run, judged and shown on its page, what came of that program is
@@ -9,8 +9,10 @@ store, the class page, groups, exports and a regrade. Half of the hand-ins behav
 does; the other half have commands and a path of their own, as if each had been written by somebody
 else, which is the hardest case for the groups. One in fifty is the same as another.
 
-The pool grades the first half and is killed; the cluster goes on. A course of 20,000 needs 20 GB of
-disk.
+The pool grades the first half and is killed; the cluster goes on. With --quick each of both grades
+`FEW` at most, and those between are graded in one process that does not wait for the disk. Memory
+is that of the call itself, without the processes that grade. There are no varied runs, so that a
+course of 20,000 needs 10 GB of disk; with three of them it would be 26 GB.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ from pathlib import Path
 from typing import Self
 
 import psutil
-from measuring import ROOT, group, head, machine, row
+from measuring import ROOT, Cost, group, head, machine, row
 
 from grader import judging, reports, strict_json
 from grader.batch import grade, pool
@@ -44,9 +46,11 @@ from grader.batch.entry import SUBMISSIONS, Entry, entries
 from grader.batch.gradebook.write import write as write_gradebook
 from grader.batch.page import html
 from grader.batch.pool import Task
+from grader.batch.regrade.judging import CHANGES_PAGE
 from grader.batch.similar import features, page, sources
 from grader.batch.similar.features import Features, HashedFile, TimedCommand
 from grader.batch.store import RUN, Store
+from grader.cli import regrading
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.message import Message
@@ -54,13 +58,17 @@ from grader.recording.recording import Recordings
 from grader.reports import Report
 from grader.result.result import Result
 
-EXERCISE, NAME = "turtlesim_challenge", "turtle_controller.py"
+NAME = "turtle_controller.py"
+RUBRIC = "exercise: turtlesim_challenge\nvaried_runs: {count: 0}\n"
+CHANGED = "points: {moves: 11}\n"
 #: The last line of a hand-in: its number, and the run in the store that stands for its own.
 MARK = re.compile(r"# hand-in (\d+), run (\w+)\n\Z")
 #: Where these runs are, for the processes that this one starts.
 PLACE = "LARGE_COURSE_RUNS"
 #: One hand-in in so many is that of another one.
 COPIED = 50
+#: How many the pool grades, and the cluster, with --quick.
+FEW = 200
 PYTHON = (sys.executable, "-P")
 ME = (*PYTHON, __file__)
 MIB = 2**20
@@ -105,7 +113,7 @@ _loaded = grade._loaded
 @cache
 def _known(key: str) -> Recordings | Message:
     run = _original(key)
-    found = _loaded(Task(key, (), None, "", EXERCISE, "virtual", None, run, run))
+    found = _loaded(Task(key, (), None, "", "", "virtual", None, run, run))
     assert found is not None
     return found
 
@@ -155,8 +163,14 @@ def act(verb: str, words: list[str]) -> int:
         from distributed.cli.dask_worker import main as worker
 
         worker(words)
+    elif verb == "quick":
+        grade._run, grade._loaded = as_if_run, as_if_loaded
+        judging.judge, grade.render = _judge_once, _render_once
+        os.fsync = lambda _: None
+        pool.work = lambda tasks, jobs: ((task, grade.done(task)) for task in tasks)
+        return act("batch", words)
     elif verb == "outputs":
-        outputs(Path(words[0]))
+        outputs(*map(Path, words))
     else:
         from grader.cli import main as grader
 
@@ -164,9 +178,9 @@ def act(verb: str, words: list[str]) -> int:
     return 0
 
 
-def outputs(out: Path) -> None:
+def outputs(out: Path, rubric: Path) -> None:
     """Print the cost of each part of what is made of all results together [s], as JSON."""
-    exercise = load_exercise(EXERCISE)
+    exercise = load_exercise(str(rubric))
     found: list[Entry] = []
     costs: dict[str, float] = {}
 
@@ -194,7 +208,9 @@ def make_runs(folder: Path) -> None:
     texts = sorted({text for each in programs.values() for text in each})
     for number, text in enumerate(texts[::2]):
         (handed_in / f"{number}.py").write_text(text, encoding="utf-8")
-    words = ("batch", str(handed_in), "--out", os.environ[PLACE], "--jobs", "1")
+    rubric = folder / "rubric.yaml"
+    rubric.write_text(RUBRIC, encoding="utf-8")
+    words = ("batch", str(handed_in), "--out", os.environ[PLACE], "--exercise", str(rubric))
     subprocess.run([*PYTHON, "-m", "grader", *words], env=_env(), check=True)
 
 
@@ -227,57 +243,78 @@ class Course:
 
     def __init__(self, folder: Path, count: int) -> None:
         self.count, self.figures = count, dict[str, float]()
-        self._folder, self._handed_in, self.out = folder, folder / "course", folder / "out"
+        self._rubric, self._handed_in = folder.parent / "rubric.yaml", folder / "course"
+        self.out = folder / "out"
         make_course(self._handed_in, count, Path(os.environ[PLACE]))
 
-    def measure(self) -> None:
-        """Grade, kill, resume, show, regrade."""
-        grading = ("batch", str(self._handed_in), "--out", str(self.out))
-        self._call("pool, first half", *grading, "--jobs", "2", kill_at=self.count // 2)
-        self._call("cluster, the rest", *grading, is_cluster=True)
-        self._call("resume, all done", *grading, "--jobs", "2")
+    def measure(self, most: int) -> None:
+        """Grade, kill, resume, show, regrade; pool and cluster grade at most so many."""
+        rubric = ("--exercise", str(self._rubric))
+        grading = (str(self._handed_in), "--out", str(self.out), *rubric)
+        half = self.count // 2
+        self._call("pool", "batch", *grading, "--jobs", "2", kill_at=min(half, most))
+        if self.count - half > most:
+            self._call("between", "quick", *grading, kill_at=self.count - most)
+        self._call("cluster", "batch", *grading, is_cluster=True)
         self.figures["on disk [MiB]"] = _disk_mib(self.out)
         self.figures["files and folders"] = sum(1 for _ in self.out.rglob("*"))
         self.figures["class page [MiB]"] = (self.out / PAGE).stat().st_size / MIB
-        words = [*ME, "outputs", str(self.out)]
+        words = [*ME, "outputs", str(self.out), str(self._rubric)]
         printed = subprocess.run(words, env=_env(), check=True, stdout=subprocess.PIPE).stdout
         self.figures |= {f"{name}: CPU [s]": cpu_s for name, cpu_s in json.loads(printed).items()}
-        rubric = self._folder / "rubric.yaml"
-        rubric.write_text(f"exercise: {EXERCISE}\npoints: {{moves: 11}}\n", encoding="utf-8")
-        words = ["batch", "--regrade", str(self.out), "--exercise", str(rubric), "--apply"]
-        self._call("regrade", *words, "--jobs", "2")
+        self._call("resume, all done", "batch", *grading, "--jobs", "2")
+        changed = self._rubric.with_name("changed.yaml")
+        changed.write_text(RUBRIC + CHANGED, encoding="utf-8")
+        again = ("batch", "--regrade", str(self.out), "--exercise", str(changed), "--apply")
+        self._call("regrade", *again, "--jobs", "2")
+        pages = self.out / regrading.REGRADE / CHANGES_PAGE
+        self.figures["page of the regrade [MiB]"] = pages.stat().st_size / MIB
 
     def _call(self, name: str, *words: str, kill_at: int = 0, is_cluster: bool = False) -> None:
         """Make a call, to its end or until so many are graded."""
         with group() as measured, tempfile.TemporaryFile() as said, ExitStack() as stack:
-            before, peak_mib, first_s = self._graded(), 0.0, 0.0
             with measured.entered():
                 cluster = stack.enter_context(_Cluster()) if is_cluster else None
                 words = (*words, "--scheduler", cluster.address) if cluster else words
-                begun = measured.now()
                 process = subprocess.Popen([*ME, *words], env=_env(), stdout=said, stderr=said)
+            before, peak_mib, seen = self._graded(), 0.0, [(self._graded(), measured.now())]
             while process.poll() is None:
-                all_of_it = (process, *(cluster.processes if cluster else ()))
-                peak_mib = max(peak_mib, sum(map(_pss_mib, all_of_it)))
+                peak_mib = max(peak_mib, _memory_mib(process.pid))
                 graded = self._graded()
+                if graded > seen[-1][0]:
+                    seen.append((graded, measured.now()))
                 if kill_at and graded >= kill_at:
                     process.kill()
-                if graded > before and not first_s:
-                    first_s = time.monotonic() - begun.wall_s
                 time.sleep(0.2)
-            cost = measured.since(begun)
-            if process.returncode and not kill_at:
-                said.seek(0)
-                raise SystemExit(said.read().decode())
-        self.figures[f"{name}: wall [s]"] = cost.wall_s
-        self.figures[f"{name}: CPU [s]"] = cost.cpu_s or 0.0
+            whole = measured.since(seen[0][1])
+        if process.returncode and not kill_at:
+            said.seek(0)
+            raise SystemExit(said.read().decode())
+        print(self.count, name, whole, self.figures, file=sys.stderr)
         self.figures[f"{name}: memory [MiB]"] = peak_mib
-        if is_cluster:
-            self.figures["after the kill, to the first new one: wall [s]"] = first_s
+        if len(seen) < 3:
+            self.figures |= {f"{name}: {what} [s]": s for what, s in _both(whole).items()}
+            return
+        (_, start), (first, begun), *_, (last, end) = seen
+        for what, s in _both(_between(begun, end)).items():
+            self.figures[f"{name}, for each [ms]: {what}"] = 1000 * s / (last - first)
+        if before:
+            self.figures[f"{name}: to the first new one [s]"] = begun.wall_s - start.wall_s
+        if not kill_at:
+            rest_s = start.wall_s + whole.wall_s - end.wall_s
+            self.figures[f"{name}: after the last new one [s]"] = rest_s
 
     def _graded(self) -> int:
         there = self.out / SUBMISSIONS
         return sum(1 for _ in there.iterdir()) if there.is_dir() else 0
+
+
+def _between(begun: Cost, end: Cost) -> Cost:
+    return Cost(end.wall_s - begun.wall_s, (end.cpu_s or 0.0) - (begun.cpu_s or 0.0))
+
+
+def _both(cost: Cost) -> dict[str, float]:
+    return {"wall": cost.wall_s, "CPU": cost.cpu_s or 0.0}
 
 
 class _Cluster:
@@ -308,18 +345,14 @@ class _Cluster:
 
 
 def _env() -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": str(ROOT)}
+    path = os.pathsep.join((str(ROOT), str(Path(__file__).parent)))
+    return {**os.environ, "PYTHONPATH": path}
 
 
-def _pss_mib(process: subprocess.Popen[bytes]) -> float:
-    """Return the memory of a process and its children; what several share is split among them."""
-    total = 0.0
+def _memory_mib(process: int) -> float:
     with suppress(psutil.Error):
-        own = psutil.Process(process.pid)
-        for each in (own, *own.children(recursive=True)):
-            with suppress(psutil.Error):
-                total += each.memory_full_info().pss / MIB
-    return total
+        return float(psutil.Process(process).memory_info().rss / MIB)
+    return 0.0
 
 
 def _disk_mib(folder: Path) -> float:
@@ -328,14 +361,17 @@ def _disk_mib(folder: Path) -> float:
 
 
 def show(courses: Sequence[Course]) -> None:
-    """Print each figure, a hand-in's share of it, and how that compares with the first course's."""
-    head("", *(title for c in courses for title in (f"{c.count:,}", "each [1/1000]", "x")))
-    for name, first in courses[0].figures.items():
-        cells = []
-        for course in courses:
-            value, grown = course.figures[name], course.count / courses[0].count
-            times = f"{value / first / grown:.2f}" if first else "-"
-            cells += [f"{value:,.1f}", f"{1000 * value / course.count:.2f}", times]
+    """Print each figure, and how much faster than the course it grows."""
+    smallest, *larger = courses
+    titles = ((f"{course.count:,}", "growth / the course's") for course in larger)
+    head("", f"{smallest.count:,}", *(title for both in titles for title in both))
+    for name in courses[-1].figures:
+        first = smallest.figures.get(name, 0.0)
+        cells = [f"{first:,.1f}"]
+        for course in larger:
+            value, grown = course.figures.get(name, 0.0), course.count / smallest.count
+            times = value / first / (1.0 if "each" in name else grown) if first else 0.0
+            cells += [f"{value:,.1f}", f"{times:.2f}"]
         row(name, *cells)
 
 
@@ -344,6 +380,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--count", type=int, nargs="+", default=[200, 2_000, 20_000])
     parser.add_argument("--folder", type=Path, help="keep everything there")
+    parser.add_argument("--quick", action="store_true", help="grade only some by pool and cluster")
     args = parser.parse_args()
     print(machine())
     with ExitStack() as stack:
@@ -354,7 +391,7 @@ def main() -> None:
         courses = []
         for count in args.count:
             courses.append(Course(place / str(count), count))
-            courses[-1].measure()
+            courses[-1].measure(FEW if args.quick else sys.maxsize)
             show(courses)
 
 
