@@ -25,7 +25,6 @@ from grader.translations import tr
 
 #: Does tasks, in any order: `grader.batch.pool.work` with a number of jobs, or a cluster.
 Work = Callable[[Iterable[Task]], Iterator[Done]]
-PAGE = "index.html"
 
 
 @dataclass(frozen=True)
@@ -272,7 +271,10 @@ def write_outputs(
     """
     page.write(entries, exercise, out)
     links = {tr("Look at these together"): page.PAGE, tr("Gradebook"): CSV}
-    files.put(out / PAGE, html.render(entries, exercise, links).encode("utf-8"))
+    for older in out.glob(html.FURTHER.format("*")):
+        files.clear(older)
+    for name, text in html.render_all(entries, exercise, links).items():
+        files.put(out / name, text.encode("utf-8"))
     notes = write_gradebook(out, entries, exercise.title, view, assignment)
     sources.write_exports(entries, exercise, out)
     return notes

@@ -1,7 +1,8 @@
 """Render the class page: one self-contained file, made of entries and nothing else.
 
 Equal entries give equal bytes: it contains neither the time nor the machine. Whatever the size of a
-class, the page has a bounded number of pictures, paths and rows.
+class, the page has a bounded number of pictures, paths and rows; further rows are on further pages,
+with the table alone.
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
+from itertools import accumulate
 from pathlib import Path
 
 import jinja2
@@ -25,14 +27,22 @@ from grader.reports.page import templating
 from grader.translations import tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
-#: How many students have a picture and a path, and how many a row of the table.
+#: How many students have a picture and a path, and how many a row of the table of one page.
 MOST_PICTURES, MOST_ROWS = 500, 4000
+PAGE, FURTHER = "index.html", "index-{}.html"
 
 
 def render(
     entries: Sequence[Entry], exercise: Exercise, links: Mapping[str, str] | None = None
 ) -> str:
-    """Return the page.
+    """Return the first page; see `render_all`."""
+    return render_all(entries, exercise, links)[PAGE]
+
+
+def render_all(
+    entries: Sequence[Entry], exercise: Exercise, links: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """Return the pages by the names of their files.
 
     Args:
         entries: of the whole class, in any order.
@@ -42,14 +52,23 @@ def render(
     judged = [student for student in everybody if student.entry.result is not None]
     scores = [e.score for e in entries if e.state != "nothing" and e.score is not None]
     items = figures.items([s.entry.result for s in judged if s.entry.result], exercise.points)
-    rows = everybody[:MOST_ROWS]
-    template = _environment().get_template("class.html")
-    return template.render(
+    rows = {
+        FURTHER.format(first // MOST_ROWS + 1) if first else PAGE: everybody[
+            first : first + MOST_ROWS
+        ]
+        for first in range(0, max(1, len(everybody)), MOST_ROWS)
+    }
+    ends = accumulate(map(len, rows.values()))
+    numbers = [
+        f"{end - len(own) + 1:,}–{end:,}" for end, own in zip(ends, rows.values(), strict=True)
+    ]
+    render_page = partial(
+        _environment().get_template("class.html").render,
         exercise=exercise,
         thing=translate(load_subject(exercise.scene).thing),
         links=links or {},
         total=len(everybody),
-        rows=rows,
+        parts=dict(zip(rows, numbers, strict=True)),
         spread=figures.distribution(scores, exercise.max_score),
         states=_states(everybody),
         judged=len(judged),
@@ -57,9 +76,12 @@ def render(
         first=clusters.to_mend_first(everybody),
         nothing_to_mend=sum(all(v.passed for v in s.entry.verdicts.values()) for s in judged),
         lost={item.check: clusters.of_check(judged, item.check) for item in items},
-        drawn=_drawn(rows),
         words=_script_words(),
     )
+    return {
+        name: render_page(page=name, rows=own, drawn=_drawn(own) if name == PAGE else [])
+        for name, own in rows.items()
+    }
 
 
 def _states(everybody: Sequence[Student]) -> list[tuple[str, int, bool]]:

@@ -187,6 +187,7 @@
       const { name, id } = element.dataset;
       element.textContent = hide ? (name ? words.student.replace("#", name) : id) : text;
     }
+    for (const link of all("a.part")) link.hash = hide ? "names-hidden" : "";
     for (const [link, address] of links) if (hide) rest(link); else wake(link, address);
     for (const element of all(".named")) element.hidden = hide;
     for (const element of all(".nameless")) element.hidden = !hide;

@@ -123,4 +123,24 @@ def test_a_class_of_no_end_has_a_page_of_bounded_length(some, monkeypatch):
     page = html.render([entry(f"s{k}", zoe.result, folder=zoe.folder) for k in range(50)], EXERCISE)
     assert len(elements(page, "img")) == 5
     assert len(re.findall(r'<tr data-of="\d+">', page)) == 20
-    assert "the first 20 of 50" in page
+
+
+def test_a_large_class_has_everybody_once_on_pages_that_lead_to_each_other(some, monkeypatch):
+    monkeypatch.setattr(html, "MOST_ROWS", 20)
+    zoe, names = some[0], ["index.html", "index-2.html", "index-3.html"]
+    many = [entry(f"s{k}", zoe.result, folder=zoe.folder) for k in range(50)]
+    pages = html.render_all(many, EXERCISE)
+    assert list(pages) == names
+    rows = [re.findall(r'<tr data-of="(\d+)">', page) for page in pages.values()]
+    assert list(map(len, rows)) == [20, 20, 10]
+    assert len({number for each in rows for number in each}) == 50
+    for name, page in pages.items():
+        readers.balanced(page)
+        links = [a["href"] for a in elements(page, "a") if a.get("class") == "part"]
+        assert links == [other for other in names if other != name]
+        assert ("<svg" in page) == ("Discrimination" in page) == (name == "index.html")
+
+
+def test_a_class_on_one_page_leads_to_no_other(some, page):
+    assert list(html.render_all(some, EXERCISE)) == ["index.html"]
+    assert 'class="part"' not in page

@@ -62,6 +62,24 @@ def test_hidden_names_are_nowhere(page):
     assert dom.count('aria-disabled="true"') == 4  # two rows, two clusters
 
 
+def test_names_that_are_hidden_stay_so_on_the_next_page(tmp_path, monkeypatch):
+    monkeypatch.setattr(html, "MOST_ROWS", 1)
+    both = [entry("kim", state="nothing", name="Kim"), entry("zoe", state="nothing", name="Zoë")]
+    pages = html.render_all(both, load_exercise("turtlesim_challenge"))
+    for name, content in pages.items():
+        (tmp_path / name).write_text(content, encoding="utf-8")
+    with open_browser() as browser:
+        page = browser.new_page()
+        page.goto((tmp_path / "index.html").as_uri())
+        page.click("#hide")
+        page.click("a.part")
+        page.wait_for_url("**/index-2.html#names-hidden")
+        assert "Zoë" not in page.inner_text("main")
+        page.click("#hide")
+        assert "Zoë" in page.inner_text("main")
+        assert page.get_attribute("a.part", "href").endswith("/index.html")
+
+
 def test_cards_columns_and_tables_show_all_that_they_hold(tmp_path):
     exercise = load_exercise("turtlesim_challenge")
     points = {check: 0.0 if number % 2 else 10.0 for number, check in enumerate(exercise.points)}
