@@ -27,8 +27,10 @@ from grader.reports.page import templating
 from grader.translations import tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
-#: How many students have a picture and a path, and how many a row of the table of one page.
+#: How many students have a picture and a path, and how many a row where there is one page.
 MOST_PICTURES, MOST_ROWS = 500, 4000
+#: The rows of each page of a larger class: a browser has laid them out in less than a second.
+ROWS = 1000
 PAGE, FURTHER = "index.html", "index-{}.html"
 
 
@@ -52,11 +54,10 @@ def render_all(
     judged = [student for student in everybody if student.entry.result is not None]
     scores = [e.score for e in entries if e.state != "nothing" and e.score is not None]
     items = figures.items([s.entry.result for s in judged if s.entry.result], exercise.points)
+    each = MOST_ROWS if len(everybody) <= MOST_ROWS else ROWS
     rows = {
-        FURTHER.format(first // MOST_ROWS + 1) if first else PAGE: everybody[
-            first : first + MOST_ROWS
-        ]
-        for first in range(0, max(1, len(everybody)), MOST_ROWS)
+        FURTHER.format(first // each + 1) if first else PAGE: everybody[first : first + each]
+        for first in range(0, max(1, len(everybody)), each)
     }
     ends = accumulate(map(len, rows.values()))
     numbers = [

@@ -118,6 +118,7 @@ def test_three_hundred_pictures_and_paths_have_less_than_three_megabytes(some):
 
 def test_a_class_of_no_end_has_a_page_of_bounded_length(some, monkeypatch):
     monkeypatch.setattr(html, "MOST_ROWS", 20)
+    monkeypatch.setattr(html, "ROWS", 20)
     monkeypatch.setattr(html, "MOST_PICTURES", 5)
     zoe = some[0]
     page = html.render([entry(f"s{k}", zoe.result, folder=zoe.folder) for k in range(50)], EXERCISE)
@@ -127,6 +128,7 @@ def test_a_class_of_no_end_has_a_page_of_bounded_length(some, monkeypatch):
 
 def test_a_large_class_has_everybody_once_on_pages_that_lead_to_each_other(some, monkeypatch):
     monkeypatch.setattr(html, "MOST_ROWS", 20)
+    monkeypatch.setattr(html, "ROWS", 20)
     zoe, names = some[0], ["index.html", "index-2.html", "index-3.html"]
     many = [entry(f"s{k}", zoe.result, folder=zoe.folder) for k in range(50)]
     pages = html.render_all(many, EXERCISE)

@@ -64,6 +64,7 @@ def test_hidden_names_are_nowhere(page):
 
 def test_names_that_are_hidden_stay_so_on_the_next_page(tmp_path, monkeypatch):
     monkeypatch.setattr(html, "MOST_ROWS", 1)
+    monkeypatch.setattr(html, "ROWS", 1)
     both = [entry("kim", state="nothing", name="Kim"), entry("zoe", state="nothing", name="Zoë")]
     pages = html.render_all(both, load_exercise("turtlesim_challenge"))
     for name, content in pages.items():
