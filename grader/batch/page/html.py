@@ -60,9 +60,7 @@ def render_all(
         for first in range(0, max(1, len(everybody)), each)
     }
     ends = accumulate(map(len, rows.values()))
-    numbers = [
-        f"{end - len(own) + 1:,}–{end:,}" for end, own in zip(ends, rows.values(), strict=True)
-    ]
+    numbers = [f"{end - len(own) + 1}–{end}" for end, own in zip(ends, rows.values(), strict=True)]
     render_page = partial(
         _environment().get_template("class.html").render,
         exercise=exercise,
