@@ -30,7 +30,7 @@ _TEMPLATES = Path(__file__).parent / "templates"
 #: How many students have a picture and a path, and how many a row where there is one page.
 MOST_PICTURES, MOST_ROWS = 500, 4000
 #: The rows of each page of a larger class: a browser has laid them out in less than a second.
-ROWS = 1000
+ROWS = 500
 PAGE, FURTHER = "index.html", "index-{}.html"
 
 
