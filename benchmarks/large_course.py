@@ -41,10 +41,10 @@ from measuring import ROOT, Cost, group, head, machine, row
 
 from grader import judging, reports, strict_json
 from grader.batch import grade, pool
-from grader.batch.batch import PAGE
 from grader.batch.entry import SUBMISSIONS, Entry, entries
 from grader.batch.gradebook.write import write as write_gradebook
 from grader.batch.page import html
+from grader.batch.page.html import PAGE
 from grader.batch.pool import Task
 from grader.batch.regrade.judging import CHANGES_PAGE
 from grader.batch.similar import features, page, sources
@@ -191,7 +191,7 @@ def outputs(out: Path, rubric: Path) -> None:
 
     timed("reading all results", lambda: found.extend(entries(out)))
     timed("groups", lambda: page.write(found, exercise, out))
-    timed("class page", lambda: html.render(found, exercise))
+    timed("class page", lambda: html.render_all(found, exercise))
     timed("gradebook and feedback", lambda: write_gradebook(out, found, exercise.title))
     timed("JPlag and Dolos", lambda: sources.write_exports(found, exercise, out))
     print(json.dumps(costs))
@@ -277,12 +277,13 @@ class Course:
                 cluster = stack.enter_context(_Cluster()) if is_cluster else None
                 words = (*words, "--scheduler", cluster.address) if cluster else words
                 process = subprocess.Popen([*ME, *words], env=_env(), stdout=said, stderr=said)
-            before, peak_mib, seen = self._graded(), 0.0, [(self._graded(), measured.now())]
+            before, own = self._graded(), Cost(0.0, 0.0, 0.0)
+            seen = [(before, measured.now(), own)]
             while process.poll() is None:
-                peak_mib = max(peak_mib, _memory_mib(process.pid))
+                own = _own(process.pid, own)
                 graded = self._graded()
                 if graded > seen[-1][0]:
-                    seen.append((graded, measured.now()))
+                    seen.append((graded, measured.now(), own))
                 if kill_at and graded >= kill_at:
                     process.kill()
                 time.sleep(0.2)
@@ -291,12 +292,14 @@ class Course:
             said.seek(0)
             raise SystemExit(said.read().decode())
         print(self.count, name, whole, self.figures, file=sys.stderr)
-        self.figures[f"{name}: memory [MiB]"] = peak_mib
+        self.figures[f"{name}: memory [MiB]"] = own.peak_mib or 0.0
         if len(seen) < 3:
             self.figures |= {f"{name}: {what} [s]": s for what, s in _both(whole).items()}
             return
-        (_, start), (first, begun), *_, (last, end) = seen
-        for what, s in _both(_between(begun, end)).items():
+        (_, start, _), (first, begun, own_begun), *_, (last, end, own_end) = seen
+        costs = _both(_between(begun, end))
+        costs["CPU of the call itself"] = _both(_between(own_begun, own_end))["CPU"]
+        for what, s in costs.items():
             self.figures[f"{name}, for each [ms]: {what}"] = 1000 * s / (last - first)
         if before:
             self.figures[f"{name}: to the first new one [s]"] = begun.wall_s - start.wall_s
@@ -349,10 +352,13 @@ def _env() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": path}
 
 
-def _memory_mib(process: int) -> float:
+def _own(process: int, before: Cost) -> Cost:
+    """Return the processor time of one process, and its peak of memory."""
     with suppress(psutil.Error):
-        return float(psutil.Process(process).memory_info().rss / MIB)
-    return 0.0
+        found = psutil.Process(process)
+        cpu, peak_mib = found.cpu_times(), found.memory_info().rss / MIB
+        return Cost(0.0, cpu.user + cpu.system, max(peak_mib, before.peak_mib or 0.0))
+    return before
 
 
 def _disk_mib(folder: Path) -> float:
