@@ -158,7 +158,7 @@ def act(verb: str, words: list[str]) -> int:
     if verb == "serve":
         grade._run, grade._loaded = as_if_run, as_if_loaded
         judging.judge, grade.render = _judge_once, _render_once
-        grade.serve()
+        grade.serve(*words)
     elif verb == "worker":
         from distributed.cli.dask_worker import main as worker
 
@@ -288,10 +288,9 @@ class Course:
                     process.kill()
                 time.sleep(0.2)
             whole = measured.since(seen[0][1])
-        if process.returncode and not kill_at:
-            said.seek(0)
-            raise SystemExit(said.read().decode())
-        print(self.count, name, whole, self.figures, file=sys.stderr)
+            if process.returncode and not kill_at:
+                said.seek(0)
+                raise SystemExit(said.read().decode())
         self.figures[f"{name}: memory [MiB]"] = own.peak_mib or 0.0
         if len(seen) < 3:
             self.figures |= {f"{name}: {what} [s]": s for what, s in _both(whole).items()}
