@@ -35,7 +35,7 @@ help:
 	@echo "make needs     install what tests need of the machine: a browser, ..."
 	@echo "make lint      ruff and mypy"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
-	@echo "make bench     what the simulator and a grading cost: tables, in minutes"
+	@echo "make bench     what the simulator, a grading and a class cost: tables, in twenty minutes"
 	@echo "make wheel     a wheel for each Python that is here, in dist/jazzy, each tried where there is no gcc"
 	@echo "make clean     remove everything that was made here"
 	@echo "PYTHON=python3.12 make install   with that Python (3.11, 3.12 or 3.13)"
@@ -101,6 +101,8 @@ demo: install
 bench: install
 	@$(BIN)/python benchmarks/node.py
 	@$(BIN)/python benchmarks/grading.py
+	@$(BIN)/python benchmarks/class.py --count 20 80 --jobs 2
+	@$(BIN)/python benchmarks/large_course.py --count 200
 
 wheel:
 	@scripts/wheel.sh

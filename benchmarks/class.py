@@ -1,12 +1,13 @@
 """Measure what a class costs: `grader batch` for 1, 2, 4 jobs.
 
-    .venv/bin/python benchmarks/class.py [--count N] [--jobs 1 2 4] [--seed N]
+    .venv/bin/python benchmarks/class.py [--count N ...] [--jobs 1 2 4] [--seed N]
 
 A class made of the fixtures, as Moodle exports it, is graded anew for each number of jobs. About
 half are right or lack one thing (the challenge's solution and its mutants), a third are beginners'
 mistakes, a tenth is hostile, some cannot be started, and some are copies of others; the same seed
-makes the same class. It prints gradings a minute, CPU seconds a grading and the peak of memory, all
-processes together; and the cost of 1,000 and 100,000 submissions.
+makes the same class. It prints gradings a minute, CPU seconds a grading, what the same call costs
+when all is graded, and the peak of memory, all processes together, of one more call; and the cost
+of 1,000 and 100,000 submissions.
 """
 
 from __future__ import annotations
@@ -37,6 +38,8 @@ UNUSABLE: dict[str, bytes] = {
     "notes.txt": b"I could not do it.\n",
     "turtle_controller.py": b"import rclpy\ndef main()\n    pass\n",
 }
+#: So many are drawn, and then again: a larger class costs as much a hand-in.
+ALIKE = 20
 #: Of ten submissions: (number, kind).
 SHARES = ((5, "right"), (3, "beginner"), (1, "hostile"), (1, "odd"))
 
@@ -55,12 +58,13 @@ def programs() -> dict[str, list[str]]:
 
 def make(folder: Path, count: int, seed: int) -> None:
     """Write a class into a folder that is not there yet."""
-    chance = random.Random(seed)
+    names = random.Random(seed)
     texts = programs()
     pool = [kind for share, kind in SHARES for _ in range(share)]
     earlier: list[str] = []
     for number in range(count):
-        name = f"{chance.choice(FIRST)} {chance.choice(LAST)}"
+        name = f"{names.choice(FIRST)} {names.choice(LAST)}"
+        chance = random.Random(f"{seed} {number % ALIKE}")
         at = folder / f"{name}_{100000 + number}_assignsubmission_file_"
         at.mkdir(parents=True)
         kind = chance.choice(pool)
@@ -75,10 +79,8 @@ def make(folder: Path, count: int, seed: int) -> None:
             (at / "turtle_controller.py").write_text(text, encoding="utf-8")
 
 
-def measure(submissions: Path, folder: Path, count: int, jobs: list[int]) -> None:
-    """Print the table."""
-    titles = ("wall [s]", "gradings a minute", "CPU a grading [s]", "peak PSS [MiB]")
-    head("jobs", *titles, "the same call again: a hand-in [s]")
+def measure(submissions: Path, folder: Path, count: int, jobs: list[int]) -> float:
+    """Print a row for each number of jobs; return the least CPU time of a grading [s], or 0."""
     call, samples = [sys.executable, "-m", "grader", "batch", str(submissions)], []
     for number in jobs:
         sample = command([*call, "--out", f"{folder}/out{number}", "--jobs", str(number)])
@@ -87,25 +89,28 @@ def measure(submissions: Path, folder: Path, count: int, jobs: list[int]) -> Non
         again = command([*call, "--out", f"{folder}/out{number}", "--jobs", str(number)])
         peak = peak_pss_mib([*call, "--out", f"{folder}/again{number}", "--jobs", str(number)])
         cells = (rate, spread(samples[-1:]), f"{peak:.0f}", f"{again.wall_s / count:.3f}")
-        row(number, f"{sample.wall_s:.0f}", *cells)
-    if cpu_s := [sample for sample in samples if sample is not None]:
-        for many in (1_000, 100_000):
-            print(f"{many:,} submissions: {many * min(cpu_s) / HOUR_S:.1f} core hours")
+        row(count, number, f"{sample.wall_s:.0f}", *cells)
+    return min((sample for sample in samples if sample is not None), default=0.0)
 
 
 def main() -> None:
     """Make a class, and measure."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--count", type=int, default=60)
+    parser.add_argument("--count", type=int, nargs="+", default=[60])
     parser.add_argument("--jobs", type=int, nargs="+", default=[1, 2, 4])
     parser.add_argument("--seed", type=int, default=1)
     args = parser.parse_args()
     print(machine())
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        submissions = folder / "class"
-        make(submissions, args.count, args.seed)
-        measure(submissions, folder, args.count, args.jobs)
+    titles = ("wall [s]", "gradings a minute", "CPU a grading [s]", "peak PSS [MiB]")
+    head("hand-ins", "jobs", *titles, "the same call again: a hand-in [s]")
+    for count in args.count:
+        with tempfile.TemporaryDirectory() as place:
+            folder = Path(place)
+            submissions = folder / "class"
+            make(submissions, count, args.seed)
+            cpu_s = measure(submissions, folder, count, args.jobs)
+    for many in (1_000, 100_000) if cpu_s else ():
+        print(f"{many:,} submissions: {many * cpu_s / HOUR_S:.1f} core hours")
 
 
 if __name__ == "__main__":
