@@ -14,7 +14,7 @@ def main() -> NoReturn:
     words = sys.argv[1:]
     try:
         code, refused = client.called(words), None
-    except client.Refused as error:
+    except client.CallRefused as error:
         code, refused = None, error.why
     if code is not None:
         os._exit(code)

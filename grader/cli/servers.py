@@ -48,12 +48,12 @@ def main(args: argparse.Namespace) -> int:
     except (FileNotFoundError, ConnectionRefusedError):
         print(tr("No servers run."))
         return int(args.what == "status")
-    except client.Refused as refused:
+    except client.CallRefused as refused:
         raise UsageError(translate(refused.why)) from None
     if args.what == "stop":
         left = known["running"]
         after = tr("They end after the calls that go on: {running}.", running=left)
-        print(after if left else tr("They end."))
+        print(after if left else tr("They have ended."))
         return 0
     print(_described(known))
     return 0

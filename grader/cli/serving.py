@@ -157,7 +157,7 @@ class Servers:
         known = {"pid": os.getpid(), "calls": self._calls, "running": len(self._running)}
         times = {"up_s": time.monotonic() - self._began, "idle_s": self._idle_s}
         _tell(peer, **known, **times, level=self._level, changed=self._change().serialise())
-        return self._is_ending  # who has asked for it waits for this process's end
+        return False
 
     def _change(self) -> Message:
         """Return what of all that they have loaded has changed."""

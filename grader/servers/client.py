@@ -10,6 +10,7 @@ import os
 import select
 import signal
 import socket
+import sys
 from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from typing import Any
@@ -26,10 +27,14 @@ LONGEST = 4096
 #: The exit code of a call during which the servers have ended: that of a failure of the grader.
 LOST = 3
 #: What is passed on to the call.
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+SIGNALS = [
+    getattr(signal, name)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
+    if hasattr(signal, name)  # Windows lacks some
+]
 
 
-class Refused(Exception):
+class CallRefused(Exception):
     """The servers do not do something, for the reason `why`."""
 
     def __init__(self, why: Text) -> None:
@@ -41,9 +46,10 @@ def called(words: Sequence[str]) -> int | None:
     """Have the servers do a call, and return its exit code; None where there are no servers.
 
     Raises:
-        Refused: there are, but they do not do this one.
+        CallRefused: there are, but they do not do this one.
     """
-    if os.environ.get(place.SETTING) == place.OFF or next(iter(words), "") not in VERBS:
+    is_off = os.environ.get(place.SETTING) == place.OFF or sys.platform != "linux"
+    if is_off or next(iter(words), "") not in VERBS:
         return None
     try:
         with place.opened() as folder, place.connected(folder) as servers, ExitStack() as held:
@@ -54,9 +60,9 @@ def called(words: Sequence[str]) -> int | None:
     except (FileNotFoundError, ConnectionRefusedError):
         return None
     except place.Occupied as occupied:
-        raise Refused(occupied.message) from None
+        raise CallRefused(occupied.message) from None
     except (OSError, ValueError) as error:
-        raise Refused(str(error)) from None
+        raise CallRefused(str(error)) from None
 
 
 def asked(what: str) -> dict[str, Any]:
@@ -66,13 +72,16 @@ def asked(what: str) -> dict[str, Any]:
 
     Raises:
         OSError: there are none, or they do not answer.
-        Refused, place.Occupied: they refuse; another has their place.
+        CallRefused, place.Occupied: they refuse; another has their place.
     """
     with place.opened() as folder, place.connected(folder) as servers:
         _ask(servers, folder, what, {}, [])
         known = _answer(servers)[0]
         if what == "stop" and not known["running"]:
-            select.select([servers], [], [], PATIENCE_S)
+            with suppress(ProcessLookupError):
+                process = os.pidfd_open(known["pid"])
+                select.select([process], [], [], PATIENCE_S)
+                os.close(process)
         return known
 
 
@@ -95,10 +104,10 @@ def _answer(servers: socket.socket) -> tuple[dict[str, Any], list[int]]:
     """Receive an answer, and the descriptors that come with it."""
     data, fds, _, _ = socket.recv_fds(servers, LONGEST, 1)
     if not data:
-        raise Refused(msg("they have ended"))
+        raise CallRefused(msg("they have ended"))
     said: dict[str, Any] = json.loads(data)
     if "refused" in said:
-        raise Refused(Message.parse(said["refused"]))
+        raise CallRefused(Message.parse(said["refused"]))
     return said, fds
 
 
@@ -134,5 +143,5 @@ def _followed(servers: socket.socket) -> int:
     try:
         select.select([servers], [], [])
         return int(_answer(servers)[0]["exit"])
-    except (Refused, OSError):
+    except (CallRefused, OSError):
         return LOST

@@ -280,6 +280,16 @@ def test_stop_waits_for_the_calls_that_go_on(tmp_path):
         gone_within(user.place)
 
 
+def test_stop_returns_when_they_have_ended(tmp_path):
+    with started(tmp_path) as user:
+        server = psutil.Process(user.pid())
+        family = [server, *server.children()]
+        assert user("servers", "stop").stdout == "They have ended.\n"
+        zombie = psutil.STATUS_ZOMBIE
+        assert all(not each.is_running() or each.status() == zombie for each in family)
+        assert user("servers", "stop").stdout == "No servers run.\n"
+
+
 def test_where_they_are_killed_the_next_call_is_cold(tmp_path):
     with started(tmp_path) as user:
         server = psutil.Process(user.pid())
