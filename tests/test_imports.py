@@ -207,7 +207,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"turtlesim_py.browser"},
     "grader.cli.servers": GROUND | below("grader", "cli", "servers.client", "servers.place"),
     # every call looks for servers before it imports anything else
-    "grader.servers": below("grader", "__init__", "message", "errors", "scratch", "servers"),
+    "grader.servers": below(
+        "grader", "__init__", "message", "errors", "scratch", "system", "servers"
+    ),
     "grader.cli.serving": GROUND | below("grader", "cli", "run", "exercise", "servers"),
     "grader.__main__": below("grader", "cli", "servers.client"),
 }
