@@ -16,6 +16,10 @@ def main() -> NoReturn:
         code, refused = client.called(words), None
     except client.CallRefused as error:
         code, refused = None, error.why
+    except client.CallLost:
+        from grader import cli
+
+        code, refused = cli.lost(words), None
     if code is not None:
         os._exit(code)
     from grader import cli

@@ -93,9 +93,16 @@ def leave(code: int) -> NoReturn:
             thread.join()
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError, ValueError):  # its reader is gone
+        with suppress(OSError, ValueError, AttributeError):  # its reader is gone, or it was closed
             stream.flush()
     os._exit(code)
+
+
+def lost(words: Sequence[str]) -> int:
+    """Tell that servers did not do a call to its end, and return the exit code."""
+    options.choose_language(words)
+    _print_error(FAILED, msg("the servers, or the process of this call, were ended; call again"))
+    return GRADER_FAILED
 
 
 def load(verb: str) -> Any:

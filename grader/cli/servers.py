@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,7 @@ from grader.translations import tr, translate
 
 #: After so long without a call they end, if nothing else is said [minutes].
 IDLE_MIN = 30.0
+MOST_MIN = 10_000
 #: What runs as the server of calls.
 SCRIPT = Path(__file__).with_name("serving.py")
 EXPLAINED = msg(
@@ -26,11 +29,11 @@ EXPLAINED = msg(
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.epilog = tr(EXPLAINED.key, setting=place.SETTING, off=place.OFF)
+    parser.epilog = tr(EXPLAINED.key, setting=place.SETTING, off=place.OFF[0])
     parser.add_argument("what", choices=("start", "status", "stop"), help=tr("what to do"))
     parser.add_argument(
         "--idle",
-        type=_minutes,
+        type=minutes,
         default=IDLE_MIN,
         metavar="MINUTES",
         help=tr("of start: after so long without a call they end ({default:g})", default=IDLE_MIN),
@@ -40,12 +43,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Start, stop or show them; 0 where there are some, or none are left after `stop`."""
     if args.what == "start":
+        if place.is_off():
+            raise UsageError(
+                "{setting}={value} is set: no call would use them",
+                setting=place.SETTING,
+                value=os.environ[place.SETTING],
+            )
         _start(args.idle)
         print(tr("Servers run; `grader servers stop` ends them."))
         return 0
     try:
         known = client.asked(args.what)
-    except (FileNotFoundError, ConnectionRefusedError):
+    except OSError:  # nobody is there, or has just gone
         print(tr("No servers run."))
         return int(args.what == "status")
     except client.CallRefused as refused:
@@ -59,13 +68,14 @@ def main(args: argparse.Namespace) -> int:
     return 0
 
 
-def _minutes(text: str) -> float:
-    value = float(text)
-    if not 0.0 < value < 1e6:
-        raise argparse.ArgumentTypeError(
-            tr("expected a number of minutes, found {text}", text=text)
-        )
-    return value
+def minutes(text: str) -> float:
+    """Parse the minutes of the command line."""
+    with suppress(ValueError):
+        if 0.0 < (value := float(text)) <= MOST_MIN:
+            return value
+    raise argparse.ArgumentTypeError(
+        tr("expected minutes, more than 0 and up to {most}, found {text}", most=MOST_MIN, text=text)
+    )
 
 
 def _start(idle_min: float) -> None:

@@ -55,6 +55,12 @@ MODULES = (
 GROUPS: tuple[extensions.Group, ...] = get_args(extensions.Group)
 #: So many may have connected without a request, and no request is longer [bytes].
 MOST_SILENT, LONGEST = 16, 1_000_000
+#: How often they look whether they can be reached [s].
+LOOK_S = 5.0
+ANOTHER = msg(
+    "they were started with another {what}; `grader servers stop` and `start` in this shell "
+    "mend that"
+)
 AT_LIMITS = msg(
     "submissions can be confined at the level {level} only here, where one reaches what its user "
     "does; no server may outlive a call then, and each call starts anew"
@@ -77,12 +83,13 @@ class Servers:
         self._last = self._began
         self._calls = 0
         self._is_ending = False
+        self._there = place.who_is_there()
         self._silent: list[socket.socket] = []
         #: process id of a call -> who waits for its end, if somebody does
         self._running: dict[int, socket.socket | None] = {}
         self._folders = list(_packages())
         self._files = started_with.files(self._folders)
-        self._other = started_with.environment(), started_with.python()
+        self._other = started_with.environment(), started_with.process()
 
     def serve(self) -> None:
         """Answer requests until there is a reason to end."""
@@ -93,13 +100,12 @@ class Servers:
         signal.signal(signal.SIGTERM, self._end)
         while self._running or not self._is_ending:
             waiting = [each for each in self._running.values() if each is not None]
-            asking = [] if self._is_ending else [self._listener, *self._silent]
+            watched: list[Any] = [woken, self._listener, *self._silent, *waiting]
             rest_s = max(0.0, self._last + self._idle_s - time.monotonic())
-            is_idle = not self._running and not self._is_ending
-            watched: list[Any] = [woken, *asking, *waiting]
-            ready, _, _ = select.select(watched, [], [], rest_s if is_idle else None)
-            if is_idle and not ready:
-                return
+            ready, _, _ = select.select(watched, [], [], min(rest_s, LOOK_S) or LOOK_S)
+            is_idle = not self._running and time.monotonic() >= self._last + self._idle_s
+            if not ready and (is_idle or place.who_is_there() != self._there):
+                self._is_ending = True
             for each in ready:
                 if each == woken:
                     os.read(woken, 4096)
@@ -166,9 +172,11 @@ class Servers:
 
     def _begin(self, peer: socket.socket, request: Mapping[str, Any], fds: list[int]) -> None:
         """Fork for a call."""
+        if self._is_ending:
+            raise UsageError(msg("they are ending"))
         for before, now in zip(self._other, request["started_with"], strict=True):
             if name := started_with.differing(before, now):
-                raise UsageError(msg("they were started with another {what}", what=name))
+                raise UsageError(ANOTHER.given(what=name))
         if change := self._change():
             self._is_ending = True
             raise UsageError(change)
@@ -180,7 +188,10 @@ class Servers:
         server = os.getpid()
         pid = os.fork()
         if pid == 0:
-            _be_call(server, request, fds, branches)
+            try:
+                _be_call(server, request, fds, branches)
+            finally:  # whatever happens, this process never goes on as the server
+                os._exit(cli.GRADER_FAILED)
         self._calls, self._last = self._calls + 1, time.monotonic()
         self._running[pid] = peer
         for each in branches.values():
@@ -206,8 +217,7 @@ class Servers:
             while (ended := os.waitpid(-1, os.WNOHANG))[0]:  # also of orphans that were adopted
                 self._last = time.monotonic()
                 if peer := self._running.pop(ended[0], None):
-                    code = os.waitstatus_to_exitcode(ended[1])
-                    _tell(peer, exit=code if code >= 0 else 128 - code)
+                    _tell(peer, exit=os.waitstatus_to_exitcode(ended[1]))
                     peer.close()
 
 
@@ -268,15 +278,14 @@ def _be_call(
         os.umask(request["umask"])
         with suppress(OSError):  # where fewer are left
             os.sched_setaffinity(0, request["cores"])
-        for limit in request["limits"]:
-            with suppress(OSError, ValueError):  # where the servers' own is lower
-                linux.set_limit(*limit)
         own = started_with.environment()
         os.environ.clear()
         os.environ.update({**request["environment"], **own})
         fork_servers.take(branches)
         sys.argv[:] = ["grader", *request["words"]]
         code = cli.main(request["words"])
+    except SystemExit as end:  # of --help
+        code = int(end.code or 0)
     except BaseException:
         traceback.print_exc()
     finally:

@@ -24,8 +24,6 @@ VERBS = ("run", "check")
 PATIENCE_S = 10.0
 #: No packet is longer [bytes].
 LONGEST = 4096
-#: The exit code of a call during which the servers have ended: that of a failure of the grader.
-LOST = 3
 #: What is passed on to the call.
 SIGNALS = [
     getattr(signal, name)
@@ -42,14 +40,19 @@ class CallRefused(Exception):
         self.why = why
 
 
+class CallLost(Exception):
+    """A call that had begun came to no end of its own."""
+
+
 def called(words: Sequence[str]) -> int | None:
     """Have the servers do a call, and return its exit code; None where there are no servers.
 
     Raises:
         CallRefused: there are, but they do not do this one.
+        CallLost: they have ended during it, or its process was killed.
     """
-    is_off = os.environ.get(place.SETTING) == place.OFF or not system.runs_submissions()
-    if is_off or next(iter(words), "") not in VERBS:
+    is_theirs = system.runs_submissions() and not place.is_off()
+    if not is_theirs or next(iter(words), "") not in VERBS or not _has_streams():
         return None
     try:
         with place.opened() as folder, place.connected(folder) as servers, ExitStack() as held:
@@ -113,16 +116,12 @@ def _answer(servers: socket.socket) -> tuple[dict[str, Any], list[int]]:
 
 def _call(words: Sequence[str]) -> dict[str, Any]:
     """Return what a call has besides its descriptors."""
-    import resource  # here: Windows lacks it
-
     os.umask(mask := os.umask(0o077))
-    kinds = (getattr(resource, name) for name in dir(resource) if name.startswith("RLIMIT_"))
     return {
         "words": list(words),
         "environment": dict(os.environ),
-        "started_with": [started_with.environment(), started_with.python()],
+        "started_with": [started_with.environment(), started_with.process()],
         "umask": mask,
-        "limits": [(kind, *resource.getrlimit(kind)) for kind in kinds],
         "cores": sorted(os.sched_getaffinity(0)),
         "ignored": [each for each in SIGNALS if signal.getsignal(each) == signal.SIG_IGN],
     }
@@ -142,6 +141,17 @@ def _followed(servers: socket.socket) -> int:
     servers.settimeout(None)
     try:
         select.select([servers], [], [])
-        return int(_answer(servers)[0]["exit"])
+        code = int(_answer(servers)[0]["exit"])
     except (CallRefused, OSError):
-        return LOST
+        raise CallLost from None
+    if code < 0 and -code not in SIGNALS:
+        raise CallLost
+    return code if code >= 0 else 128 - code
+
+
+def _has_streams() -> bool:
+    """Whether the three standard ones are open: else another file gets their number."""
+    try:
+        return all(os.fstat(fd) for fd in range(3))
+    except OSError:
+        return False

@@ -19,12 +19,17 @@ from grader.errors import UsageError
 from grader.message import msg
 
 FOLDER, SOCKET, TOKEN = "servers", "socket", "token"
-#: An environment variable, and its value with which no call looks for servers.
-SETTING, OFF = "GRADER_SERVERS", "off"
+#: An environment variable, and its values with which no call looks for servers.
+SETTING, OFF = "GRADER_SERVERS", ("off", "0", "no", "false")
 
 
 class Occupied(UsageError):
     """What has the name of the folder, or listens in it, is not this user's alone."""
+
+
+def is_off() -> bool:
+    """Whether no call is to look for servers."""
+    return os.environ.get(SETTING, "").lower() in OFF
 
 
 @contextmanager
@@ -46,7 +51,7 @@ def opened() -> Iterator[int]:
     try:
         found = os.fstat(folder)
         if found.st_uid != os.geteuid() or stat.S_IMODE(found.st_mode) & 0o077:
-            raise Occupied(msg("{path} is not this user's alone", path=str(path)))
+            raise Occupied(msg("{path} is not this user's alone (chmod 700)", path=str(path)))
         yield folder
     finally:
         os.close(folder)
@@ -90,6 +95,13 @@ def _clear(folder: int) -> None:
     for name in (SOCKET, TOKEN):
         with suppress(FileNotFoundError):
             os.unlink(name, dir_fd=folder)
+
+
+def who_is_there() -> tuple[int, ...]:
+    """Return what lies in the folder: the same numbers as long as it is the same servers'."""
+    with suppress(OSError, UsageError), opened() as folder:
+        return tuple(os.stat(name, dir_fd=folder).st_ino for name in (SOCKET, TOKEN))
+    return ()
 
 
 def connected(folder: int) -> socket.socket:

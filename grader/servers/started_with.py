@@ -28,9 +28,17 @@ def environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if READ_AT_START.fullmatch(name)}
 
 
-def python() -> dict[str, str]:
-    """Return which Python this is, and which grader."""
-    return {"Python": f"{sys.executable} {sys.version}", "the grader": str(grader.__file__)}
+def process() -> dict[str, str]:
+    """Return which Python this is, which grader, how nice, and how limited."""
+    import resource  # here: Windows lacks it
+
+    kinds = [name for name in dir(resource) if name.startswith("RLIMIT_")]
+    return {
+        "Python": f"{sys.executable} {sys.version}",
+        "grader": str(grader.__file__),
+        "niceness": str(os.getpriority(os.PRIO_PROCESS, 0)),
+        **{name: str(resource.getrlimit(getattr(resource, name))) for name in kinds},
+    }
 
 
 def files(folders: Iterable[str]) -> dict[str, State]:

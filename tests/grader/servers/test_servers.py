@@ -188,6 +188,24 @@ def test_who_ends_a_call_ends_what_it_has_begun(user, number):
     assert user.graded(QUICK).verdicts
 
 
+def test_help_is_that_of_a_call_alone(user):
+    done, alone = user("run", "--help"), user("run", "--help", GRADER_SERVERS="off")
+    assert (done.returncode, done.stdout, done.stderr) == (0, alone.stdout, "")
+
+
+def test_a_call_with_a_closed_stream_or_other_limits_is_graded_without_them(user, tmp_path):
+    before = user.calls()
+    closed = ["sh", "-c", 'exec "$@" 0<&-', "sh", *user.command]
+    limited = ["sh", "-c", 'ulimit -n 200; nice -n 1 "$@"', "sh", *user.command]
+    for name, command in (("closed", closed), ("limited", limited)):
+        words = [*command, "run", str(QUICK), "--out", str(tmp_path / name)]
+        done = subprocess.run(words, env=user.env, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert (COLD + "they were started with another" in done.stderr) == (name == "limited")
+        assert "100 of 100" in done.stdout
+    assert user.calls() == before
+
+
 def test_several_calls_at_once_are_graded_as_one(user):
     alone = user.graded(QUICK)
     outs = [user.folder / f"at-once-{number}" for number in range(3)]
@@ -198,10 +216,12 @@ def test_several_calls_at_once_are_graded_as_one(user):
         assert result["run"]["trace_sha256"] == alone.hashes[0]
 
 
-def test_servers_are_off_where_that_is_set(user):
+@pytest.mark.parametrize("value", ["off", "0", "No"])
+def test_servers_are_off_where_that_is_set(user, value):
     before = user.calls()
-    assert user("run", QUICK, GRADER_SERVERS="off").returncode == 0
+    assert user("run", "not_there.py", GRADER_SERVERS=value).returncode == 2
     assert user.calls() == before
+    assert user("servers", "start", GRADER_SERVERS=value).returncode == 2
 
 
 def test_a_call_in_another_environment_is_cold_and_says_so(user):
@@ -275,6 +295,8 @@ def test_stop_waits_for_the_calls_that_go_on(tmp_path):
         while "Running it" not in call.stderr.readline():
             pass
         assert "that go on: 1." in user("servers", "stop").stdout
+        assert "going on: 1" in user("servers", "status").stdout
+        assert f"{COLD}they are ending" in user("run", "not_there.py").stderr
         assert "100 of 100" in call.communicate()[0]
         assert call.returncode == 0
         gone_within(user.place)
@@ -298,6 +320,27 @@ def test_where_they_are_killed_the_next_call_is_cold(tmp_path):
         psutil.wait_procs(family, timeout=90)
         assert not any(each.is_running() for each in family)
         assert user.graded(QUICK).verdicts
+        assert user("servers", "start").returncode == 0
+
+
+def test_a_call_that_is_lost_with_them_says_so(tmp_path):
+    with started(tmp_path) as user:
+        call = user.begins("run", QUICK, "--time", "real")
+        assert call.stderr is not None
+        while "Running it" not in call.stderr.readline():
+            pass
+        psutil.Process(user.pid()).kill()
+        said = call.communicate()[1]
+        assert call.returncode == 3
+        assert "the servers, or the process of this call, were ended; call again" in said
+        assert user("servers", "start").returncode == 0  # what was left is no hindrance
+
+
+def test_servers_whose_socket_was_removed_end_by_themselves(tmp_path):
+    with started(tmp_path) as user:
+        (user.place / "socket").unlink()
+        assert user("servers", "status").stdout == "No servers run.\n"
+        gone_within(user.place)
         assert user("servers", "start").returncode == 0
 
 
