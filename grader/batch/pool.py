@@ -187,7 +187,7 @@ class Process:
         """Return the line that the process answers; empty if it ends instead."""
         with self._lock:
             if self._process is None and not self.is_over:
-                self._process = start()
+                self._process = start(runs=task.path is not None and task.run is None)
         process = self._process
         if process is None or process.stdin is None or process.stdout is None:
             return b""
@@ -223,15 +223,16 @@ class Process:
         return msg("exit code {code}", code=str(code))
 
 
-def start() -> subprocess.Popen[bytes]:
+def start(*, runs: bool = False) -> subprocess.Popen[bytes]:
     """Start a worker with the modules of this grader; Ctrl-C in a terminal does not reach it.
 
-    It gets branches of this process's fork servers, which share their memory; where there are none,
-    it starts its own.
+    Args:
+        runs: whether it gets branches of this process's fork servers, which share their memory;
+            without them, it starts its own for the first run.
     """
     branches: dict[str, Branch] = {}
     with suppress(ServerLost, GraderFailure, OSError):
-        branches = fork_servers.branches()
+        branches = fork_servers.branches() if runs else {}
     try:
         return subprocess.Popen(
             [sys.executable, *_COMMAND, fork_servers.described(branches)],

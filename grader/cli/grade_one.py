@@ -199,10 +199,11 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     def write() -> Path:
         saving.save_all(recordings, out / ARTIFACTS["recording"])
         put_artifacts(recordings.nominal, out)
+        shown = render("html", [report]).encode("utf-8")  # where a scene fails, there is no result
         result.put(out / RESULT)
         if args.json:
             result.write(args.json)
-        files.put(page, render("html", [report]).encode("utf-8"))
+        files.put(page, shown)
         return page
 
     terminal.show_first(report, write)

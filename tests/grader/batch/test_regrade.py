@@ -294,7 +294,7 @@ def test_a_worker_that_dies_is_told_for_its_own_recording(whole, changed, monkey
         "import os, sys; sys.path.insert(0, sys.argv[1]); from grader.batch import grade; "
         "done = grade.done; "
         "grade.done = lambda task: os._exit(9) if task.key[0] == 'c' else done(task); "
-        "grade.serve()"
+        "grade.serve(sys.argv[2])"
     )
     monkeypatch.setattr(pool, "_COMMAND", ("-P", "-c", dies, pool._COMMAND[-1]))
     found = judging.regrade(whole, changed, 1)
