@@ -6,18 +6,17 @@ time: five times as slowly, which is a fifth of what a grading costs.
 
 from __future__ import annotations
 
-import sys
 from collections import defaultdict
+from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 from struct import Struct, pack
 from typing import Final
 
-if sys.version_info >= (3, 14):
-    from compression import zstd
-else:
-    from backports import zstd
+from rosbags.rosbag2 import storage_mcap
 
+#: The library that rosbags packs with, Python's own or another.
+_pack: Callable[[bytes], bytes] = storage_mcap.zstd.compress  # type: ignore[attr-defined]
 MAGIC: Final = b"\x89MCAP0\r\n"
 (HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX) = range(1, 9)
 STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFSET, DATA_END = 0x0B, 0x0C, 0x0D, 0x0E, 0x0F
@@ -129,7 +128,7 @@ class McapWriter:
     def _close_chunk(self) -> None:
         times_ns, size = self._chunk_times_ns, len(self._chunk)
         self.times_ns = min(self.times_ns[0], times_ns[0]), max(self.times_ns[1], times_ns[1])
-        packed = zstd.compress(bytes(self._chunk))
+        packed = _pack(bytes(self._chunk))
         compressed = _string("zstd") + pack("<Q", len(packed))
         place = self._file.tell()
         self._record(CHUNK, pack("<QQQI", *times_ns, size, 0) + compressed + packed)

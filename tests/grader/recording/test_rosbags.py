@@ -27,3 +27,4 @@ def test_a_function_takes_what_it_is_given(function):
 
 def test_what_is_read_is_there(tmp_path: Path) -> None:
     assert hasattr(storage_mcap.McapReader(tmp_path / "bag.mcap"), "connections")
+    assert storage_mcap.zstd.decompress(storage_mcap.zstd.compress(b"chunk")) == b"chunk"
