@@ -196,13 +196,14 @@ class Servers:
         self._running[pid] = peer
         for each in branches.values():
             each.close()
-        pidfd = os.pidfd_open(pid)
         try:
-            socket.send_fds(peer, [b"{}"], [pidfd])
+            pidfd = os.pidfd_open(pid)
+            try:
+                socket.send_fds(peer, [b"{}"], [pidfd])
+            finally:
+                os.close(pidfd)
         except OSError:
             self._cancel(peer)
-        finally:
-            os.close(pidfd)
 
     def _cancel(self, peer: socket.socket) -> None:
         """End the call of who has gone, or says more than a call."""

@@ -15,6 +15,7 @@ from contextlib import ExitStack, suppress
 from typing import Any
 
 from grader import system
+from grader.errors import GraderFailure
 from grader.message import Message, Text, msg
 from grader.servers import place, started_with
 
@@ -60,8 +61,8 @@ def called(words: Sequence[str]) -> int | None:
             held.callback(os.close, here)
             _ask(servers, folder, "call", _call(words), [0, 1, 2, here])
             return _followed(servers)
-    except (FileNotFoundError, ConnectionRefusedError):
-        return None
+    except (FileNotFoundError, ConnectionRefusedError, GraderFailure):
+        return None  # nobody is there, or there is no place for anybody
     except place.Occupied as occupied:
         raise CallRefused(occupied.message) from None
     except (OSError, ValueError) as error:

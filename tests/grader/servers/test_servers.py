@@ -397,3 +397,17 @@ def test_what_another_could_have_put_in_their_place_is_not_used(occupied, tmp_pa
     done = user("servers", "start")
     assert done.returncode == 2
     assert str(user.place) in done.stderr
+
+
+def test_where_there_is_no_place_for_servers_a_call_is_what_it_was(tmp_path):
+    user = User(tmp_path)
+    user.place.parent.symlink_to(tmp_path)
+    home = tmp_path / "no-folder"
+    home.touch()
+    places = {"XDG_RUNTIME_DIR": str(home), "HOME": str(home)}
+    done, alone = (
+        user("check", "not_there", **places),
+        user("check", "not_there", GRADER_SERVERS="off", **places),
+    )
+    assert (done.returncode, done.stderr) == (alone.returncode, alone.stderr)
+    assert done.returncode == 2
