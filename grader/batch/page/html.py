@@ -34,13 +34,6 @@ ROWS = 500
 PAGE, FURTHER = "index.html", "index-{}.html"
 
 
-def render(
-    entries: Sequence[Entry], exercise: Exercise, links: Mapping[str, str] | None = None
-) -> str:
-    """Return the first page; see `render_all`."""
-    return render_all(entries, exercise, links)[PAGE]
-
-
 def render_all(
     entries: Sequence[Entry], exercise: Exercise, links: Mapping[str, str] | None = None
 ) -> dict[str, str]:

@@ -223,7 +223,7 @@ _drawings: WeakKeyDictionary[Recording, dict[str, Drawing]] = WeakKeyDictionary(
 
 
 def draw(recording: Recording) -> Drawing:
-    """Draw a recording once: for the page, or before it while other runs go on."""
+    """Draw a recording once in a language: for its pages, and for that of a class."""
     drawings = _drawings.setdefault(recording, {})
     drawing = drawings.get(current())
     if drawing is None:

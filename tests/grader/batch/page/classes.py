@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.batch.entry import Entry, HandIn, Person, State
+from grader.batch.page import html
 from grader.batch.page.students import Student, students
 from grader.message import Message, as_message, msg
 from grader.result.result import Result
@@ -53,3 +54,8 @@ def student(judged: Result | None = None, **more: Any) -> Student:
     """The only one of a class."""
     (only,) = students([entry("zoe", judged, **more)])
     return only
+
+
+def first_page(*of_class: Any) -> str:
+    """The first page of a class, which is the only one of most."""
+    return html.render_all(*of_class)[html.PAGE]

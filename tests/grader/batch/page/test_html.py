@@ -13,7 +13,7 @@ from grader.batch.page import html
 from grader.batch.page.thumb import THUMB, thumb
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
-from tests.grader.batch.page.classes import entry, result
+from tests.grader.batch.page.classes import entry, first_page, result
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers
 
@@ -40,7 +40,7 @@ def some(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(some):
-    return html.render(some, EXERCISE, {"Gradebook": "gradebook.csv"})
+    return first_page(some, EXERCISE, {"Gradebook": "gradebook.csv"})
 
 
 def elements(page, name):
@@ -92,7 +92,7 @@ def test_scores_are_of_those_who_handed_in(page):
 
 
 def test_it_depends_on_nothing_but_the_entries(some, page):
-    assert html.render(list(reversed(some)), EXERCISE, {"Gradebook": "gradebook.csv"}) == page
+    assert first_page(list(reversed(some)), EXERCISE, {"Gradebook": "gradebook.csv"}) == page
 
 
 def test_a_path_is_drawn_and_a_picture_shown_for_who_has_one(page):
@@ -101,11 +101,11 @@ def test_a_path_is_drawn_and_a_picture_shown_for_who_has_one(page):
 
 
 def test_an_empty_class_has_a_page():
-    readers.balanced(html.render([], EXERCISE))
+    readers.balanced(first_page([], EXERCISE))
 
 
 def test_a_class_without_results_has_a_page():
-    page = html.render([entry("kim", state="nothing")], EXERCISE)
+    page = first_page([entry("kim", state="nothing")], EXERCISE)
     assert "Nothing was judged." in page
     readers.balanced(page)
 
@@ -113,7 +113,7 @@ def test_a_class_without_results_has_a_page():
 def test_three_hundred_pictures_and_paths_have_less_than_three_megabytes(some):
     zoe = some[0]
     many = [entry(f"s{k}", zoe.result, name="A name " * 5, folder=zoe.folder) for k in range(300)]
-    assert len(html.render(many, EXERCISE).encode()) < 3_000_000
+    assert len(first_page(many, EXERCISE).encode()) < 3_000_000
 
 
 def test_a_class_of_no_end_has_a_page_of_bounded_length(some, monkeypatch):
@@ -121,7 +121,7 @@ def test_a_class_of_no_end_has_a_page_of_bounded_length(some, monkeypatch):
     monkeypatch.setattr(html, "ROWS", 20)
     monkeypatch.setattr(html, "MOST_PICTURES", 5)
     zoe = some[0]
-    page = html.render([entry(f"s{k}", zoe.result, folder=zoe.folder) for k in range(50)], EXERCISE)
+    page = first_page([entry(f"s{k}", zoe.result, folder=zoe.folder) for k in range(50)], EXERCISE)
     assert len(elements(page, "img")) == 5
     assert len(re.findall(r'<tr data-of="\d+">', page)) == 20
 

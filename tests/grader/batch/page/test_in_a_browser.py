@@ -11,7 +11,7 @@ import pytest
 from grader.batch.page import html
 from grader.exercise.loading import load_exercise
 from tests.browser import BROWSER, clipped, needs_browser, open_browser
-from tests.grader.batch.page.classes import entry, result
+from tests.grader.batch.page.classes import entry, first_page, result
 
 pytestmark = needs_browser
 
@@ -20,7 +20,7 @@ pytestmark = needs_browser
 def page(tmp_path_factory):
     bad = "NameError: Zoë is not 1"
     path = tmp_path_factory.mktemp("class") / "index.html"
-    shown = html.render(
+    shown = first_page(
         [
             entry("zoe17", result({"moves": 0.0}, bad), name="Zoë Müller"),
             entry("bob18", result({"moves": 10.0}), name="Bob Brown"),
@@ -86,7 +86,7 @@ def test_cards_columns_and_tables_show_all_that_they_hold(tmp_path):
     points = {check: 0.0 if number % 2 else 10.0 for number, check in enumerate(exercise.points)}
     at = datetime(2026, 11, 26, 14, tzinfo=UTC)
     everybody = [entry("zoe_mueller_1234567", result(points), name="Zoë Müller-Lüdenscheid", at=at)]
-    (tmp_path / "index.html").write_text(html.render(everybody, exercise), encoding="utf-8")
+    (tmp_path / "index.html").write_text(first_page(everybody, exercise), encoding="utf-8")
     with open_browser() as browser:
         page = browser.new_page()
         page.goto((tmp_path / "index.html").as_uri())
