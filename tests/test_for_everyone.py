@@ -65,7 +65,9 @@ def page_of_a_class(folder) -> str:
         entry("bob18", result({"moves": 10.0}), name="Bob Brown"),
         entry("kim19", state="nothing", message="kim19 handed in nothing.", name="Kim"),
     ]
-    return class_page.render(class_of_three, load_exercise("turtlesim_challenge"))
+    return class_page.render_all(class_of_three, load_exercise("turtlesim_challenge"))[
+        class_page.PAGE
+    ]
 
 
 def page_of_what_is_alike(folder) -> str:
