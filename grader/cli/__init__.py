@@ -16,6 +16,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 from contextlib import suppress
 from io import TextIOWrapper
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from grader.message import Text, msg
@@ -135,6 +136,7 @@ def _main(words: Sequence[str], refused: Text) -> int:
         _print_error(_who(args.verb), error.message)
         return error.exit_code
     try:
+        _check_folder()
         return int(load(args.verb).main(args))
     except KeyboardInterrupt:
         print(tr("{who}: interrupted", who=f"grader {args.verb}"), file=sys.stderr)
@@ -152,6 +154,15 @@ def _main(words: Sequence[str], refused: Text) -> int:
             )
             print(for_terminal(traceback.format_exc()), end="", file=sys.stderr)
         return _ended(GraderFailure("unexpected: {what}", what=what), args)
+
+
+def _check_folder() -> None:
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        raise UsageError(
+            msg("the current folder was deleted: change to one that is there, and call again")
+        ) from None
 
 
 def _heading(error: GraderError, verb: str) -> Text:

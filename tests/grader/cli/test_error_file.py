@@ -79,6 +79,15 @@ def test_a_wrong_call_is_the_callers(tmp_path, error, monkeypatch, capsys, words
     assert message in capsys.readouterr().err
 
 
+def test_a_call_from_a_deleted_folder_is_told_so(tmp_path, error, monkeypatch, capsys):
+    (gone := tmp_path / "gone").mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert main(["run", "x.py", "--error-json", str(error)]) == 2
+    assert said(error)[:2] == ("call", capsys.readouterr().err.partition(": ")[2].strip())
+    assert "folder was deleted" in said(error)[1]
+
+
 def test_without_a_file_name_the_call_is_refused_all_the_same(capsys):
     assert main(["run", "x.py", "--error-json"]) == 2
     assert "usage: grader run" in capsys.readouterr().err
