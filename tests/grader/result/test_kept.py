@@ -1,0 +1,194 @@
+"""Results and recordings that teachers have on their disks stay usable: tests/kept, never renewed.
+
+What is promised stands in docs/reports.md, "What the versions promise".
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+import tarfile
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from grader.cli import main
+from grader.reports import read as read_report
+from grader.reports import render
+from tests.grader.reports.readers import READERS
+from tests.grader.reports.samples import CLASSROOM50, FORMATS
+from tests.once import ROOT
+from tests.tiers import others_are_more
+
+KEPT = ROOT / "tests" / "kept"
+SCHEMAS = {
+    "result": ROOT / "grader" / "result" / "result.schema.json",
+    "error": ROOT / "grader" / "result" / "error.schema.json",
+    "recording": ROOT / "grader" / "recording" / "recording.schema.json",
+}
+#: Folder of a result -> the exercise.yaml by which it was judged; empty: an installed one's.
+RESULTS = {
+    "spiral": "spiral.yaml",
+    **dict.fromkeys(("programs", "package", "robot", "peers", "cases", "real_time"), ""),
+    **dict.fromkeys((f"class/submissions/{who}" for who in ("anna", "ben", "chen")), "before.yaml"),
+}
+
+
+@pytest.fixture(scope="module")
+def unpacked(tmp_path_factory) -> Path:
+    """All that was kept; read it, or copy it."""
+    folder = tmp_path_factory.mktemp("kept")
+    for archive in KEPT.glob("*.tar.xz"):
+        with tarfile.open(archive) as packed:
+            packed.extractall(folder, filter="data")
+    return folder
+
+
+@pytest.fixture
+def classroom(monkeypatch) -> None:
+    for variable, value in CLASSROOM50.items():
+        monkeypatch.setenv(variable, value)
+
+
+def stored(path: Path) -> Any:
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def judged(path: Path) -> dict[str, Any]:
+    """What a judging decides, without its words, the first line and when that was."""
+    result = stored(path)
+    points = ("check", "status", "score", "max_score", "depends_on")
+    runs = [result["run"], *result["varied_runs"]]
+    return {
+        "verdicts": [{name: verdict[name] for name in points} for verdict in result["verdicts"]],
+        "runs": [{name: run[name] for name in run.keys() - {"flags"}} for run in runs],
+        **{name: result.get(name) for name in ("exercise", "score", "max_score", "handed_in")},
+    }
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_it_is_judged_as_it_was_then(name, unpacked, tmp_path):
+    words = ["--exercise", str(KEPT / RESULTS[name])] if RESULTS[name] else []
+    again = tmp_path / "again.json"
+    assert main(["check", str(unpacked / name), "--json", str(again), *words]) == 0
+    assert judged(again) == judged(unpacked / name / "result.json")
+
+
+@pytest.mark.parametrize(
+    "name",
+    others_are_more(
+        "only the page knows scenes", RESULTS, "spiral", "programs", "class/submissions/chen"
+    ),
+)
+def test_every_report_can_be_made_of_it_with_the_score_of_then(name, unpacked, classroom):
+    path = unpacked / name / "result.json"
+    result = stored(path)
+    for format in FORMATS:
+        content = render(format, [read_report(path, view="whole")])
+        if "chen" not in name:  # late; the readers add up checks
+            assert READERS[format](content) == result["score"], format
+
+
+def test_it_can_be_played(unpacked, tmp_path):
+    page = tmp_path / "view.html"
+    assert main(["view", str(unpacked / "spiral"), "--out", str(page), "--no-open"]) == 0
+    assert page.stat().st_size > 10_000
+
+
+def test_where_there_was_no_result_every_report_still_says_so(classroom):
+    for format in FORMATS:
+        assert render(format, [read_report(KEPT / "error.json", ("moves",))])
+
+
+@pytest.mark.parametrize(
+    ("kind", "pattern"), [("result", "result.json"), ("recording", "run.json")]
+)
+def test_it_follows_the_schema_of_today(kind, pattern, unpacked):
+    schema = stored(SCHEMAS[kind])
+    found = list(unpacked.rglob(pattern))
+    assert len(found) >= len(RESULTS)
+    for path in found:
+        jsonschema.validate(stored(path), schema)
+
+
+def test_an_error_follows_the_schema_of_today():
+    jsonschema.validate(stored(KEPT / "error.json"), stored(SCHEMAS["error"]))
+
+
+def broken(then: Any, now: Any, at: str = "") -> list[str]:
+    """The places where a schema of today is more than the one of then with optional fields."""
+    if isinstance(then, dict) and isinstance(now, dict):
+        grows = at.endswith(("/properties", "/$defs"))
+        here = [f"{at}/{key}" for key in now.keys() - then.keys() - {"description"} if not grows]
+        gone = [f"{at}/{key}" for key in then.keys() - now.keys() - {"description"}]
+        both = sorted(then.keys() & now.keys() - {"description", "title"})
+        return (
+            here
+            + gone
+            + [each for key in both for each in broken(then[key], now[key], f"{at}/{key}")]
+        )
+    if at.endswith(("/outcome/enum", "/visible/enum")):
+        return [] if set(then) <= set(now) else [at]
+    return [] if then == now else [at]
+
+
+@pytest.mark.parametrize("kind", SCHEMAS)
+def test_a_schema_has_only_gained_optional_fields(kind):
+    assert broken(stored(KEPT / f"{kind}.schema.json"), stored(SCHEMAS[kind])) == []
+
+
+def test_what_a_reader_relies_on_cannot_go_unnoticed():
+    then = stored(KEPT / "result.schema.json")
+    for change in (
+        lambda now: now["properties"].pop("score"),
+        lambda now: now["required"].append("provenance"),
+        lambda now: now["required"].remove("run"),
+        lambda now: now["$defs"]["verdict"]["properties"]["status"]["enum"].append("half"),
+        lambda now: now["$defs"]["run"]["properties"]["outcome"]["enum"].remove("killed"),
+        lambda now: now["properties"]["score"].update(type="string"),
+        lambda now: now["properties"]["exercise"].update(maxLength=8),
+    ):
+        now = stored(KEPT / "result.schema.json")
+        change(now)
+        assert len(broken(then, now)) == 1
+    now = stored(KEPT / "result.schema.json")
+    now["properties"]["more"] = {"type": "string", "description": "new, and optional"}
+    now["$defs"]["run"]["properties"]["outcome"]["enum"].append("new")
+    assert broken(then, now) == []
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
+
+
+@pytest.fixture
+def kept_class(unpacked, tmp_path) -> Path:
+    return Path(shutil.copytree(unpacked / "class", tmp_path / "class"))
+
+
+def regrade(kept_class: Path, rubric: str, *words: str) -> int:
+    exercise = ["--exercise", str(KEPT / rubric), "--jobs", "1"]
+    return main(["batch", "--regrade", str(kept_class), *exercise, *words])
+
+
+def test_its_own_rubric_changes_nothing_in_a_class(kept_class):
+    assert regrade(kept_class, "before.yaml") == 0
+    assert rows(kept_class / "regrade" / "changes.csv") == []
+
+
+def test_a_changed_rubric_changes_what_it_says_and_nothing_else(kept_class):
+    assert regrade(kept_class, "after.yaml", "--apply") == 0
+    changes = rows(kept_class / "regrade" / "changes.csv")
+    told = {(row["id"], row["check"]): row["check_change"] for row in changes}
+    assert told == {
+        ("anna", "sides"): "-25",  # 2 m, where 3 m are asked for
+        ("anna", "returns"): "-5",
+        ("chen", "sides"): "30",
+        ("chen", "returns"): "-5",
+        ("chen", "Handed in late"): "-2",
+    }
+    finals = {row["id"]: float(row["final"]) for row in rows(kept_class / "gradebook.csv")}
+    assert finals == {"anna": 55, "ben": 0, "chen": 81, "dora": 0}
