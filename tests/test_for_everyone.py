@@ -20,7 +20,8 @@ from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.result.error import ErrorResult
 from grader_robots.scene.driving import drive as drive_robot
-from tests.browser import needs_browser, obstacles, open_browser
+from tests.barriers import barriers
+from tests.browser import needs_browser, open_browser
 from tests.grader.batch.page.classes import entry, result
 from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in
 from tests.grader.driving import Spiral, drive
@@ -124,11 +125,32 @@ def browser():
 def test_nothing_stands_in_anybodys_way(made, browser, tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made(tmp_path / "of"), encoding="utf-8")
-    page = browser.new_page()
-    for width in (375, 1280):
-        page.set_viewport_size({"width": width, "height": 900})
-        page.goto(path.as_uri())
-        page.wait_for_load_state()
-        assert obstacles(page) == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page = browser.new_page(reduced_motion="reduce")
+    page.goto(path.as_uri())
+    assert barriers(page) == []
     page.close()
+
+
+FAULTY = {
+    "": "<button>Go</button> <a href='#go'>there</a>",
+    "no focus seen": "<style>a:focus { outline: 2px solid #ddd }</style><a href='#go'>there</a>",
+    "covered": "<p style='position: fixed; inset: 0; background: #fff'></p><button>Go</button>",
+    "never comes to": "<button onkeydown='event.preventDefault()'>Go</button><button>On</button>",
+    "scrolls sideways": "<p style='width: 700px'>much</p>",
+    "faint": "<label>a <input type='text' style='border: 1px solid #ddd'></label>",
+    "cut": "<p style='height: 1.2em; width: 150px; overflow: hidden'>a little too much</p>",
+    "target-size": "<button aria-label='a' style='padding: 0; width: 9px'></button>" * 2,
+    "label-content-name-mismatch": "<button aria-label='One tick'>back</button>",
+    "it moves": "<style>p { animation: k 9s } @keyframes k { to { margin: 0 } }</style><p>x</p>",
+}
+
+
+@pytest.mark.more("it tries the trial: what nobody changes with a page")
+@pytest.mark.parametrize("fault", FAULTY)
+def test_a_barrier_of_each_kind_is_found(fault, browser):
+    page = browser.new_page(reduced_motion="reduce")
+    body = f"<title>t</title><main><h1>t</h1>{FAULTY[fault]}</main>"
+    page.set_content(f"<!DOCTYPE html><html lang='en'>{body}</html>")
+    found = barriers(page)
+    page.close()
+    assert [each for each in found if fault in each] if fault else found == []

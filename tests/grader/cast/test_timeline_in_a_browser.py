@@ -27,6 +27,7 @@ from grader.reports.page import html
 from grader.scenes.live import Grading
 from grader.translations import ENGLISH, use
 from tests import runs
+from tests.barriers import barriers
 from tests.browser import WIDTHS, clipped, cut_off, english, needs_browser, obstacles, open_browser
 from tests.grader.exercise.expect.traces import endpoint, event, line, text, trace
 from tests.grader.reports import samples
@@ -200,13 +201,13 @@ def test_another_recording_is_there_for_comparison(
 
 @pytest.mark.parametrize("width", others_are_more("the narrowest stands for all", WIDTHS, 320))
 def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: int) -> None:
-    page = visit((folder / "en.html").as_uri(), width)
+    page = visit((folder / "en.html").as_uri(), width, reduced_motion="reduce")
     for button in page.locator("#runs button").all()[:2]:
         button.click()
         go(page, 3.0)
         assert cut_off(page) == []
         assert page.evaluate("document.documentElement.scrollWidth") <= width
-        assert obstacles(page) == []
+    assert barriers(page) == []
     assert clipped(page) == {}
 
 
@@ -266,6 +267,12 @@ def test_who_looks_back_stays_there_while_it_grows(live: TimelinePage, visit: An
     page.keyboard.press("End")
     page.wait_for_selector(f"{CURRENT}:has-text('<b> 12')")
     assert page.locator("main b, main script").count() == 0
+    page.check("#hold")
+    live.hear([news(7.0, 6.0)])
+    visit(live.address).wait_for_selector("html[data-time='7']")
+    assert page.get_attribute("html", "data-time") == "6"
+    page.uncheck("#hold")
+    page.wait_for_selector("html[data-time='7']")
     live.begin()
     page.wait_for_selector("html[data-time='0']")
     assert page.locator(ROWS).count() == 0
@@ -278,7 +285,7 @@ def test_nobody_is_kept_from_looking_on(live: TimelinePage, visit: Any, width: i
     page = visit(live.address, width, locale="en-GB")
     page.wait_for_selector("html[data-time='10']")
     assert cut_off(page) == []
-    assert obstacles(page) == []
+    assert barriers(page) == []
     assert clipped(page) == {}
     page.select_option("#language", "fr")
     page.wait_for_selector(

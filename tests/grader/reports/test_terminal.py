@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 
 import pytest
@@ -148,3 +149,12 @@ def test_a_submission_cannot_speak_to_the_runner_of_a_ci_system():
 
 def test_flags_of_the_run_are_notes():
     assert "Note: seen twice" in shown(samples.result(run=samples.run(flags=["seen twice"])))
+
+
+def test_colours_say_nothing_that_the_words_do_not():
+    report = samples.report(verdict("a"), verdict("b", "failed", 0))
+    coloured, plain = io.StringIO(), io.StringIO()
+    for file, system in ((coloured, "standard"), (plain, None)):
+        terminal.show(report, Console(file=file, width=100, color_system=system))
+    assert "\x1b[3" in coloured.getvalue()
+    assert re.sub(r"\x1b\[[0-9;]*m", "", coloured.getvalue()) == plain.getvalue()

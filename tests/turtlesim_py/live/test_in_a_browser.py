@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import expect
 from std_srvs.srv import Trigger
 
+from tests.barriers import barriers
 from tests.browser import (
     WIDTHS,
     clipped,
@@ -235,13 +236,30 @@ def png_of(canvas: Canvas) -> str:
 
 
 def test_what_there_is_can_be_explored_and_nobody_is_kept_out(browser, page):
-    person = Person(browser, page.address)
+    person = Person(browser, page.address, reduced_motion="reduce")
     explore(person)
     person.page.click("#services button:text-is('/seen/clear')")
     person.page.click("#detail button:text-is('Call')")
     expect(person.page.locator("#detail pre")).to_have_text("{}")
-    assert obstacles(person.page) == []
+    assert barriers(person.page) == []
     person.leave()
+
+
+def test_the_page_can_be_held_still_and_then_shows_what_there_is(browser, page):
+    person, other = Person(browser, page.address), Person(browser, page.address)
+    person.page.check("#hold")
+    row = person.page.locator("#turtles tr").first
+    shown = row.inner_text()
+    person.page.focus("#pad")
+    person.page.keyboard.press("ArrowRight")
+    other.sees_called("turning -2.000 rad/s")
+    other.rests()
+    assert row.inner_text() == shown
+    person.page.uncheck("#hold")
+    expect(row).not_to_have_text(shown)
+    person.sees_called("turning -2.000 rad/s")
+    for each in (person, other):
+        each.leave()
 
 
 def explore(person: Person) -> None:

@@ -8,7 +8,7 @@ import { t } from "./language.js";
 import { Marks } from "./marks.js";
 import { LIVE, Rosbridge } from "./rosbridge.js";
 import { TurtleWindow } from "./window.js";
-import { tellCalls, tellCallsAgain, tellTurtles } from "./words.js";
+import { MOST_CALLS, tellCalls, tellCallsAgain, tellTurtles } from "./words.js";
 
 const element = (id) => document.getElementById(id);
 
@@ -24,9 +24,9 @@ let hasLooked = false;
 let calls = [];
 let told = Promise.resolve();
 
-/** Draw once for each picture of the screen, however much has come. */
+/** Draw once for each picture of the screen, however much has come; nothing while it is held. */
 function showSoon() {
-  if (isDue) return;
+  if (isDue || element("hold").checked) return;
   isDue = true;
   requestAnimationFrame(() => {
     isDue = false;
@@ -67,7 +67,7 @@ async function take(news) {
     view.turtles = news.turtles;
     controls.meet(news.turtles.map((turtle) => turtle.name));
   }
-  calls.push(...(news.calls || []));
+  calls = [...calls, ...(news.calls || [])].slice(-MOST_CALLS);
   showSoon();
 }
 
@@ -118,6 +118,7 @@ for (const id of ["show-grid", "show-quadrants", "show-names"]) {
     marks.show(view.turtles);
   });
 }
+element("hold").addEventListener("change", showSoon);
 element("refresh").addEventListener("click", () => explorer.look());
 offerLanguages(element("language"), sayAgain);
 element("pad").focus({ preventScroll: true });

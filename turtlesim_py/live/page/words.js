@@ -3,7 +3,7 @@
 import { language, number, t } from "./language.js";
 import { SIZE_M } from "./window.js";
 
-const MOST_CALLS = 60;
+export const MOST_CALLS = 60;
 const cells = (row, texts) => row.replaceChildren(...texts.map((text) => {
   const cell = document.createElement("td");
   if (text instanceof Node) cell.append(text); else cell.textContent = text;

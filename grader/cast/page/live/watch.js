@@ -19,6 +19,7 @@ let grading = null;
 let isLost = false;
 let isDue = false;
 const timeline = new Timeline(element, look);
+element("hold").addEventListener("change", showSoon);
 element("slider").addEventListener("input", () => look(element("slider").valueAsNumber));
 
 /** Look at a moment; at the end it follows what comes. */
@@ -27,8 +28,9 @@ function look(time) {
   showSoon();
 }
 
+/** Draw once for each picture of the screen; nothing while it is held. */
 function showSoon() {
-  if (isDue) return;
+  if (isDue || element("hold").checked) return;
   isDue = true;
   requestAnimationFrame(() => {
     isDue = false;

@@ -13,6 +13,7 @@ from grader.recording.recording import Recordings
 from grader.recording.subject import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.translations import ENGLISH, use
+from tests.barriers import barriers
 from tests.browser import (
     WIDTHS,
     clipped,
@@ -259,7 +260,17 @@ def test_two_ways_lie_over_each_other_and_are_told_apart_by_more_than_colour(vis
 
 
 def test_nobody_is_kept_out(visit):
-    assert obstacles(visit("#tick=120")) == []
+    assert barriers(visit("#tick=120", reduced_motion="reduce")) == []
+
+
+def test_keys_that_a_reader_needs_elsewhere_move_nothing(visit):
+    page = visit("#tick=120")
+    for key in (" ", ".", ","):
+        page.keyboard.press(key)
+    page.locator("#calls button").first.focus()
+    page.keyboard.press(".")
+    assert "tick 120 of" in page.inner_text("#time")
+    assert "Play" in page.inner_text("#play")
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,8 @@ export class Transport {
     element("play").addEventListener("click", () => this.toggle());
     element("back").addEventListener("click", () => this.step(-1));
     element("forth").addEventListener("click", () => this.step(1));
-    document.addEventListener("keydown", (event) => this.onKey(event));
+    // not of the whole page: a key that a reader's own tools use would move the cursor
+    element("transport").addEventListener("keydown", (event) => this.onKey(event));
   }
 
   onKey(event) {
