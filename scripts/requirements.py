@@ -11,7 +11,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-# Needs newer packages than our lower bounds; only tests/examples uses it.
+# Needs newer packages than our lower bounds; only what `make test-lowest` leaves out uses it.
 NOT_AT_LOWEST = ("check-jsonschema",)
 
 
