@@ -193,6 +193,8 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
     """Merge edited values into the original; every key must exist there, with a like value."""
     merged = {**original, **edited}
     for part in ("limits", "tolerances", "varied_runs"):
+        if part not in merged:
+            continue
         known, given = original.get(part) or {}, edited.get(part, {})
         is_dict = isinstance(given, dict)
         expect(is_dict, (part,), "expected names with numbers, found {found}", given)

@@ -7,7 +7,7 @@ import yaml
 
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
-from grader.exercise.places import names
+from grader.exercise.places import installed, names
 from tests.grader.testing import exercises
 
 NAME = "turtlesim_challenge"
@@ -47,6 +47,13 @@ def test_the_same_seed_gives_the_same_starts():
     assert exercise.starts() == exercise.starts()
     assert exercise.starts(1) != exercise.starts(2)
     assert len(exercise.starts()) == exercise.varied.count
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_copy_of_an_installed_exercise_is_that_exercise(tmp_path, name):
+    copy = tmp_path / "rubric.yaml"
+    copy.write_bytes(installed(name).description.read_bytes())
+    assert load_exercise(copy).sha256 == load_exercise(name).sha256
 
 
 @pytest.mark.parametrize(
