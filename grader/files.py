@@ -12,6 +12,7 @@ import errno
 import io
 import os
 import re
+import shutil
 import stat
 import uuid
 from collections.abc import Iterable, Iterator
@@ -150,6 +151,35 @@ def make_folder(folder: Path) -> None:
     """
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
+
+
+@contextlib.contextmanager
+def filling(folder: Path) -> Iterator[Path]:
+    """Yield a path for what fills a new or empty folder, whole or not at all.
+
+    Raises:
+        UsageError: the folder is a file, is not empty, or cannot be written.
+    """
+    with writing(folder):
+        if folder.exists() and not folder.is_dir():
+            raise UsageError(
+                "{folder} is a file; give a new folder, nothing was written", folder=folder
+            )
+        is_new = not folder.exists()
+        if not is_new and any(folder.iterdir()):
+            raise UsageError(
+                "{folder} is not empty; give a new folder, nothing was written", folder=folder
+            )
+        folder.mkdir(parents=True, exist_ok=True)
+        unfinished = folder / f".unfinished.{os.getpid()}"
+        try:
+            yield unfinished
+            for path in unfinished.iterdir():
+                path.rename(folder / path.name)
+        except BaseException:
+            shutil.rmtree(folder if is_new else unfinished, ignore_errors=True)
+            raise
+        unfinished.rmdir()
 
 
 @contextlib.contextmanager

@@ -196,9 +196,12 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.cli.live": GROUND
     | below("grader", "recording", "run", "scenes", "exercise.exercise", "reports")
     | {"grader.result.visible", "turtlesim_py.browser"},
+    # what students and teachers begin with: files
+    "grader.course": GROUND
+    | below("grader", "recording.subject", "exercise", "submission.folder", "submission.manifest"),
     "grader.cli": GROUND
     | RECORDED
-    | below("grader", "__init__", "grading", "judging", "testing", "batch", "cli.live")
+    | below("grader", "__init__", "grading", "judging", "testing", "batch", "course", "cli.live")
     | below("grader", "reports", "run", "submission"),
     # ... and so is the page that plays
     "grader.cli.view": GROUND
