@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from grader.course.kinds import KINDS
+
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)")
@@ -18,22 +20,11 @@ def test_every_link_leads_somewhere(page):
     assert [link for link in links if not (page.parent / link).exists()] == []
 
 
-#: examples/ci/NAME -> what its system is called.
-SYSTEMS = {
-    "github": "GitHub Actions",
-    "gitlab": "GitLab CI",
-    "gradescope": "Gradescope",
-    "classroom50": "Classroom 50",
-    "prairielearn": "PrairieLearn",
-    "autolab": "Autolab",
-    "vpl": "Moodle VPL",
-}
-
-
-def test_the_readme_names_every_ci_system_that_there_are_files_for():
-    assert {path.name for path in (ROOT / "examples/ci").iterdir() if path.is_dir()} == set(SYSTEMS)
+def test_the_readme_names_every_system_that_a_course_can_be_on():
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    assert [name for name in SYSTEMS.values() if name not in readme] == []
+    assert [kind.title for kind in KINDS.values() if kind.title not in readme] == []
+    table = (ROOT / "docs" / "course-ci.md").read_text(encoding="utf-8")
+    assert [name for name in KINDS if f"| `{name}` |" not in table] == []
 
 
 def test_every_file_on_the_way_through_the_code_is_there():

@@ -199,6 +199,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     # what students and teachers begin with: files
     "grader.course": GROUND
     | below("grader", "recording.subject", "exercise", "submission.folder", "submission.manifest"),
+    # files to be written, one of them in Python
+    "grader.course.templates": set(),
     "grader.cli": GROUND
     | RECORDED
     | below("grader", "__init__", "grading", "judging", "testing", "batch", "course", "cli.live")

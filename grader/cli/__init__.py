@@ -50,6 +50,9 @@ VERBS = {
     "new": msg(
         "Write the exercise sheet and the starter package of the challenge, or of another exercise."
     ),
+    "course": msg(
+        "Write the repository of a course that is graded on GitHub, Gradescope or another system."
+    ),
     "batch": msg("Grade a class: find the submissions, grade them in parallel, and compare them."),
     "check-exercise": msg(
         "Try an exercise on its right solutions and mutants: what each check catches, and what "

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.attacks.attacks import MOVES
-from tests.examples.test_ci_examples import CI, Machine
+from tests.grader.course.machine import Machine, scripts
 
 ROOT = Path(__file__).parents[2]
 #: What holds a secret, or leads to one, on some system: by its documentation.
@@ -52,7 +52,7 @@ def test_a_submission_graded_in_ci_sees_no_token(machine: Machine, way: str) -> 
     graded = machine.work / "graded"
     if way == "grade.sh":
         done = machine.bash(
-            CI / "grade.sh", student, machine.work, EXERCISE=str(exercise), **tokens
+            scripts() / "grade.sh", student, machine.work, EXERCISE=str(exercise), **tokens
         )
     else:
         words = ["run", student, "--exercise", exercise, "--out", graded]

@@ -1,0 +1,162 @@
+"""Write the repository of a course that is graded on GitHub, Gradescope or another system."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from grader import files, system, text
+from grader.course import repository
+from grader.course.kinds import HAVE_A_CHECK, HAVE_AN_IMAGE, KINDS
+from grader.errors import UsageError
+from grader.exercise import DEFAULT
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
+from grader.exercise.places import installed, names
+from grader.message import msg
+from grader.translations import tr
+
+#: The releases of ROS 2 that PyPI has, as extras of ours.
+RELEASES = ("jazzy", "kilted")
+#: What pip installs: in shells, YAML, JSON, Python and Dockerfiles, quoted, the same text.
+SOURCE = re.compile(r"[\w.+:/@\[\]=~<>!,;#&%?][\w.+:/@\[\]=~<>!,;#&%? -]*", re.ASCII)
+#: The name of an image, as docker takes it.
+IMAGE = re.compile(r"[a-z0-9][\w.:/-]*", re.ASCII)
+DEFAULT_IMAGE = "turtlesim-grader"
+EXPLAINED = msg(
+    "Exercises: {names}. The README.md that is written has the first week's steps; it, and the "
+    "comments in the files, are in English. Nothing is put under git."
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the verb's arguments."""
+    parser.epilog = tr(EXPLAINED.key, names=", ".join(names()))
+    parser.add_argument("what", choices=("new",), help=tr("what to do"))
+    parser.add_argument("folder", type=Path, metavar="DIR", help=tr("a new or empty folder"))
+    parser.add_argument(
+        "--for", dest="kind", required=True, choices=tuple(KINDS), help=tr("the system")
+    )
+    parser.add_argument(
+        "--exercises",
+        nargs="+",
+        default=[DEFAULT],
+        metavar="NAME",
+        help=tr("which ones, in their order (the challenge); the list is below"),
+    )
+    parser.add_argument(
+        "--source",
+        metavar="WHAT",
+        help=tr(
+            "what pip installs there: a git address with a tag, or the path of an unpacked "
+            "release; default: this release, by its name"
+        ),
+    )
+    parser.add_argument(
+        "--ros",
+        choices=RELEASES,
+        default=RELEASES[0],
+        help=tr(
+            "the ROS 2 release of starters and of the grader there ({first})", first=RELEASES[0]
+        ),
+    )
+    parser.add_argument(
+        "--pass-points",
+        type=float,
+        metavar="POINTS",
+        help=tr(
+            "from how many points on the check is green ({kinds}; three fifths of all)",
+            kinds=", ".join(HAVE_A_CHECK),
+        ),
+    )
+    parser.add_argument(
+        "--image",
+        metavar="NAME",
+        help=tr("what the image is called ({kinds})", kinds=", ".join(HAVE_AN_IMAGE)),
+    )
+
+
+def main(args: argparse.Namespace) -> int:
+    """Write it, into a new or empty folder alone.
+
+    Raises:
+        UsageError: an option cannot be used, the folder is not empty, or cannot be written.
+        ExerciseError: there is no such exercise.
+    """
+    kind = KINDS[args.kind]
+    exercises = [load_exercise(installed(name).name) for name in dict.fromkeys(args.exercises)]
+    _check_points(args.kind, args.pass_points, exercises)
+    source = _source(args.source, args.ros)
+    how = repository.Settings(source, args.pass_points, _image(args.kind, args.image), args.ros)
+    with files.filling(args.folder) as copy:
+        repository.write(copy, args.kind, kind, exercises, how)
+    print(tr("The course is in {folder}.", folder=args.folder))
+    print(tr("There, {source} is installed.", source=source))
+    if source.startswith(os.sep):
+        print(tr("That is a path: it has to be the same where it is installed."))
+    print(
+        tr(
+            "Nothing is under git yet: {readme} says what to do, step by step.",
+            readme=repository.README,
+        )
+    )
+    return 0
+
+
+def _check_points(kind: str, points: float | None, exercises: Sequence[Exercise]) -> None:
+    if points is None:
+        return
+    if kind not in HAVE_A_CHECK:
+        raise UsageError(
+            "--pass-points is for {kinds}; {kind} has no check that is green or red",
+            kinds=", ".join(HAVE_A_CHECK),
+            kind=kind,
+        )
+    least = min(exercises, key=lambda exercise: exercise.max_score)
+    if not 0 <= points <= least.max_score:
+        raise UsageError(
+            "--pass-points {points}: expected 0 to {most}, which {exercise} is worth",
+            points=text.number(points),
+            most=text.number(least.max_score),
+            exercise=least.name,
+        )
+
+
+def _image(kind: str, image: str | None) -> str:
+    if image is not None and kind not in HAVE_AN_IMAGE:
+        raise UsageError(
+            "--image is for {kinds}; {kind} needs none", kinds=", ".join(HAVE_AN_IMAGE), kind=kind
+        )
+    if image is not None and not IMAGE.fullmatch(image):
+        raise UsageError(
+            "--image {image}: expected a name such as account/turtlesim-grader", image=repr(image)
+        )
+    return image or DEFAULT_IMAGE
+
+
+def _source(source: str | None, ros: str) -> str:
+    """Return what pip is to install, with ROS; a path is made whole."""
+    if source is None:
+        version = system.grader_version().partition("+")[0]
+        if version == system.UNKNOWN:
+            raise UsageError(
+                "the version of this grader is not known; say with --source what to install"
+            )
+        return f"turtlesim_py[{ros}]=={version}"
+    is_address = "://" in source
+    is_path = not is_address and (source.startswith(".") or os.sep in source)  # as pip sees it
+    if is_path:
+        source = str(Path(source).absolute())
+    if "[" not in source:  # ROS comes by the extra
+        source = f"{source}[{ros}]" if is_path else source
+        source = f"turtlesim_py[{ros}] @ {source}" if is_address and "@ " not in source else source
+    if not SOURCE.fullmatch(source):
+        raise UsageError(
+            "--source {source}: expected what pip installs, without quotes, $ and \\: "
+            "git+https://HOST/PATH.git@TAG, or a path",
+            source=repr(source),
+        )
+    return source

@@ -1,0 +1,141 @@
+"""`grader course new`: the repository of a course."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from grader import system
+from grader.cli import main
+from grader.course.kinds import KINDS
+from grader.exercise.places import names
+
+
+def new(folder: Path, *words: str, kind: str = "github") -> int:
+    return main(["course", "new", str(folder), "--for", kind, *words])
+
+
+def workflow(folder: Path) -> str:
+    (path,) = folder.rglob("grade.yml")
+    return path.read_text(encoding="utf-8")
+
+
+def test_the_challenge_comes_by_itself(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(system, "grader_version", lambda: "1.2.3+jazzy")
+    assert new(tmp_path / "course") == 0
+    assert [path.name for path in (tmp_path / "course" / "templates").iterdir()] == [
+        "turtlesim_challenge"
+    ]
+    assert capsys.readouterr().out.splitlines() == [
+        f"The course is in {tmp_path / 'course'}.",
+        "There, turtlesim_py[jazzy]==1.2.3 is installed.",
+        "Nothing is under git yet: README.md says what to do, step by step.",
+    ]
+    assert 'GRADER_SOURCE: "turtlesim_py[jazzy]==1.2.3"' in workflow(tmp_path)
+    assert 'PASS_POINTS: "60"' in workflow(tmp_path)
+    assert not list(tmp_path.rglob(".git"))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_folder_with_something_in_it_stays_as_it_is(tmp_path, capsys, kind):
+    (tmp_path / "mine.txt").write_text("mine")
+    assert new(tmp_path, kind=kind) == 2
+    assert "is not empty; give a new folder, nothing was written" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_an_unknown_exercise_is_told_with_those_that_there_are(tmp_path, capsys):
+    assert new(tmp_path / "course", "--exercises", "talker", "spiral") == 2
+    said = capsys.readouterr().err
+    assert "there is no exercise 'spiral'" in said
+    assert all(name in said for name in names())
+    assert not (tmp_path / "course").exists()
+
+
+def test_the_help_lists_the_exercises(capsys):
+    with pytest.raises(SystemExit):
+        main(["course", "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert all(name in said for name in names())
+
+
+def test_an_exercise_that_is_named_twice_comes_once(tmp_path):
+    assert new(tmp_path / "course", "--exercises", "talker", "talker", kind="autolab") == 0
+    readme = (tmp_path / "course" / "README.md").read_text()
+    assert readme.count("| `talker` |") == 1
+
+
+def test_kilted_has_its_extra_and_its_names(tmp_path):
+    assert new(tmp_path / "course", "--ros", "kilted") == 0
+    assert "turtlesim_py[kilted]==" in workflow(tmp_path)
+    (starter,) = tmp_path.rglob("turtle_controller.py")
+    assert "turtlesim_msgs" in starter.read_text()
+
+
+@pytest.mark.parametrize(
+    ("said", "installed"),
+    [
+        ("./release", "{here}/release[jazzy]"),
+        ("/opt/release[kilted]", "/opt/release[kilted]"),
+        (
+            "git+https://host.invalid/g.git@v1",
+            "turtlesim_py[jazzy] @ git+https://host.invalid/g.git@v1",
+        ),
+        ("turtlesim_py[kilted]==1.0", "turtlesim_py[kilted]==1.0"),
+    ],
+)
+def test_a_source_is_given_whole_and_with_ros(tmp_path, capsys, monkeypatch, said, installed):
+    monkeypatch.chdir(tmp_path)
+    assert new(tmp_path / "course", "--source", said) == 0
+    assert f'GRADER_SOURCE: "{installed.format(here=tmp_path)}"' in workflow(tmp_path)
+    is_path = "it has to be the same where it is installed" in capsys.readouterr().out
+    assert is_path == installed.startswith(("{", "/"))
+
+
+@pytest.mark.parametrize(
+    "source", ['x"; rm -rf /', "$(id)", "`id`", "--index-url=x", "", "a\nb", "it's", "a\\b"]
+)
+def test_what_would_be_more_than_a_source_is_refused(tmp_path, capsys, source):
+    assert new(tmp_path / "course", f"--source={source}") == 2
+    assert "expected what pip installs" in capsys.readouterr().err
+    assert not (tmp_path / "course").exists()
+
+
+def test_where_the_version_is_unknown_the_source_has_to_be_said(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(system, "grader_version", lambda: system.UNKNOWN)
+    assert new(tmp_path / "course") == 2
+    assert "say with --source what to install" in capsys.readouterr().err
+    assert new(tmp_path / "course", "--source", "git+https://host.invalid/g.git@v1") == 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "words", "why"),
+    [
+        ("github", ["--pass-points", "101"], "expected 0 to 100"),
+        ("github", ["--pass-points", "nan"], "expected 0 to 100"),
+        ("autolab", ["--pass-points", "60"], "autolab has no check"),
+        ("gitlab", ["--image", "x"], "gitlab needs none"),
+        ("autolab", ["--image", "A b"], "expected a name such as"),
+    ],
+)
+def test_an_option_that_cannot_be_used_is_told(tmp_path, capsys, kind, words, why):
+    assert new(tmp_path / "course", *words, kind=kind) == 2
+    assert why in capsys.readouterr().err
+    assert not (tmp_path / "course").exists()
+
+
+def test_points_to_pass_and_the_image_are_taken_over(tmp_path):
+    assert new(tmp_path / "a", "--pass-points", "72.5") == 0
+    assert 'PASS_POINTS: "72.5"' in workflow(tmp_path / "a")
+    assert new(tmp_path / "b", "--image", "ada/grader:1", kind="prairielearn") == 0
+    (info,) = (tmp_path / "b").rglob("info.json")
+    assert re.search('"image": "ada/grader:1"', info.read_text())
+
+
+def test_sheets_are_in_the_teacher_s_language_and_steps_in_english(tmp_path):
+    assert main(["course", "new", str(tmp_path / "c"), "--for", "autolab", "--lang", "fr"]) == 0
+    assert "## The first week" in (tmp_path / "c" / "README.md").read_text()
+    sheet = tmp_path / "c" / "starters" / "turtlesim_challenge" / "README.md"
+    assert "Comment l'essayer" in sheet.read_text()

@@ -1,0 +1,351 @@
+"""What each system runs of a course, with everything around it imitated.
+
+Most tests use a stub in place of `grader run`; the last ones grade for real.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+import yaml
+
+from grader.exercise.places import installed
+from grader.submission.manifest import naming
+from tests.grader.course.machine import (
+    EXERCISES,
+    FOR_THE_REAL_ONE,
+    Machine,
+    an_error,
+)
+from tests.programs import ROOT
+from tests.tiers import others_are_more
+
+PACKAGE = ROOT / "turtlesim_challenge" / "starter"
+SPIRAL = ROOT / "tests" / "submissions" / "quick_spiral.py"
+
+# Each function runs what the system would run, and returns what became of it: 0 points or more,
+# None where there is no judgement; and what the student can read.
+
+Outcome = tuple[float | None, str]
+UNUSABLE = an_error("submission", 'hand in <one> "file".')
+
+
+@dataclass(frozen=True)
+class HandIn:
+    """What a student hands in, for which exercise, and how the staff has edited that."""
+
+    student: Path
+    exercise: str = EXERCISES[0]
+    rubric: str = ""
+    pass_points: str = ""
+
+
+def on_github(machine: Machine, given: HandIn) -> Outcome:
+    """Its two jobs, step by step, as `bash -e` in the checkout: the hand-in, and what grades it."""
+    template = machine.lay("github", given.rubric) / "templates" / given.exercise
+    checkout = machine.folder / "checkout"
+    shutil.copytree(given.student, checkout)
+    shutil.copytree(template / ".github", checkout / ".github")
+    workflow = yaml.safe_load((checkout / ".github" / "workflows" / "grade.yml").read_text())
+    temp, output, summary = (machine.folder / name for name in ("temp", "output", "summary"))
+    temp.mkdir()
+    env = {key: str(value) for key, value in workflow["env"].items()}
+    env |= {"PASS_POINTS": given.pass_points} if given.pass_points else {}
+    env |= {"GRADER_VENV": str(machine.venv), "RUNNER_TEMP": str(temp)}
+    env |= {"GITHUB_OUTPUT": str(output), "GITHUB_STEP_SUMMARY": str(summary)}
+    codes = [
+        machine.bash("-e", "-c", step["run"], cwd=checkout, **env).returncode
+        for step in workflow["jobs"]["grade"]["steps"]
+        if "run" in step
+    ]
+    code = dict(line.split("=") for line in output.read_text().splitlines())["code"]
+    assert any(codes) == (code not in ("0", "1", "2")), "red is the staff's turn"
+
+    # what the artifact carries into a job without a checkout
+    fresh = machine.folder / "fresh"
+    shutil.copytree(temp / "graded", fresh / "graded")
+    env |= {"CODE": code, "GITHUB_REPOSITORY": "course/student", "GITHUB_SHA": "0" * 40}
+    (step,) = (step for step in workflow["jobs"]["report"]["steps"] if "run" in step)
+    report = machine.bash("-e", "-c", step["run"], cwd=fresh, **env)
+    assert report.returncode == 0, report.stderr
+    asked = (machine.folder / "gh.txt").read_text()
+    title = re.search(r"output\[title\]=(.*)", asked)
+    conclusion = re.search(r"conclusion=(.*)", asked)
+    assert title and conclusion
+    if code in ("0", "1"):
+        junit_score(temp / "graded" / "junit.xml")
+        assert "<html" in (temp / "graded" / "report.html").read_text()
+    wanted = {"0": "success", "1": "failure", "2": "failure"}.get(code, "action_required")
+    assert conclusion[1] == wanted
+    points = re.match(r"([\d.]+)(?: of [\d.]+)? points", title[1])
+    return float(points[1]) if points else None, asked + summary.read_text()
+
+
+def on_gitlab(machine: Machine, given: HandIn) -> Outcome:
+    """Its only job, in the project's folder."""
+    template = machine.lay("gitlab", given.rubric) / "templates" / given.exercise
+    project = machine.folder / "project"
+    shutil.copytree(given.student, project)
+    shutil.copytree(template / ".gitlab", project / ".gitlab")
+    workflow = yaml.safe_load((template / ".gitlab-ci.yml").read_text())
+    env = {key: str(value) for key, value in workflow["variables"].items()}
+    env |= {"PASS_POINTS": given.pass_points} if given.pass_points else {}
+    env |= {"GRADER_VENV": str(machine.venv)}
+    job = workflow["grade"]
+    script = "\n".join([*job["before_script"], *job["script"]])
+    run = machine.bash("-e", "-c", script, cwd=project, **env)
+    if run.returncode < 2:
+        junit_score(project / job["artifacts"]["reports"]["junit"])
+    if run.returncode == job["retry"]["exit_codes"]:
+        return None, run.stderr
+    points = re.findall(job["coverage"].strip("/"), run.stdout, re.MULTILINE)
+    return float(points[-1]), run.stdout + run.stderr
+
+
+def on_gradescope(machine: Machine, given: HandIn) -> Outcome:
+    """A tree like /autograder, with the zip that `make` packs; setup.sh has been run."""
+    laid = machine.lay("gradescope", given.rubric)
+    assert machine.bash("-c", "make", cwd=laid).returncode == 0
+    root = machine.folder / "autograder"
+    with zipfile.ZipFile(laid / "build" / f"{given.exercise}-autograder.zip") as packed:
+        packed.extractall(root / "source")
+    shutil.copytree(given.student, root / "submission")
+    setup = machine.bash(root / "source" / "setup.sh", AUTOGRADER_ROOT=str(root))
+    assert "already" in setup.stdout, setup.stderr
+    run = machine.bash(root / "source" / "run_autograder", AUTOGRADER_ROOT=str(root))
+    result = json.loads((root / "results" / "results.json").read_text())
+    known = {"score", "execution_time", "output", "output_format", "tests", "extra_data"}
+    assert set(result) <= known | {"test_output_format", "test_name_format"}
+    assert result["output_format"] in ("text", "html")
+    for test in result.get("tests", []):
+        assert test["status"] in ("passed", "failed")
+    failed = result.get("extra_data") == {"grader_failed": True}
+    assert failed == (run.returncode != 0)
+    if failed:
+        assert result["score"] == 0
+    return None if failed else result["score"], result["output"]
+
+
+def on_classroom50(machine: Machine, given: HandIn) -> Outcome:
+    """The bundle, and the student's checkout as working folder."""
+    laid = machine.lay("classroom50", given.rubric)
+    bundle = laid / "autograders" / given.exercise.replace("_", "-")
+    student = given.student
+    url = "https://host.invalid/"
+    names = {
+        "CLASSROOM": "ros",
+        "ASSIGNMENT": bundle.name,
+        "ASSIGNMENT_TYPE": "individual",
+        "OWNER": "alice",
+        "SUBMISSION_TAG": "submit/2026-06-01T14-32-05Z-a1b2c3d",
+        **{name: url + name for name in ("COMMIT_URL", "RELEASE_URL", "REVIEW_URL")},
+    }
+    run = subprocess.run(
+        [sys.executable, bundle / "autograder.py"],
+        cwd=student,
+        env=machine.env | names,
+        capture_output=True,
+        text=True,
+    )
+    if run.returncode != 0:
+        assert not (student / "result.json").exists()
+        return None, run.stderr
+    result = json.loads((student / "result.json").read_text())
+    needed = {"schema", "classroom", "assignment", "assignment_type", "owner", "submission"}
+    needed |= {"commit", "release", "review", "datetime", "score", "max-score", "tests"}
+    assert needed <= set(result) <= needed | {"graded_at", "submitted_by"}
+    assert result["schema"] == "classroom50/result/v1"
+    assert result["score"] == sum(test["score"] for test in result["tests"])
+    assert result["max-score"] == sum(test["max-score"] for test in result["tests"])
+    assert all(type(test[key]) is int for test in result["tests"] for key in ("score", "max-score"))
+    assert all(type(test["passed"]) is bool and test["test-name"] for test in result["tests"])
+    return result["score"], (student / "release-body.md").read_text()
+
+
+def on_prairielearn(machine: Machine, given: HandIn) -> Outcome:
+    """A tree like /grade, in the image: the student's zip, the question's tests."""
+    laid = machine.lay("prairielearn", given.rubric)
+    root = machine.folder / "grade"
+    shutil.copytree(laid / "questions" / given.exercise / "tests", root / "tests")
+    if (given.student / "does.sh").exists():  # the stub does not unpack
+        shutil.copytree(given.student, root / "student")
+    else:
+        (root / "student").mkdir()
+        shutil.make_archive(str(root / "student" / "solution"), "zip", given.student)
+    image = laid / "image"
+    run = machine.bash(
+        image / "prairielearn.sh", GRADE_ROOT=str(root), GRADER_SCRIPTS=str(image), EXERCISE=""
+    )
+    file = root / "results" / "results.json"
+    assert file.exists() == (run.returncode == 0)
+    if run.returncode != 0:
+        return None, run.stderr
+    result = json.loads(file.read_text())
+    if not result["gradable"]:
+        return 0, result["format_errors"]
+    return result["score"] * 100, result["message"]
+
+
+def on_autolab(machine: Machine, given: HandIn) -> Outcome:
+    """A folder with Makefile and tar file, out of the assessment's tarball, and a zip."""
+    laid = machine.lay("autolab", given.rubric)
+    script = laid / "labs" / given.exercise / "autograde.sh"
+    is_stub = (given.student / "does.sh").exists()
+    if is_stub:  # it does not unpack
+        script.write_text(script.read_text().replace("handed_in=handin.zip", "handed_in=handin"))
+    assert machine.bash("-c", "make", cwd=laid).returncode == 0
+    assessment = machine.folder / "imported"
+    with tarfile.open(laid / "build" / f"{given.exercise}.tar") as packed:
+        assert packed.next().name == given.exercise  # type: ignore[union-attr]
+        packed.extractall(assessment, filter="data")
+    settings = yaml.safe_load((assessment / given.exercise / f"{given.exercise}.yml").read_text())
+    assert (assessment / given.exercise / settings["general"]["handout"]).is_file()
+    place = machine.folder / "autolab"
+    place.mkdir()
+    shutil.copy(assessment / given.exercise / "autograde.tar", place)
+    shutil.copy(assessment / given.exercise / "autograde-Makefile", place / "Makefile")
+    if is_stub:
+        shutil.copytree(given.student, place / "handin")
+    else:
+        name = Path(settings["general"]["handin_filename"])
+        shutil.make_archive(str(place / name.stem), "zip", given.student)
+    run = machine.bash("-c", "make", cwd=place, GRADER_SCRIPTS=str(laid / "image"), EXERCISE="")
+    if run.returncode != 0:
+        assert "scores" not in run.stdout
+        return None, run.stderr
+    scores = json.loads(run.stdout.splitlines()[-1])["scores"]
+    return sum(scores.values()), run.stdout + run.stderr
+
+
+def on_vpl(machine: Machine, given: HandIn) -> Outcome:
+    """First the one script, among all files, then what that has written, without the activity's."""
+    laid = machine.lay("moodle-vpl", given.rubric)
+    place = machine.folder / "vpl"
+    shutil.copytree(given.student, place)
+    activity = laid / "activities" / given.exercise
+    shutil.copytree(activity, place, dirs_exist_ok=True)
+    assert machine.bash(place / "vpl_evaluate.sh", cwd=place).returncode == 0
+    for file in activity.iterdir():
+        (place / file.name).unlink()
+    run = machine.bash("vpl_execution", cwd=place, GRADER_SCRIPTS=str(laid / "jail"), EXERCISE="")
+    grades = re.findall(r"^Grade :=>> (.*)$", run.stdout, re.MULTILINE)
+    return float(grades[0]) if grades else None, run.stdout
+
+
+def junit_score(file: Path) -> float:
+    suite = ElementTree.parse(file).getroot().find("testsuite")
+    assert suite is not None
+    (score,) = (p.get("value") for p in suite.iter("property") if p.get("name") == "score")
+    return float(str(score))
+
+
+System = Callable[[Machine, HandIn], Outcome]
+SYSTEMS: list[System] = [
+    *(on_github, on_gitlab, on_gradescope, on_classroom50),
+    *(on_prairielearn, on_autolab, on_vpl),
+]
+
+
+def by_systems(*kept: System, reason: str) -> pytest.MarkDecorator:
+    """Each of them; in `make test` those that are kept."""
+    systems = others_are_more(reason, SYSTEMS, *kept)
+    return pytest.mark.parametrize("system", systems, ids=lambda system: system.__name__)
+
+
+each_system = by_systems(*SYSTEMS, reason="")
+
+
+def worth(system: System) -> float:
+    """17.5 points, as that system writes them."""
+    return 18 if system is on_classroom50 else 17.5  # which has whole points
+
+
+#: Of what the script for all of them decides.
+one_system = by_systems(SYSTEMS[0], reason="that the points arrive is proven of each system")
+
+
+@each_system
+def test_the_points_arrive_of_the_exercise_that_the_staff_has_set(
+    machine: Machine, system: System
+) -> None:
+    """Whatever the hand-in names, and whatever file of a rubric's name lies in it."""
+    other, exercise = EXERCISES
+    student = machine.submission("exit 0")
+    text = (PACKAGE / "package.xml").read_text()
+    (student / "package.xml").write_text(naming(text, other, is_manifest=True))
+    (student / "rubric.yaml").write_bytes(installed(other).description.read_bytes())
+    points, _ = system(machine, HandIn(student, exercise))
+    assert points == worth(system)
+    (rubric,) = machine.seen.iterdir()
+    assert yaml.safe_load(rubric.read_text())["exercise"] == exercise
+
+
+@one_system
+def test_too_few_points_arrive_as_well(machine: Machine, system: System) -> None:
+    points, _ = system(machine, HandIn(machine.submission("exit 1")))
+    assert points == worth(system)
+
+
+@by_systems(*SYSTEMS[:3], reason="how others are told of points is proven by those that arrive")
+def test_an_unusable_submission_has_no_points_and_says_why(
+    machine: Machine, system: System
+) -> None:
+    points, said = system(machine, HandIn(machine.submission(UNUSABLE)))
+    assert points == 0
+    assert 'hand in <one> "file".' in said.replace("\\", "")
+
+
+@one_system
+def test_nobody_gets_points_from_a_failure(machine: Machine, system: System) -> None:
+    does = "echo 'Grade :=>> 100'; echo '{\"scores\": {\"moves\": 5}}'; echo 'Points: 100'; exit 3"
+    points, said = system(machine, HandIn(machine.submission(does)))
+    assert points is None
+    assert "not your fault" in said
+
+
+@one_system
+def test_a_mistake_of_the_staff_is_no_judgement(machine: Machine, system: System) -> None:
+    rubric = f"{FOR_THE_REAL_ONE}points: [nonsense\n"
+    points, _ = system(machine, HandIn(machine.submission("exit 0"), rubric=rubric))
+    assert points is None
+
+
+# With the real grader
+
+
+a_real_system = by_systems(
+    SYSTEMS[0], reason="the stub proves the system's own part, one system the real grader's"
+)
+
+
+@a_real_system
+def test_a_real_submission_is_graded(system: System) -> None:
+    """A run that is cut short."""
+    data: dict[str, Any] = {
+        "exercise": "turtlesim_challenge",
+        "title": "Short",
+        "limits": {"first_motion_s": 3, "rest_s": 1, "total_s": 3},
+        "varied_runs": {"count": 0},
+        "points": {"moves": 5},
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        machine = Machine(Path(folder) / system.__name__, real=True)
+        student = machine.folder / "student"
+        student.mkdir()
+        shutil.copy(SPIRAL, student / "turtle_controller.py")
+        given = HandIn(student, rubric=yaml.safe_dump(data), pass_points="5")
+        points, said = system(machine, given)
+        assert points, said
