@@ -149,7 +149,7 @@ def _source(source: str | None, ros: str) -> str:
     is_address = "://" in source
     is_path = not is_address and (source.startswith(".") or os.sep in source)  # as pip sees it
     if is_path:
-        source = str(Path(source).absolute())
+        source = str(Path(source).resolve())
     if "[" not in source:  # ROS comes by the extra
         source = f"{source}[{ros}]" if is_path else source
         source = f"turtlesim_py[{ros}] @ {source}" if is_address and "@ " not in source else source

@@ -23,6 +23,7 @@ DOT = "dot-"
 IGNORE = "dot-gitignore"
 #: A README is `README` with the kind's `STEPS`, in which `FAILURES` stands.
 README, STEPS, FAILURES = "README.md", "steps.md", "failures.md"
+OTHERS = "The commands below are for the first of them; do the same for each."
 #: The share of an exercise's points from which on a check is green, if nothing else is said.
 PASS_SHARE = 0.6
 
@@ -114,6 +115,7 @@ def _of_course(
         "first": slug,
         "first_name": first.name,
         "first_title": str(first.title),
+        "others": OTHERS if len(slugs) > 1 else "",
         "rubric": kind.rubric.replace(EXERCISE, slug),
         "table": "\n".join(map(_row, exercises, slugs)),
         "questions": ",\n".join(
