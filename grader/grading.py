@@ -301,8 +301,7 @@ def start(
 
     inspects = plans[0].looks_at_package
     if inspects:
-        # Here, since two threads that import different parts of rosbags at once deadlock: Python
-        # ends one of them by a _DeadlockError.
+        # before threads begin: two that import parts of one library at once may deadlock
         load_subject(PACKAGE_SCENE)
     many = min(len(plans) + inspects, max(LEAST_AT_ONCE, math.ceil(cores.share())))
     pool = ThreadPoolExecutor(max_workers=at_once or many)

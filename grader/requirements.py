@@ -15,7 +15,11 @@ from grader.message import msg
 
 #: The module to import, its use, and the requirement for pip, with the bounds of pyproject.toml.
 OPTIONAL = {
-    "rosbags": ("rosbags.rosbag2", msg("recordings are rosbag2 folders"), "rosbags>=0.11.9,<0.12"),
+    "backports.zstd": (
+        "backports.zstd",
+        msg("recordings are compressed with it"),
+        "backports.zstd>=1",
+    ),
     "distributed": (
         "distributed",
         msg("--scheduler speaks to a dask cluster with it"),
@@ -47,7 +51,7 @@ def require(package: str, load: bool = True) -> None:
             raise ImportError(name=package)
     except ImportError as error:
         found = error.name or package
-        is_package = found.partition(".")[0] == package
+        is_package = found.partition(".")[0] == package.partition(".")[0]
         missing = (
             package
             if is_package

@@ -77,7 +77,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     **dict.fromkeys(GROUND, GROUND),
     # a library of its own
     "grader.rosidl": below("grader", "message", "errors"),
-    "grader.recording": GROUND,
+    "grader.recording": GROUND | {"grader.rosidl.bag_types"},
     "grader.scenes": GROUND | {"grader.recording", "grader.scenes.live"},
     # the page of runs is served as the simulator's is
     "grader.scenes.live": GROUND

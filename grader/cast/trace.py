@@ -16,6 +16,7 @@ from typing import Any, Final, NamedTuple
 from grader import strict_json
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage
+from grader.rosidl.bag_types import BagTypes
 from grader.rosidl.cdr import string, string_of
 from grader.scenes.scene import STEP_NS
 
@@ -104,25 +105,11 @@ class CastTrace:
 
     def values(self, message: SentMessage) -> Any:
         """Return the values of a message as plain data: objects with fields, lists, numbers."""
-        return plain(self._types.deserialize_cdr(message.data, message.type))
+        return self._types.values(message.data, message.type)
 
     @cached_property
-    def _types(self) -> Any:
-        from grader.recording.bag import types_of  # not before a run: rosbags imports slowly
-
-        return types_of(self.definitions)
-
-
-def plain(value: Any) -> Any:
-    """Return a message, or a value of one, as plain data."""
-    fields = getattr(value, "__dataclass_fields__", None)
-    if fields is not None:
-        return {n: plain(getattr(value, n)) for n in fields if n != "__msgtype__"}
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    if isinstance(value, (list, tuple)):
-        return [plain(each) for each in value]
-    return list(value) if isinstance(value, bytes) else value
+    def _types(self) -> BagTypes:
+        return BagTypes(self.definitions)
 
 
 # A bag ----------------------------------------------------------------------------------------

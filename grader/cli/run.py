@@ -126,9 +126,7 @@ def main(args: argparse.Namespace) -> int:
 
         fork_servers.warm()  # they import meanwhile
     from grader.cli import grade_one
-    from grader.requirements import require
 
-    require("rosbags", load=False)  # if it is missing, refuse now, not when a run is saved
     grade = grade_one.grade
     if args.watch:
         from grader.cli import watch
@@ -136,6 +134,8 @@ def main(args: argparse.Namespace) -> int:
         grade = watch.grade_each_save
     if not args.live:
         return grade(args, None)
+    from grader.requirements import require
+
     require("websockets")
     from grader.cli.live import Live
 

@@ -12,20 +12,16 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
 import yaml
-from rosbags.rosbag2.storage_mcap import McapReader
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
-from grader.recording.channel import Channel, divided
-from grader.recording.mcap import McapWriter
+from grader.recording.channel import Channel
+from grader.recording.mcap import McapWriter, read_mcap
 from grader.recording.subject import Subject, Trace
+from grader.rosidl.bag_types import BagTypes
 
 #: Under whichever ROS a run was made: the bag's definitions are those of Jazzy.
 DISTRO = "jazzy"
@@ -46,7 +42,7 @@ def write(trace: Trace, subject: Subject, folder: Path) -> Path:
     Raises:
         OSError: it cannot be written, e.g. because the disk is full.
     """
-    types = types_of(subject.definitions_of(trace))
+    types = BagTypes(subject.definitions_of(trace))
     folder.mkdir(parents=True)
     mcap = folder / f"{folder.name}.mcap"
     writer = McapWriter(mcap)
@@ -55,9 +51,8 @@ def write(trace: Trace, subject: Subject, folder: Path) -> Path:
 
     def channel(topic: str, kind: str) -> int:
         if topic not in channels:
-            type_hash = types.hash_rihs01(kind)
-            definition, _ = types.generate_msgdef(kind, ros_version=2)
-            number = writer.add_channel(topic, kind, definition, type_hash)
+            type_hash = types.type_hash(kind)
+            number = writer.add_channel(topic, kind, types.definition(kind), type_hash)
             channels[topic] = number, kind, type_hash
         return channels[topic][0]
 
@@ -96,26 +91,6 @@ def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
     except Exception as error:  # where a bag or a message is damaged, its reader may raise anything
         # without the error's repr: for a decoding error that is the whole file
         raise RecordingError(f"{wrong}: {type(error).__name__}: {error!s:.200}") from error
-
-
-def types_of(definitions: Mapping[str, str]) -> Typestore:
-    """Return a typestore of the types that are defined, and of builtin_interfaces.
-
-    rosbags has the types of ROS 2 Jazzy, but importing them lasts longer than a run's verdict: they
-    are built on those of each release before.
-
-    Args:
-        definitions: ROS type -> the text of its .msg; also of the types of its fields.
-    """
-    return _store(tuple(definitions.items()))
-
-
-@cache  # the code that (de)serializes a type is compiled once a store
-def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
-    types = get_typestore(Stores.EMPTY)
-    for msgtype, text in definitions:
-        types.register(get_types_from_msg(text, msgtype))
-    return types
 
 
 # Writing --------------------------------------------------------------------------------------
@@ -176,20 +151,9 @@ def read_channels(mcap: Path) -> list[Channel]:
 
     Raises:
         ValueError: it is damaged, or is none of ours.
-        Exception: rosbags' and yaml's own.
+        Exception: PyYAML's own.
     """
-    reader = McapReader(mcap)
-    reader.open()
-    try:
-        topics = {c.id: (c.topic, c.msgtype) for c in reader.connections}
-        found = list(reader.messages(reader.connections))
-    finally:
-        reader.close()
-    places = {id: number for number, id in enumerate(topics)}
-    columns = [(time_ns, places[of.id], len(cdr)) for of, time_ns, cdr in found]
-    times_ns, numbers, sizes = np.array(columns, np.int64).reshape(-1, 3).T
-    data = np.frombuffer(b"".join(cdr for _, _, cdr in found), np.uint8)
-    channels = divided(list(topics.values()), times_ns, numbers, sizes, data)
+    channels = read_mcap(mcap)
     _check_metadata(mcap, channels)
     return channels
 

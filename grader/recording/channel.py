@@ -65,7 +65,8 @@ def divided(
     topics: Sequence[tuple[str, str]],
     times_ns: Ints,
     numbers: Ints,
-    sizes: Ints,
+    begins: Ints,
+    ends: Ints,
     data: npt.NDArray[np.uint8],
 ) -> list[Channel]:
     """Divide the messages of a bag, in its order, among their topics.
@@ -73,12 +74,10 @@ def divided(
     Args:
         topics: each with its ROS type.
         numbers: which of the topics each message is of, (n,).
-        sizes: how long the CDR of each is; in `data` one is behind the other, (n,).
+        begins, ends: where in `data` the CDR of each is, (n,).
     """
-    ends = np.cumsum(sizes)
     made = []
     for number, (topic, msgtype) in enumerate(topics):
         rows = np.flatnonzero(numbers == number)
-        begins = ends[rows] - sizes[rows]
-        made.append(Channel(topic, msgtype, times_ns[rows], rows, data, begins, ends[rows]))
+        made.append(Channel(topic, msgtype, times_ns[rows], rows, data, begins[rows], ends[rows]))
     return made

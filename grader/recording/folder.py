@@ -22,9 +22,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from pathlib import Path
-from types import ModuleType
-
-from grader.requirements import require
 
 SCHEMA = "turtlesim-grader/recording/v2"
 NAME = "recording"
@@ -50,15 +47,3 @@ def varied_in(folder: Path) -> set[int]:
     names: Iterable[str] = (path.name for path in folder.glob("varied_*"))
     matches = (re.fullmatch(r"varied_([1-9]\d{0,5})", name) for name in names)
     return {int(match[1]) for match in matches if match}
-
-
-def bag() -> ModuleType:
-    """Import the module that reads and writes bags; late, because rosbags may be missing.
-
-    Raises:
-        GraderFailure: rosbags is missing.
-    """
-    require("rosbags")
-    from grader.recording import bag as module
-
-    return module

@@ -13,7 +13,7 @@ from grader import content, limited, strict_json
 from grader.errors import RecordingError
 from grader.limited import WorkLimits
 from grader.message import Message, msg
-from grader.recording import transfer
+from grader.recording import bag, transfer
 from grader.recording.beside import CastKeeper, apart
 from grader.recording.folder import (
     BAG,
@@ -27,7 +27,6 @@ from grader.recording.folder import (
     PROVENANCE,
     RUN,
     SCHEMA,
-    bag,
     varied_in,
 )
 from grader.recording.observations import Observations
@@ -237,13 +236,12 @@ def _loaded(found: Sequence[_Header]) -> list[Recording]:
 
     Nobody knows how much a bag unpacks to.
     """
-    bags = bag()
 
     def answers() -> Iterator[bytes]:
         for header in found:
             try:
                 kept, end_ns = header.kept, round(header.run.simulated_s * 1e9)
-                trace = bags.read(header.folder / BAG, kept, end_ns)
+                trace = bag.read(header.folder / BAG, kept, end_ns)
                 yield _TRACE + transfer.pack(trace, kept)
             except RecordingError as error:
                 yield _ERROR + json.dumps(error.message.serialise()).encode()

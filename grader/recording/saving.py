@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from grader import content
+from grader.recording import bag
 from grader.recording.beside import together
 from grader.recording.folder import (
     CIRCUMSTANCES,
@@ -25,7 +26,6 @@ from grader.recording.folder import (
     RUN,
     SCENARIO,
     SCHEMA,
-    bag,
     varied_in,
 )
 from grader.recording.recording import Recording, Recordings
@@ -90,7 +90,7 @@ def _put(made: Path, folder: Path) -> None:
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     scene = load_subject(recording.scene)
-    mcap = bag().write(*together(recording.trace, recording.cast, scene), folder)
+    mcap = bag.write(*together(recording.trace, recording.cast, scene), folder)
     run = to_json(recording.run, OURS)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     if recording.provenance is not None:

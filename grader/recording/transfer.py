@@ -53,7 +53,8 @@ def unpack(packed: bytes, subject: Subject) -> Trace:
         data = np.frombuffer(packed, np.uint8, offset=begin + columns.nbytes)
         if (columns["size"] < 0).any() or columns["size"].sum(dtype=object) != len(data):
             raise ValueError("its messages have other lengths")
-        order = (columns["time_ns"], columns["topic"], columns["size"])
+        ends = np.cumsum(columns["size"])
+        order = (columns["time_ns"], columns["topic"], ends - columns["size"], ends)
         channels = divided(head["topics"], *order, data)
         if sum(map(len, channels)) != len(columns):
             raise ValueError("a message is of no topic")

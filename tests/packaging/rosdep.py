@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import re
+import sys
 import tomllib
 import warnings
 from collections.abc import Iterable
@@ -13,8 +15,9 @@ from catkin_pkg.package import parse_package
 
 from .conftest import ROOT
 
-#: rosdep's name for each package that pip knows by another; a key that ends in -pip is not in apt.
+#: pip's name of each package -> rosdep's, which all are in rosdistro's rosdep/, for Ubuntu 24.04.
 KEYS = {
+    "backports-zstd": "libzstd-dev",  # for Python's zstd the C library
     "jinja2": "python3-jinja2",
     "jsonschema": "python3-jsonschema",
     "numpy": "python3-numpy",
@@ -22,12 +25,13 @@ KEYS = {
     "psutil": "python3-psutil",
     "pyyaml": "python3-yaml",
     "rich": "python3-rich",
-    "rosbags": "python3-rosbags-pip",
     "setuptools": "python3-setuptools",
     "websockets": "python3-websockets",
     "xacro": "xacro",
 }
 
+#: Folders of files that students write, or that ROS has itself.
+STUDENTS = {"starter", "reference", "right", "doubles"}
 #: Hides packages from every Python that finds it on its path.
 SITECUSTOMIZE = """
 import sys
@@ -86,6 +90,22 @@ def hide_all_but(folder: Path, names: Iterable[str]) -> Path:
     folder.mkdir()
     (folder / "sitecustomize.py").write_text(SITECUSTOMIZE.format(hidden=sorted(hidden)))
     return folder
+
+
+def imported(package: str) -> set[str]:
+    """The packages of ROS that the modules of one of our packages import."""
+    names: set[str] = set()
+    for path in (ROOT / package).rglob("*.py"):
+        # students' files; what stands for ROS's own
+        if STUDENTS.isdisjoint(path.relative_to(ROOT / package).parts):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Import):
+                    names |= {each.name.partition(".")[0] for each in node.names}
+                elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                    names.add(node.module.partition(".")[0])
+    owners = packages_distributions()
+    pip = {name for name in names if not all(o.startswith("ros-") for o in owners.get(name, []))}
+    return names - pip - sys.stdlib_module_names - {"compression"}
 
 
 def _requires(name: str) -> list[str]:

@@ -1,14 +1,20 @@
-"""A bag as rosbags writes it, with what rosbag2 adds: one message after the other."""
+"""A bag as rosbags writes it, with what rosbag2 adds: one message after the other.
+
+And types and messages as it reads them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.storage_mcap import McapWriter, write_channel, write_string
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
 
 class _Storage(McapWriter):
@@ -57,3 +63,21 @@ class Rosbag2Writer(Writer):
 
 def _with_distro(metadata: str) -> str:
     return metadata.replace("ros_distro: rosbags", "ros_distro: jazzy")
+
+
+def types_of(definitions: Mapping[str, str]) -> Typestore:
+    """Rosbags' types of definitions, as BagTypes are."""
+    types = get_typestore(Stores.EMPTY)
+    for msgtype, text in definitions.items():
+        types.register(get_types_from_msg(text, msgtype))
+    return types
+
+
+def plain(value: Any) -> Any:
+    """A message of rosbags', or a value of one, as plain data."""
+    fields = getattr(value, "__dataclass_fields__", None)
+    if fields is not None:
+        return {n: plain(getattr(value, n)) for n in fields if n != "__msgtype__"}
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    return [plain(each) for each in value] if isinstance(value, list) else value

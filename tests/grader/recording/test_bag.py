@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -15,15 +16,14 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from grader.recording import bag, saving
-from grader.recording.bag import types_of
+from grader.recording import bag, mcap, saving
 from grader.recording.recording import Recording, Recordings
 from grader.rosidl.cdr import serialise
 from grader.rosidl.definitions import Definitions
 from grader.scenes import load_scene
 from grader.scenes.turtlesim import messages as bag_messages
 from tests.grader.driving import drive, pen, twist
-from tests.grader.recording.slow_bag import Rosbag2Writer
+from tests.grader.recording.slow_bag import Rosbag2Writer, types_of
 
 TICK_NS = 16_000_000
 DEFINITIONS = Path(__file__).parents[3] / "interfaces" / "packages" / "turtlesim" / "msg"
@@ -263,8 +263,9 @@ def test_the_real_rclpy_reads_the_messages(folder, recorded):
     assert found == {topic: count for topic, (_, count) in TOPICS.items()}
 
 
-def test_it_is_the_bag_that_rosbags_writes_message_by_message(tmp_path):
+def test_it_is_the_bag_that_rosbags_writes_message_by_message(tmp_path, monkeypatch):
     """Chunks, indices and counts too; a run of three minutes fills several chunks."""
+    monkeypatch.setattr(mcap, "LIBRARY", f"rosbags-{version('rosbags')}")
     scene = load_scene("turtlesim")
 
     def drive_on(tick, pose, arena):

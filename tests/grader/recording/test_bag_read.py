@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from struct import pack
 
 import pytest
 import yaml
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 
-from grader.recording import bag
+from grader.recording import bag, mcap, zstd
 from grader.recording.channel import Channel
 from grader.scenes import load_scene
 from tests.grader.driving import Spiral, drive, twist
@@ -89,3 +90,96 @@ def test_metadata_that_would_make_an_object_makes_none(written, tmp_path):
     mcap.with_name("metadata.yaml").write_text("!!python/object/apply:os.system ['false']")
     with pytest.raises(yaml.YAMLError):
         bag.read_channels(mcap)
+
+
+# What no file of ours holds -----------------------------------------------------------------------
+
+
+def record(kind: int, content: bytes) -> bytes:
+    return pack("<BQ", kind, len(content)) + content
+
+
+def text(*words: str) -> bytes:
+    return b"".join(pack("<I", len(word)) + word.encode() for word in words)
+
+
+def schema(number: int = 1) -> bytes:
+    return record(3, pack("<H", number) + text("std_msgs/msg/String", "ros2msg", "string data"))
+
+
+def channel(number: int = 1, of: int = 1, encoding: str = "cdr") -> bytes:
+    return record(4, pack("<HH", number, of) + text("/chatter", encoding, ""))
+
+
+def message(time_ns: int = 5, of: int = 1) -> bytes:
+    return record(5, pack("<HIQQ", of, 0, time_ns, time_ns) + b"data")
+
+
+def chunk(data: bytes, size: int | None = None, compression: str = "zstd") -> bytes:
+    packed = zstd.compress(data)
+    head = pack("<QQQI", 0, 0, len(data) if size is None else size, 0) + text(compression)
+    return record(6, head + pack("<Q", len(packed)) + packed)
+
+
+def found(folder: Path, *records: bytes, profile: str = "ros2") -> list[Channel]:
+    path = folder / "recording.mcap"
+    inside = record(1, text(profile, "tests")) + b"".join(records) + record(15, bytes(4))
+    path.write_bytes(mcap.MAGIC + inside + record(2, bytes(20)) + mcap.MAGIC)
+    return mcap.read_mcap(path)
+
+
+def test_what_is_made_here_is_read(tmp_path):
+    (one,) = found(tmp_path, chunk(schema() + channel() + message()), chunk(message(6)))
+    assert (one.topic, one.msgtype) == ("/chatter", "std_msgs/msg/String")
+    assert one.times_ns.tolist() == [5, 6]
+    assert list(one.messages()) == [b"data", b"data"]
+
+
+BEGUN = schema() + channel()
+HOSTILE = {
+    "more than may be": ([chunk(BEGUN, size=2**40)], "bytes at most"),
+    "much more, in parts": ([chunk(BEGUN), chunk(b"", size=2**30)], "bytes at most"),
+    "less than it says": ([chunk(BEGUN, size=2**20)], "expected 1048576 bytes compressed"),
+    "more than it says": ([chunk(BEGUN, size=9)], "expected 9 bytes compressed"),
+    "another compression": ([chunk(BEGUN, compression="lz4")], "found 'lz4'"),
+    "none where there is one": ([chunk(BEGUN, compression="")], "damaged|cut off|bytes"),
+    "a chunk that is cut off": ([record(6, bytes(30))], "damaged|cut off"),
+    "a chunk in a chunk": ([chunk(BEGUN + chunk(message()))], "kind 6 stands among"),
+    "messages outside of chunks": ([chunk(BEGUN), message()], "kind 5 stands between"),
+    "an attachment": ([record(9, bytes(50))], "kind 9 stands between"),
+    "a topic of no type": ([chunk(channel())], "has no type"),
+    "a channel twice": ([chunk(BEGUN), chunk(channel())], "is there twice"),
+    "another encoding": ([chunk(schema() + channel(encoding="json"))], "not in CDR"),
+    "a message of no channel": ([chunk(BEGUN + message(of=2))], "of no channel"),
+    "a message too short": ([chunk(BEGUN + record(5, bytes(9)))], "damaged|no channel"),
+    "times that go back": ([chunk(BEGUN + message()), chunk(message(4))], "order of their times"),
+    "a time beyond all": ([chunk(BEGUN + message(2**63))], "damaged"),
+    "a record beyond all": ([chunk(BEGUN + pack("<BQ", 5, 2**64 - 1))], "cut off"),
+    "a name beyond all": ([chunk(record(3, pack("<HI", 1, 2**32 - 1)))], "cut off"),
+    "a name that is no text": ([chunk(record(3, pack("<HI", 1, 2) + b"\xff\xff"))], "utf-8"),
+}
+
+
+@pytest.mark.parametrize("records, why", HOSTILE.values(), ids=HOSTILE.keys())
+def test_what_no_file_of_ours_holds_is_refused(tmp_path, records, why):
+    with pytest.raises(ValueError, match=why):
+        found(tmp_path, *records)
+
+
+def test_a_file_of_another_profile_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="not that of ROS 2"):
+        found(tmp_path, chunk(BEGUN), profile="ros1")
+
+
+def test_a_file_that_is_cut_off_anywhere_is_refused(tmp_path):
+    found(tmp_path, chunk(BEGUN + message()))
+    path = tmp_path / "recording.mcap"
+    whole = path.read_bytes()
+    for end in range(0, len(whole), 3):
+        path.write_bytes(whole[:end])
+        with pytest.raises(ValueError):
+            mcap.read_mcap(path)
+        path.write_bytes(whole[:end] + mcap.MAGIC)
+        if end < len(whole) - len(mcap.MAGIC) - 29 - 4:  # what stands behind the data is not read
+            with pytest.raises(ValueError):
+                mcap.read_mcap(path)

@@ -341,7 +341,7 @@ import sys
 sys.path.insert(0, {str(ROOT)!r})
 from grader.run import fork_servers
 fork_servers.warm()
-print(*sorted({{"numpy", "rosbags", "rclpy", "PIL", "yaml", "rich"}} & set(sys.modules)))
+print(*sorted({{"numpy", "backports", "rclpy", "PIL", "yaml", "rich"}} & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True)
     assert done.stdout == b"\n"

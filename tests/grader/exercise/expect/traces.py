@@ -8,9 +8,9 @@ from grader.cast.trace import CastTrace, SentMessage
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import parse
 from grader.exercise.verdict import Finding
-from grader.recording.bag import types_of
 from grader.recording.recording import Recording, Recordings, Run
 from grader.scenes.scene import STEP_NS
+from tests.grader.recording.slow_bag import types_of
 
 DEFINITIONS = {
     "std_msgs/msg/String": "string data",
