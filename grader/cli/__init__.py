@@ -58,6 +58,9 @@ VERBS = {
         "Try an exercise on its right solutions and mutants: what each check catches, and what "
         "to fix."
     ),
+    "exercises": msg(
+        "List the exercises that are here; add others by their git address, update and remove them."
+    ),
     "servers": msg(
         "Start servers that outlive a call, so that verdicts come sooner; or stop them."
     ),

@@ -14,6 +14,7 @@ from rich.table import Table
 from grader import files
 from grader.cli import say
 from grader.cli.batch import processes
+from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.testing.checking import Progress, check_exercise
 from grader.testing.examination import Examination
@@ -41,20 +42,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Try an exercise; 1 if there is something to fix. See `grader.cli` for other exit codes."""
-    exercise = load_exercise(args.exercise)
-    with _shown(Console(stderr=True, highlight=False), exercise.name) as show:
-        examination = check_exercise(exercise, mutants=args.mutants, jobs=args.jobs, progress=show)
+    examination = tried(load_exercise(args.exercise), args.mutants, args.jobs)
     for path, text in (
         (args.json, json.dumps(examination.to_json(), indent=2, ensure_ascii=False) + "\n"),
         (args.markdown, examination.to_markdown()),
     ):
         if path is not None:
             files.write(path, text)
-    _print(examination, Console(highlight=False))
+    show(examination, Console(highlight=False))
     return int(not examination.is_fine)
 
 
-def _print(examination: Examination, console: Console) -> None:
+def tried(exercise: Exercise, mutants: Path | None = None, jobs: int | None = None) -> Examination:
+    """Try an exercise, and show the progress; raises what `check_exercise` raises."""
+    with _shown(Console(stderr=True, highlight=False), exercise.name) as progress:
+        return check_exercise(exercise, mutants=mutants, jobs=jobs, progress=progress)
+
+
+def show(examination: Examination, console: Console) -> None:
+    """Print what was found."""
     table = Table(
         tr("check"),
         tr("catches"),

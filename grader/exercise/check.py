@@ -8,7 +8,7 @@ that depends on a failed check is not judged, and names that one.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -35,6 +35,7 @@ class Check:
         title: the first line of its docstring.
         rubric: the rest of it: what is measured and how partial credit is computed, for students;
             `{name}` stands for a tolerance, `{name%}` for one in percent.
+        file: the name of the file of the function.
     """
 
     name: str
@@ -42,8 +43,12 @@ class Check:
     function: CheckFunction
     depends_on: tuple[str, ...]
     rubric: Message = NOTHING
+    file: str = ""
 
 
+#: Runs checks in another process: of these runs, the checks that are asked with those that have to
+#: pass before, so many rounds; and whether exceptions are described for the exercise's author.
+Elsewhere = Callable[[Recordings, Mapping[str, Sequence[str]], int, bool], list[Answers]]
 #: Returns the finding of a check by its name; see `grader.exercise.asking.Answers`.
 Ask = Callable[[str], Finding]
 
@@ -53,9 +58,12 @@ class Checks:
 
     Args:
         parts: whose checks come first.
+        elsewhere: runs them where they may not run in a copy of this process; see
+            `grader.exercise.confined`.
     """
 
-    def __init__(self, *parts: Checks) -> None:
+    def __init__(self, *parts: Checks, elsewhere: Elsewhere | None = None) -> None:
+        self.elsewhere = elsewhere
         self._checks: list[Check] = [check for part in parts for check in part]
         self._validators: dict[str, Validator] = {}
 
@@ -64,7 +72,7 @@ class Checks:
 
     def with_words(self, titles: Words, rubrics: Words) -> Checks:
         """Return the checks with titles and rubrics in other languages, by the check's name."""
-        made = Checks()
+        made = Checks(elsewhere=self.elsewhere)
         made._validators = self._validators
         made._checks = [
             replace(
@@ -84,6 +92,24 @@ class Checks:
         """
         self._validators[validate.__name__] = validate
         return validate
+
+    def refuse(self, tolerance: str, why: Message) -> None:
+        """Refuse the value of a tolerance, which was tried elsewhere."""
+
+        def refused(_: object) -> None:
+            raise ValueError(why)
+
+        self._validators[tolerance] = refused
+
+    def add(self, check: Check) -> None:
+        """Add a check after the others.
+
+        Raises:
+            ValueError: its name is taken.
+        """
+        if check.name in {each.name for each in self._checks}:
+            raise ValueError(f"two checks are named {check.name!r}")
+        self._checks.append(check)
 
     def wrong_tolerance(self, tolerances: Tolerances) -> tuple[str, Message] | None:
         """Return the name of the first invalid tolerance, and why; None: all are valid."""
@@ -114,9 +140,7 @@ class Checks:
 
         def register(function: CheckFunction) -> CheckFunction:
             title, _, rubric = (inspect.getdoc(function) or function.__name__).partition("\n")
-            name = function.__name__
-            if name in {check.name for check in self._checks}:
-                raise ValueError(f"two checks are named {name!r}")
+            name, file = function.__name__, Path(function.__code__.co_filename).name
             found = inspect.signature(function)
             try:
                 found.bind(None, None)
@@ -124,7 +148,7 @@ class Checks:
                 what = f"{name}: expected (recordings, tolerances), found {found}"
                 raise TypeError(what) from None
             heading, rest = authored(title.strip().rstrip(".")), authored(rubric.strip())
-            self._checks.append(Check(name, heading, function, tuple(after), rest))
+            self.add(Check(name, heading, function, tuple(after), rest, file))
             return function
 
         return register
@@ -168,6 +192,8 @@ def answers(
     asked = [check for check in checks if check.name in points]
     functions = {check.name: check.function for check in asked}
     after = {check.name: check.depends_on for check in asked}
+    if checks.elsewhere is not None:
+        return checks.elsewhere(recordings, after, rounds, describe is not None)
     return asking.ask(functions, after, recordings, tolerances, describe, rounds)
 
 
@@ -248,7 +274,7 @@ def _failure(check: Check, error: NoFinding) -> Message:
     return msg(
         "the check {check!r} returned what it should not, so nothing was judged: {file}: {error}",
         check=check.name,
-        file=Path(check.function.__code__.co_filename).name,
+        file=check.file,
         error=str(error),
     )
 

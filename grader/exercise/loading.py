@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from grader.errors import ExerciseError
+from grader.errors import CheckFailed, ExerciseError
 from grader.exercise import cases, places, translated
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
@@ -49,10 +49,10 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
     """Load an exercise.
 
     Args:
-        name_or_path: the name of an installed one; else a folder with exercise.yaml and checks.py;
-            or a file *.yaml: an edited copy of the exercise.yaml that it names, which is the one
-            of its own folder or an installed one. What an edited copy leaves out of `limits` and
-            `tolerances` stays as it is in the original.
+        name_or_path: the name of an installed or added one; else a folder with exercise.yaml and
+            checks.py; or a file *.yaml: an edited copy of the exercise.yaml that it names, which is
+            the one of its own folder or an installed one. What an edited copy leaves out of
+            `limits` and `tolerances` stays as it is in the original.
 
     Raises:
         ExerciseError: there is no such exercise, or something in it is wrong; with file and line.
@@ -110,6 +110,8 @@ def _naming(path: Path) -> Iterator[None]:
     """Name the folder or the file of an exercise in an error of it."""
     try:
         yield
+    except CheckFailed:  # of an added exercise, and told as such
+        raise
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
             "{path} is not an exercise: {why}", path=str(path), why=reason(error)

@@ -239,6 +239,15 @@ def provenance(origin: ResultProvenance) -> list[str]:
         found.append(tr("SHA-256 of the submission {sha256}", sha256=sha256))
     sha256 = _short(judged.exercise_sha256)
     found.append(tr("SHA-256 of the exercise {sha256}", sha256=sha256))
+    if (added := judged.exercise_from) is not None:
+        short = {"commit": _short(added.commit), "sha256": _short(added.sha256)}
+        found.append(
+            tr(
+                "The exercise is from {origin}, commit {commit}, SHA-256 of its files {sha256}",
+                origin=str(added),
+                **short,
+            )
+        )
     if recorded is not None and recorded.seed is not None:
         found.append(tr("Seed {seed}", seed=str(recorded.seed)))
     return [text.one_line(sentence) for sentence in found]

@@ -231,6 +231,9 @@ class _Made:
             )
         except (TypeError, KeyError, AttributeError):
             raise Mistake((*keys, "replace"), "expected a list of old and new") from None
+        outside = [e.file for e in changes if {*Path(e.file).parts} & {"/", ".."}]
+        if outside:
+            raise Mistake(keys, "expected a file of the solution, found {file!r}", file=outside[0])
         is_folder = self.of.is_dir()
         if not changes or any(bool(each.file) != is_folder for each in changes):
             raise Mistake(keys, "there is nothing to replace in {path}", path=str(self.of))
@@ -241,14 +244,22 @@ def _right(name: str, words: Any, made: _Made) -> Solution:
     if not isinstance(words, dict):
         return Solution(name, places.locate(made.folder, str(words)), is_right=True)
     keys: Keys = ("right", name)
+    _check_name(name, keys)
     unknown = words.keys() - MADE
     if unknown:
         raise Mistake(keys, "unknown {key!r}", key=min(map(str, unknown)))
     return Solution(name, made.of, is_right=True, changes=made.changes(words, keys))
 
 
+def _check_name(name: str, keys: Keys) -> None:
+    """Refuse a name that is no name of a folder: its solution is laid out there."""
+    if Path(name).name != name:
+        raise Mistake(keys, "expected a name without a path")
+
+
 def _mutant(name: str, words: Any, made: _Made, exercise: Exercise) -> Solution:
     keys: Keys = ("mutants", name)
+    _check_name(name, keys)
     if not isinstance(words, dict) or ("file" in words) != MADE.isdisjoint(words):
         raise Mistake(keys, "expected either `replace` or `file`")
     unknown = words.keys() - {"file", "leaves", "says", *MADE}

@@ -189,6 +189,16 @@ def test_where_there_is_no_starter_the_sheet_comes_with_an_empty_file(tmp_path, 
     ]
 
 
+def test_a_starter_that_does_not_parse_is_told(tmp_path, capsys):
+    exercise = exercises.write(tmp_path / "ahead", starter="begin.py")
+    (exercise / "begin.py").write_text("if:\n")
+    assert main(["new", str(tmp_path / "mine"), "--exercise", str(exercise)]) == 2
+    assert "begin.py cannot be used: reading it finds a mistake" in " ".join(
+        capsys.readouterr().err.split()
+    )
+    assert not (tmp_path / "mine").exists()
+
+
 def test_a_starter_must_be_a_folder_or_a_program(tmp_path):
     exercise = exercises.write(tmp_path / "ahead", starter="exercise.yaml")
     with pytest.raises(ExerciseError, match="starter: expected a folder"):

@@ -1,0 +1,82 @@
+"""Parses the address of an exercise: ADDRESS[@TAG][#FOLDER].
+
+An address is one of https, ssh (also `git@host:path`) or file, or the path of a folder here. What
+may stand in it is listed, for it goes to git, which runs programs for some addresses; and it goes
+into results, so that no password may be in it.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Final
+
+from grader.errors import UsageError
+from grader.message import msg
+
+_HOST: Final = r"(?:[A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9][A-Za-z0-9.-]*"
+_PATH: Final = r"[\w./~+%-]+"
+_URL: Final = re.compile(rf"(?:https|ssh)://{_HOST}(?::[0-9]{{1,5}})?/{_PATH}", re.ASCII)
+_SCP: Final = re.compile(rf"{_HOST}:(?!/?-){_PATH}", re.ASCII)
+#: A tag, a branch without a slash, or a commit.
+_TAG: Final = re.compile(r"[A-Za-z0-9_](?:[\w.+-]{0,98}\w)?", re.ASCII)
+_FOLDER: Final = re.compile(r"(?:[A-Za-z0-9_][\w.-]*)(?:/[A-Za-z0-9_][\w.-]*)*", re.ASCII)
+_EXPECTED: Final = msg(
+    "expected https://HOST/PATH, ssh://HOST/PATH, git@HOST:PATH, or the path of a repository here, "
+    "then perhaps @TAG and #FOLDER"
+)
+
+
+@dataclass(frozen=True)
+class Address:
+    """A place in a git repository.
+
+    Attributes:
+        repository: its address, as git gets it.
+        tag: a tag, a branch or a commit; '' for its head.
+        folder: where in it the exercise lies; '' for its root.
+    """
+
+    repository: str
+    tag: str = ""
+    folder: str = ""
+
+    @classmethod
+    def parse(cls, text: str) -> Address:
+        """Parse an address.
+
+        Raises:
+            UsageError: it is none, or one that is not fetched from.
+        """
+        rest, hash_sign, folder = text.partition("#")
+        # "@" is also before a host: a tag is behind the last "/" and ":"
+        last = max(rest.rfind("/"), rest.rfind(":"))
+        at = rest.rfind("@")
+        tag = rest[at + 1 :] if at > last else ""
+        repository = rest[:at] if at > last else rest
+        if (at > last and not _TAG.fullmatch(tag)) or ".." in tag:
+            raise _refused(text, msg("{tag!r} is no tag, branch or commit", tag=tag))
+        is_folder = _FOLDER.fullmatch(folder) and ".." not in PurePosixPath(folder).parts
+        if hash_sign and not is_folder:
+            raise _refused(text, msg("{folder!r} is no folder in a repository", folder=folder))
+        return cls(_repository(repository, text), tag, folder)
+
+
+def _repository(given: str, text: str) -> str:
+    if _URL.fullmatch(given) or (_SCP.fullmatch(given) and "://" not in given):
+        return given
+    if re.match(r"\w+://[^/@]*:[^/@]*@", given):
+        why = msg("a password in an address would be in every result: git has credential helpers")
+        raise UsageError(why)
+    path = given.removeprefix("file://")
+    if given and not given.startswith("-") and "://" not in path and "::" not in path:
+        folder = Path(path)
+        if folder.is_dir():
+            return folder.resolve().as_uri()
+        raise _refused(text, msg("there is no folder {path!r} here", path=path))
+    raise _refused(text, msg("it is no address that exercises are fetched from"))
+
+
+def _refused(text: str, why: object) -> UsageError:
+    return UsageError("{text!r}: {why}; {expected}", text=text[:200], why=why, expected=_EXPECTED)
