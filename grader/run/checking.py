@@ -1,8 +1,8 @@
 """Runs the check code of an added exercise in one confined process, which answers in lines.
 
-Its author is a stranger: it is confined as a submission is, sees our packages besides, and the
-folder that it is shown, and may write into neither. What it answers is bytes, which are bounded
-here and decoded strictly where they are read.
+Its author is a stranger: it is confined as a submission is, and may make no socket. It sees our
+packages besides, and the folder that it is shown, and may write into neither. What it answers is
+bytes, which are bounded here and decoded strictly where they are read.
 """
 
 from __future__ import annotations
@@ -59,6 +59,7 @@ def answered(
             (context.recording,),
             virtual_environment({}),
             more=(shown, *map(Path, sorted(view.system_view().hidden))),
+            has_sockets=False,
         )
         with process.ended_at_exit(gently=False):
             code = process.wait(limits.wall_s)

@@ -165,6 +165,8 @@ for path in [shown, *glob.glob(shown + "/**", recursive=True)]:
         attempt(f"writes {path}", lambda: open(path, "r+b").write(b"x"))
     else:
         attempt(f"makes {path}", lambda: Path(path, "new").write_text("x"))
+for family in (socket.AF_INET, socket.AF_INET6, socket.AF_UNIX, socket.AF_NETLINK):
+    attempt(f"opens a socket of {family}", lambda: socket.socket(family, socket.SOCK_DGRAM))
 attempt("connects", lambda: socket.create_connection(("127.0.0.1", tolerances["port"]), 5))
 try:
     pids = os.listdir("/proc")
