@@ -16,9 +16,9 @@ from typing import Any, Final, NamedTuple, NoReturn
 
 import yaml
 
-from grader import scratch, strict_json
+from grader import scratch, strict_json, system
 from grader.added.pins import FILES, Pin
-from grader.errors import CheckFailed, ExerciseError
+from grader.errors import CheckFailed, ExerciseError, UsageError
 from grader.exercise import asking
 from grader.exercise.asking import Answers
 from grader.exercise.check import Check, Checks
@@ -152,6 +152,13 @@ def _answered(
     recordings: Recordings | None = None,
 ) -> tuple[bytes, Message]:
     """Run the process; see `grader.run.checking.answered`."""
+    if not system.runs_submissions():
+        raise UsageError(
+            msg(
+                "the checks of an added exercise run confined alone, which takes Linux. Or look at "
+                "its files, and give a copy of their folder: --exercise FOLDER"
+            )
+        )
     from grader.run import checking  # here: only on Linux, and only for added exercises
 
     with scratch.make_folder() as scratched:

@@ -45,7 +45,7 @@ def answered(
         if not context.level.is_at_least(LANDLOCK):
             raise UsageError(
                 "the checks of an added exercise run confined alone, and nothing can confine them "
-                "here. To get it: {advice}. Or look at its files, and give their folder: "
+                "here. To get it: {advice}. Or look at its files, and give a copy of their folder: "
                 "--exercise FOLDER",
                 advice=levels.ADVICE[LANDLOCK],
             )

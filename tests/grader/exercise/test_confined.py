@@ -15,7 +15,7 @@ import pytest
 
 from grader import judge, load_exercise
 from grader.cli import main
-from grader.errors import CheckFailed, ExerciseError
+from grader.errors import CheckFailed, ExerciseError, UsageError
 from grader.exercise import asking, confined
 from grader.judging import judge_nominal, save_recordings
 from grader.recording.recording import Recordings
@@ -285,6 +285,13 @@ def test_where_nothing_confines_it_it_is_refused(tmp_path, recordings):
     assert done.returncode == 2, done.stderr
     assert "nothing can confine them here. To get it: Linux 5.13 or later" in done.stderr
     assert not (tmp_path / "result.json").exists()
+
+
+def test_elsewhere_than_on_linux_it_is_refused(tmp_path, monkeypatch):
+    add_strange(tmp_path, "return Finding(1, 'x')")
+    monkeypatch.setattr(confined.system, "runs_submissions", lambda: False)
+    with pytest.raises(UsageError, match="which takes Linux"):
+        load_exercise("hostile")
 
 
 @pytest.mark.more("the sandbox's own tests are at this level as well")
