@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import shutil
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +22,7 @@ from grader.testing.examination import Examination, Fault, Problem
 from tests.grader.added.repositories import commit, git
 from tests.grader.testing import exercises
 
+ROOT = Path(__file__).parents[3]
 FINE = Examination("ahead", (), (), ())
 TO_FIX = Examination("ahead", (), (), (Problem(Fault("", msg("nobody catches a mutant"))),))
 
@@ -202,3 +206,25 @@ def test_an_error_is_written_as_data_wherever_the_option_stands(call, tmp_path):
         assert call(*words)[0] == 2
         assert json.loads((tmp_path / "e.json").read_text())["whose"] == "call"
         (tmp_path / "e.json").unlink()
+
+
+@pytest.mark.more("each judging of its solutions takes a process")
+def test_it_is_really_tried_and_then_grades(repository, tmp_path):
+    def called(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "grader", *map(str, words)],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+        )
+
+    done = called("exercises", "add", "--yes", repository)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "All is fine: 2 checks, 2 mutants, each caught." in done.stdout
+    solution = repository / "solution.py"
+    done = called("run", solution, "--exercise", "ahead", "--out", "graded", "--fail-under", "10")
+    assert done.returncode == 0, done.stdout + done.stderr
+    judged = json.loads((tmp_path / "graded" / "result.json").read_text())["provenance"]["judged"]
+    assert judged["exercise_from"]["address"] == repository.as_uri()
+    assert "The exercise is from" in (tmp_path / "graded" / "report.html").read_text()
