@@ -15,7 +15,7 @@ from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.exercise.places import installed, names
+from grader.exercise.places import installed, installed_names
 from grader.message import msg
 from grader.translations import tr
 
@@ -34,7 +34,7 @@ EXPLAINED = msg(
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.epilog = tr(EXPLAINED.key, names=", ".join(names()))
+    parser.epilog = tr(EXPLAINED.key, names=", ".join(installed_names()))
     parser.add_argument("what", choices=("new",), help=tr("what to do"))
     parser.add_argument("folder", type=Path, metavar="DIR", help=tr("a new or empty folder"))
     parser.add_argument(
@@ -88,6 +88,13 @@ def main(args: argparse.Namespace) -> int:
     """
     kind = KINDS[args.kind]
     exercises = [load_exercise(installed(name).name) for name in dict.fromkeys(args.exercises)]
+    if added := next((each for each in exercises if each.origin is not None), None):
+        raise UsageError(
+            "the exercise {name!r} was added from {origin}; where a course is graded there are the "
+            "installed ones alone",
+            name=added.name,
+            origin=str(added.origin),
+        )
     _check_points(args.kind, args.pass_points, exercises)
     source = _source(args.source, args.ros)
     how = repository.Settings(source, args.pass_points, _image(args.kind, args.image), args.ros)

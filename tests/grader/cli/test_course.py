@@ -11,6 +11,8 @@ from grader import system
 from grader.cli import main
 from grader.course.kinds import KINDS
 from grader.exercise.places import names
+from tests.grader.added.repositories import added, commit
+from tests.grader.testing import exercises
 
 
 def new(folder: Path, *words: str, kind: str = "github") -> int:
@@ -51,6 +53,15 @@ def test_an_unknown_exercise_is_told_with_those_that_there_are(tmp_path, capsys)
     said = capsys.readouterr().err
     assert "there is no exercise 'spiral'" in said
     assert all(name in said for name in names())
+    assert not (tmp_path / "course").exists()
+
+
+def test_an_added_exercise_is_not_there_where_a_course_is_graded(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    commit(exercises.write(tmp_path / "repository"))
+    added(tmp_path / "repository", "ahead")
+    assert new(tmp_path / "course", "--exercises", "ahead") == 2
+    assert "the exercise 'ahead' was added from file:" in capsys.readouterr().err
     assert not (tmp_path / "course").exists()
 
 
