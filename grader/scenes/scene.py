@@ -232,8 +232,9 @@ class Scene(Subject):
         """Return which interfaces a submission was written for; '' where there is no choice.
 
         Args:
-            surely, perhaps: modules that the submission always imports, and those that it may
-                import, each with the place of its first import, in the order of these.
+            surely: the modules that the submission always imports, each with the place of its
+                first import, in the order of these.
+            perhaps: likewise those that it may import.
 
         Raises:
             SubmissionError: it fits none of them.
