@@ -19,7 +19,7 @@ endif
 NOT_AT_LOWEST := tests/docs/test_trust.py tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
 
-.PHONY: help install tools needs test test-more test-all test-lowest test-kilted mutate size catalogues lint demo bench wheel clean
+.PHONY: help install tools needs test test-more test-all test-lowest test-kilted mutate size catalogues lint docs demo bench wheel clean
 .DEFAULT_GOAL := help
 
 help:
@@ -34,6 +34,7 @@ help:
 	@echo "make size      lines and modules of each room, class names that stand twice"
 	@echo "make needs     install what tests need of the machine: a browser, ..."
 	@echo "make lint      ruff and mypy"
+	@echo "make docs      the site, in build/site/html: pages, exercises, API, gallery; its links checked"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
 	@echo "make bench     what the simulator, a grading and a class cost: tables, in twenty minutes"
 	@echo "make wheel     a wheel for each Python that is here, in dist/jazzy, each tried where there is no gcc"
@@ -91,6 +92,11 @@ lint: tools
 	@$(BIN)/ruff format --check
 	@echo "== mypy"
 	@$(BIN)/mypy
+
+docs: tools
+	@scripts/install.sh docs
+	@echo "== building the site (half a minute: the gallery runs what it shows)"
+	@$(BIN)/python -m scripts.site
 
 # -P: the installed package, not the folder of the same name here
 demo: install

@@ -4,6 +4,7 @@
 #
 #   scripts/install.sh         the project and what it needs
 #   scripts/install.sh test    ... and what its tests, ruff and mypy need
+#   scripts/install.sh docs    ... and what makes the site
 #
 #   VENV     another folder than .venv
 #   BOUNDS   lowest: our dependencies at their lower bounds
@@ -131,6 +132,6 @@ if ! stamped installed-sources "$sources"; then
     stamp installed-sources "$sources"
 fi
 
-if [ "${1:-}" = test ]; then
-    requirements installed-test-requirements test
-fi
+for tools in "$@"; do
+    requirements "installed-$tools-requirements" "$tools"
+done

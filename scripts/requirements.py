@@ -2,6 +2,7 @@
 
     requirements.py         for building and running it
     requirements.py test    ... and also for `make test` and `make lint`
+    requirements.py docs    ... and also for `make docs`
 
 BOUNDS=lowest asks for our dependencies at their lower bounds.
 """
@@ -25,13 +26,14 @@ ours = pyproject["tool"]["turtlesim-py"]
 build = pyproject["build-system"]["requires"]
 is_sourced = bool(os.environ.get("ROS_DISTRO"))  # the same rule as in setup.py
 dependencies = [*ours["dependencies"], *([] if is_sourced else ours["robots_without_ros"])]
-tests = [*ours["extras"]["robots"], *ours["extras"]["test"]] if "test" in sys.argv else []
+lists = {"test": ["robots", "test"], "docs": ["docs"]}
+tools = [each for word in sys.argv[1:] for name in lists[word] for each in ours["extras"][name]]
 if os.environ.get("BOUNDS") == "lowest":
     # our own build needs a newer setuptools than packages are read with
     dependencies = [each for each in dependencies if not each.startswith("setuptools")]
     build, dependencies = map(lowest, build), map(lowest, dependencies)
-    tests = [name for name in tests if not name.startswith(NOT_AT_LOWEST)]
-requirements = ["pip", *build, *dependencies, *tests]  # uv brings no pip
+    tools = [name for name in tools if not name.startswith(NOT_AT_LOWEST)]
+requirements = ["pip", *build, *dependencies, *tools]  # uv brings no pip
 if not is_sourced:
     release = os.environ.get("ROS") or "jazzy"
     if release not in ours["ros"]:

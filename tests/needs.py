@@ -46,6 +46,9 @@ def _can_contain() -> bool:
 
 #: For what no line of a shell can install.
 BY_ROOT = "sudo make test"
+#: What is built, not installed.
+BUILD_SITE = "make docs"
+SITE = Path(__file__).parents[1] / "build" / "site" / "html"
 #: Name -> whether it is there, and what installs it; each after what it needs itself.
 NEEDS: dict[str, tuple[Callable[[], bool], str]] = {
     "chromium": (_there(*BROWSERS), _apt("chromium")),
@@ -59,6 +62,7 @@ NEEDS: dict[str, tuple[Callable[[], bool], str]] = {
         f"npm install --prefix {ROSLIBJS} --no-audit --no-fund --no-package-lock",
     ),
     "root": (lambda: AS_ROOT, BY_ROOT),
+    "site": ((SITE / "gallery" / "index.html").is_file, BUILD_SITE),
     "shellcheck": (_there("shellcheck"), _apt("shellcheck")),
 }
 
@@ -110,4 +114,4 @@ def pytest_terminal_summary(terminalreporter: Any) -> Iterator[None]:
 
 if __name__ == "__main__":
     commands = (NEEDS[name][1] for name in missing(NEEDS))
-    print(*(command for command in commands if command != BY_ROOT), sep="\n")
+    print(*(each for each in commands if each not in (BY_ROOT, BUILD_SITE)), sep="\n")
