@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from difflib import SequenceMatcher
 from functools import cache
@@ -66,18 +67,22 @@ def plain_all(value: Any, limit: int = 1_000_000) -> Any:
     Args:
         limit: texts are cut to this many characters first.
     """
+    return map_all(value, lambda text: plain(clip(text, limit)))
+
+
+def map_all(value: Any, change: Callable[[str], str]) -> Any:
+    """Change each text of a value, which is JSON or a dataclass; in a message, of its values."""
     if isinstance(value, str):
-        return plain(clip(value, limit))
+        return change(value)
     if isinstance(value, Message):
-        return value.map_texts(lambda text: plain(clip(text, limit)))
-    if isinstance(value, dict):
-        return {plain(clip(key, limit)): plain_all(item, limit) for key, item in value.items()}
+        return value.map_texts(change)
+    if isinstance(value, Mapping):
+        return {change(key): map_all(item, change) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return type(value)(plain_all(item, limit) for item in value)
+        made = [map_all(item, change) for item in value]
+        return type(value)(*made) if hasattr(value, "_fields") else type(value)(made)
     if is_dataclass(value) and not isinstance(value, type):
-        texts = {
-            field.name: plain_all(getattr(value, field.name), limit) for field in fields(value)
-        }
+        texts = {field.name: map_all(getattr(value, field.name), change) for field in fields(value)}
         return replace(value, **texts)
     return value
 

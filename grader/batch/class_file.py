@@ -32,6 +32,7 @@ _NAMED = {
     "time": msg("the clock (--time)"),
     "seed": msg("the seed (--seed)"),
     "seed_file": msg("the secret (--seed-file)"),
+    "pseudonyms": msg("the key of the pseudonyms (--pseudonyms)"),
     "grader": msg("the grader's version"),
     "ros": msg("the version of rclpy and the ROS release"),
     "python": msg("the version of Python"),
@@ -49,6 +50,7 @@ class ClassFile:
         time: the clock of the submissions.
         seed: chose where the varied runs start; None: the exercise's own.
         seed_file: shows which secret gave each hand-in its seed; '' for none.
+        pseudonyms: shows which key gave the students their pseudonyms; '' where they have names.
         grader, ros, python: versions.
         hand_ins: how many there will be when the class is finished; 0 while that is unknown.
         isolation: the level at which all are run; '' before the first run, or where there is none.
@@ -64,6 +66,7 @@ class ClassFile:
     hand_ins: int = 0
     isolation: str = ""
     seed_file: str = ""
+    pseudonyms: str = ""
 
     def put(self, out: Path) -> None:
         """Write class.json.

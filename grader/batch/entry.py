@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cached_property
@@ -76,6 +76,16 @@ class HandIn:
         return ", ".join(person.id for person in self.people) or self.id
 
 
+def id_of(ids: Sequence[str]) -> str:
+    """Return the id of the hand-in of a student or a group, before it is a name of a folder."""
+    whole = "+".join(ids)
+    if len(whole) <= MAX_ID:
+        return whole
+    return f"{ids[0]}+{len(ids) - 1}" if len(ids) > 1 else ids[0]
+
+
+#: Of a hand-in's id [characters]: leaves room for the paths below the folder.
+MAX_ID = 80
 SCHEMA = "turtlesim-grader/entry/v1"
 ENTRY = "entry.json"
 SUBMISSIONS = "submissions"

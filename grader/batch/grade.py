@@ -21,7 +21,12 @@ from typing import IO
 
 from grader import files, grading, judging, scratch, strict_json
 from grader.batch.entry import Entry, HandIn, State
+from grader.batch.find import clones
 from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR
+from grader.batch.names import pseudonyms
+from grader.batch.names.people import called_in, forms, known_words, said_in
+from grader.batch.names.recorded import without_hash, without_names
+from grader.batch.names.spelling import Names
 from grader.batch.page.thumb import THUMB, thumb
 from grader.batch.pool import Answer, Ending, Task
 from grader.batch.similar import features, sources
@@ -89,13 +94,14 @@ def done(task: Task) -> Answer:
         make(task)
     except GraderError as error:
         state = next(state for kind, state in _STATES.items() if isinstance(error, kind))
-        return Answer(state, error.message.map_texts(plain))
+        return Answer(state, error.message.map_texts(plain).map_texts(_names(task)))
     except Exception as error:
         traceback.print_exc()
         what = "".join(traceback.format_exception_only(error)).strip()
         is_scarce = isinstance(error, OSError) and error.errno in SCARCE
         return Answer(
-            "again" if is_scarce else "failed", msg("unexpected: {what}", what=plain(what))
+            "again" if is_scarce else "failed",
+            msg("unexpected: {what}", what=_names(task)(plain(what))),
         )
     return Answer("done")
 
@@ -116,7 +122,7 @@ def make(task: Task) -> None:
         RecordingError: the task names a run that cannot be read.
     """
     exercise = _exercise(task.exercise)
-    found = _loaded(task) or _run(task, exercise)
+    found = _without_names(_loaded(task), _names(task)) or _run(task, exercise)
     for hand_in in task.hand_ins:
         folder = task.into / STUDENTS / hand_in.id
         if isinstance(found, Recordings):
@@ -129,6 +135,31 @@ def make(task: Task) -> None:
 def _exercise(name_or_path: str) -> Exercise:
     """Load an exercise, once for all tasks of a worker: it takes a third of the time of judging."""
     return load_exercise(name_or_path)
+
+
+def _names(task: Task, exercise: Exercise | None = None, copy: Path | None = None) -> Names:
+    """Return the names that pseudonyms stand for: those of the class, and what the files tell.
+
+    Args:
+        copy: the private copy of the submission, else itself; None: the names of the class alone.
+    """
+    if task.names is None:
+        return Names({})
+    own, others = dict(task.own_names), pseudonyms.read(task.names)
+    if task.stands_for and exercise and copy and task.path:
+        known = known_words(exercise)
+        told = {
+            **forms(called_in(copy, task.path.name, known), f"{task.stands_for}z", known),
+            **forms(said_in(copy, clones.identities(task.path)), f"{task.stands_for}y", known),
+        }
+        own = {**{name: others.stands_for(name) or at for name, at in told.items()}, **own}
+    return Names({}, own, others)
+
+
+def _without_names(found: Recordings | Message | None, names: Names) -> Recordings | Message | None:
+    if not names or found is None:
+        return found
+    return found.map_texts(names) if isinstance(found, Message) else without_names(found, names)
 
 
 def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
@@ -160,19 +191,26 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
             recordings = grading.run_all(
                 submission, exercise, runner, seed=task.seed, hides_seed=task.hides_seed
             )
-            _keep_for_pages(submission, recordings, place)
+            copy = None if submission.copy is None else submission.copy.folder
+            if names := _names(task, exercise, copy):
+                recordings = without_hash(without_names(recordings, names))
+            _keep_for_pages(submission, recordings, place, names)
     except (SubmissionError, UsageError) as error:
         result = ErrorResult.of(error, exercise.max_score)
+        names = _names(task, exercise, task.path)
+        result = replace(result, message=result.message.map_texts(names))
         files.put(place / ERROR, json_file.text(result.to_json()).encode())
         return result.message
     judging.save_recordings(recordings, place / RECORDING)
     return recordings
 
 
-def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path) -> None:
+def _keep_for_pages(
+    submission: Submission, recordings: Recordings, place: Path, names: Names
+) -> None:
     """Write what the pages of the whole class show of a run: they open no recording."""
     copy = submission.copy
-    left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE)
+    left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE, names)
     nominal = recordings.nominal
     files.put(place / THUMB, thumb(recordings))
     files.put(

@@ -13,7 +13,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -48,6 +48,9 @@ class Task:
         isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
         language: of the pages.
         hides_seed: whether recordings leave out the seed.
+        stands_for: the pseudonym of who has handed it in; '' where names stay.
+        names: a file with the names of the class: see `grader.batch.names.pseudonyms.put`.
+        own_names: of who has handed it in: a name's folded words -> its pseudonym.
     """
 
     key: str
@@ -63,6 +66,9 @@ class Task:
     isolation: str = ""
     language: str = field(default_factory=current)
     hides_seed: bool = False
+    stands_for: str = ""
+    names: Path | None = None
+    own_names: Mapping[str, str] = field(default_factory=dict)
 
 
 Ending = Literal["done", "failed", "exercise", "again", "unfit"]

@@ -5,6 +5,7 @@
     submissions/ID/     the result of one hand-in; see `grader.batch.entry`
     aside/ID/           what is no longer among the submissions
     before/N/           what a regrade has replaced; see `grader.batch.regrade.judging`
+    forgotten/          receipts of students who were forgotten; see `grader.batch.forget`
     .unfinished/        what is being made; what an interrupted call has left there is removed
 
 A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
@@ -34,6 +35,8 @@ from grader.removal import remove
 from grader.submission.folder import MAX_ENTRIES, is_generated, is_junk
 
 STORE, UNFINISHED, ASIDE, BEFORE = "store", ".unfinished", "aside", "before"
+#: The table and the page of a regrade that was only shown.
+REGRADE = "regrade"
 #: What a worker leaves: one run, and a folder for each hand-in.
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
@@ -112,6 +115,18 @@ class Store:
         files.make_folder(place)
         return place
 
+    def take_out(self, folder: Path) -> None:
+        """Remove a folder, whole: what an interrupted call leaves of it, the next one removes.
+
+        Raises:
+            UsageError: it cannot be removed.
+        """
+        place = self.new_place()
+        with files.writing(folder):
+            folder.rename(place / "gone")
+        if not remove(place):
+            raise files.cannot_write(folder, msg("not all of it can be removed"))
+
     def put(self, key: str, place: Path) -> None:
         """Move the files of a worker into their places: the run first, then each hand-in.
 
@@ -127,6 +142,11 @@ class Store:
                 if key:
                     _link_all(self.run(key), made)
                 _replace(made, self.student(made.name), place)
+            for made in sorted((place / ASIDE).glob("*/")):
+                if key:
+                    _link_all(self.run(key), made)
+                remove(self.out / ASIDE / made.name)
+                made.rename(self.out / ASIDE / made.name)
         except OSError as error:
             raise files.cannot_write(self.out, str(error)) from None
         remove(place)
@@ -204,12 +224,15 @@ def installed_versions() -> dict[str, str]:
     }
 
 
-def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -> str:
+def of_run(
+    submission: str, exercise: Exercise, time: Clock, seed: int | None, secret: str = ""
+) -> str:
     """Return the key of a run: a hash of everything that it depends on.
 
     Args:
         submission: the hash of the submission, from `of_hand_in`.
         seed: chooses where the varied runs start; None: the exercise's own.
+        secret: without it nobody can tell by a key what a file was called; '' for none.
     """
     depends_on = {
         "submission": submission,
@@ -221,6 +244,8 @@ def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -
     }
     if exercise.setting:
         depends_on["setting"] = content.of_bytes(exercise.setting.encode())
+    if secret:
+        depends_on["secret"] = secret
     return content.of_bytes(json.dumps(depends_on, sort_keys=True).encode())[:32]
 
 

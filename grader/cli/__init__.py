@@ -54,6 +54,7 @@ VERBS = {
         "Write the repository of a course that is graded on GitHub, Gradescope or another system."
     ),
     "batch": msg("Grade a class: find the submissions, grade them in parallel, and compare them."),
+    "forget": msg("Forget a student: remove what is kept of one from the folder of a class."),
     "check-exercise": msg(
         "Try an exercise on its right solutions and mutants: what each check catches, and what "
         "to fix."
@@ -66,7 +67,7 @@ VERBS = {
     ),
 }
 #: The verbs that run submissions; the others work anywhere.
-NEED_LINUX = ("run", "batch", "check-exercise", "servers")
+NEED_LINUX = ("run", "batch", "forget", "check-exercise", "servers")
 ELSEWHERE = msg(
     "submissions are run on Linux with /proc, which this is not. Take WSL 2, a devcontainer or "
     "Codespaces (docs/your-machine.md); grader check, view, report and new work here."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -17,13 +17,16 @@ from grader.cli import GRADER_FAILED, JUDGED, options, say
 from grader.cli.run import LEVELS, add_of_runs
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.message import NOTHING, joined, msg, msg_many
+from grader.message import NOTHING, Message, joined, msg, msg_many
 from grader.translations import tr
 
 if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
+    from grader.batch.entry import Entry, HandIn
     from grader.batch.find.finding import Found
+    from grader.batch.names.pseudonyms import Pseudonyms
     from grader.batch.store import Store
+    from grader.exercise.exercise import Exercise
     from grader.result.visible import View
 
 
@@ -60,6 +63,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--roster", type=Path, metavar="FILE", help=tr("names: a CSV with a column id")
     )
     parser.add_argument(
+        "--pseudonyms",
+        type=Path,
+        metavar="KEY",
+        help=tr("pseudonyms for all names, made of the key in this file outside of DIR"),
+    )
+    parser.add_argument(
+        "--names",
+        type=Path,
+        metavar="FOLDER",
+        help=tr("of --pseudonyms: gradebook and imports with names, outside of DIR"),
+    )
+    parser.add_argument(
         "--again",
         default="",
         metavar="failed|all|ID",
@@ -76,17 +91,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help=tr("with --regrade: write it; what was before is kept"),
     )
-    parser.add_argument(
-        "--after-due",
-        action="store_true",
-        help=tr("students may see now what their exercise hides until it is due"),
-    )
-    parser.add_argument(
-        "--assignment",
-        default="",
-        metavar="NAME",
-        help=tr('what Canvas calls the exercise, as in "Spiral (4711)" (its title)'),
-    )
+    options.add_of_outputs(parser)
 
 
 def main(args: argparse.Namespace) -> int:
@@ -105,6 +110,8 @@ def main(args: argparse.Namespace) -> int:
     from grader.batch.batch import Order, check_same_class
     from grader.batch.class_file import begun_at
     from grader.batch.entry import entries
+    from grader.batch.names.people import known_words
+    from grader.batch.names.pseudonyms import with_names
     from grader.batch.store import Store
     from grader.cli import class_progress
     from grader.exercise.loading import load_exercise
@@ -112,7 +119,8 @@ def main(args: argparse.Namespace) -> int:
     messages = Console(stderr=True, highlight=False)
     exercise = load_exercise(args.exercise) if args.exercise else None  # refused at once
     secret = options.secret_of(args)
-    with _found(args, messages) as found:
+    pseudonyms = _pseudonyms(args)
+    with _found(args, messages, pseudonyms) as (found, named):
         if exercise is None:
             args.named = _named(found, messages)
             exercise = load_exercise(args.named)
@@ -122,13 +130,21 @@ def main(args: argparse.Namespace) -> int:
             *(args.time, args.seed, args.again),
             secret=secret,
             hides_seed=options.hides_seed(args),
+            pseudonyms="" if pseudonyms is None else pseudonyms.mark,
         )
-        with Store.opened(args.out) as store:
+        if pseudonyms is not None:
+            known = pseudonyms.known(named, known_words(exercise))
+            order = replace(order, known=known, run_secret=pseudonyms.run_secret)
+        with Store.opened(args.out) as store, _names(order) as order:
             order = replace(order, isolation=begun_at(args.out, args.again, args.isolation or ""))
             check_same_class(store, order.class_file, order.again)
             _grade(args, order, found, store, messages)
             graded = entries(args.out)
             written = batch.write_outputs(args.out, graded, exercise, view, args.assignment)
+            if args.names:
+                written = _write_names(args, with_names(graded, named), exercise, view)
+            elif pseudonyms is not None:
+                written = [msg("Gradebook and imports with names, for a course system: --names")]
             for note in written:
                 say(messages, note)
     class_progress.summarise(messages, graded, args.out)
@@ -162,11 +178,65 @@ def _named(found: Found, messages: Console) -> str:
     return next(iter(named), DEFAULT)
 
 
+def _pseudonyms(args: argparse.Namespace) -> Pseudonyms | None:
+    """Return who gives the students their pseudonyms; None where they keep their names.
+
+    Raises:
+        UsageError: the key cannot be used, or something would lie where names must not.
+    """
+    if not args.pseudonyms:
+        return None
+    from grader.batch.class_file import CLASS, ClassFile
+    from grader.batch.names import pseudonyms
+
+    if args.names:
+        what = msg("what has names")
+        pseudonyms.check_outside(args.names, (args.out, args.submissions), what)
+    is_new = not (args.out / CLASS).is_file()
+    if not is_new and not ClassFile.read(args.out).pseudonyms:
+        raise UsageError(
+            "{out} was begun with names. Give another --out. Nothing was changed.", out=args.out
+        )
+    folders = (args.out, args.submissions)
+    return pseudonyms.Pseudonyms(pseudonyms.read_key(args.pseudonyms, folders, may_make=is_new))
+
+
 @contextmanager
-def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
-    """Find the hand-ins, and print the notes on them."""
+def _names(order: Order) -> Iterator[Order]:
+    """Yield the order with a file of the names of the class, if it is under pseudonyms."""
+    from grader import scratch
+    from grader.batch.names import pseudonyms
+
+    if not order.pseudonyms:
+        yield order
+        return
+    with scratch.make_folder() as folder:
+        yield replace(order, names=pseudonyms.put(order.known, folder))
+
+
+def _write_names(
+    args: argparse.Namespace, entries: Sequence[Entry], exercise: Exercise, view: View
+) -> list[Message]:
+    """Write the gradebook and the imports of a class under pseudonyms with names; return notes."""
+    from grader.batch.gradebook import write
+
+    notes = write.write(args.names, entries, exercise.title, view, args.assignment)
+    write.write_pseudonyms(args.names, entries)
+    return [*notes, msg("Gradebook and imports with names: {folder}", folder=args.names)]
+
+
+@contextmanager
+def _found(
+    args: argparse.Namespace, messages: Console, pseudonyms: Pseudonyms | None
+) -> Iterator[tuple[Found, dict[str, HandIn]]]:
+    """Find the hand-ins, and print the notes on them.
+
+    Under pseudonyms nothing that is found or said has names; with it comes who has which.
+    """
     from grader.batch.class_file import CLASS
     from grader.batch.find.finding import find
+    from grader.batch.names.people import known_words
+    from grader.batch.names.spelling import Names
 
     is_same = args.submissions.resolve() == args.out.resolve()
     if is_same or (args.submissions / CLASS).is_file():
@@ -176,9 +246,18 @@ def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
             submissions=args.submissions,
         )
     with find(args.submissions, args.pattern, args.roster) as found:
-        for note in found.notes:
+        named = {} if pseudonyms is None else pseudonyms.of_hand_ins(found.hand_ins)
+        notes = found.notes
+        if pseudonyms is not None:
+            names = Names(pseudonyms.known(named, known_words()).everybody)
+            notes = [note.map_texts(names) for note in notes]
+            again = (id for id, was in named.items() if was.id == args.again)
+            args.again = next(again, args.again)
+            made = (pseudonyms.hand_in(id, was, names) for id, was in named.items())
+            found = replace(found, hand_ins=list(made), notes=notes)
+        for note in notes:
             say(messages, note)
-        yield found
+        yield found, named
 
 
 def _grade(
@@ -219,6 +298,12 @@ def _check_words(args: argparse.Namespace) -> None:
         raise UsageError(msg("name one: the submissions, or a class to --regrade"))
     if args.apply and not args.regrade:
         raise UsageError(msg("--apply belongs to --regrade DIR"))
+    if args.names and not args.pseudonyms:
+        raise UsageError(msg("--names belongs to --pseudonyms KEY"))
+    if args.pseudonyms and args.regrade:
+        raise UsageError(
+            msg("--regrade takes no --pseudonyms: a class keeps those that it was graded with")
+        )
     if args.out is None and not args.regrade:
         raise UsageError(msg("name a folder for the class: --out DIR"))
 

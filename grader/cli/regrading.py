@@ -16,13 +16,10 @@ from grader.batch.entry import Entry
 from grader.batch.regrade import judging, shown
 from grader.batch.regrade.changes import Regrade
 from grader.batch.regrade.judging import CHANGES_CSV, CHANGES_PAGE
-from grader.batch.store import BEFORE, Store
+from grader.batch.store import BEFORE, REGRADE, Store
 from grader.cli import GRADER_FAILED, JUDGED, class_progress, say
 from grader.result.visible import View
 from grader.translations import tr, tr_many
-
-#: The folder of the table and the page, in the folder of the class.
-REGRADE = "regrade"
 
 
 def run(args: Namespace, jobs: int, view: View) -> int:

@@ -20,6 +20,7 @@ import shutil
 import stat
 import subprocess
 from collections.abc import Sequence
+from contextlib import suppress
 from datetime import datetime, timedelta
 from itertools import takewhile
 from pathlib import Path
@@ -121,6 +122,11 @@ class LastCommits:
 
     def of(self, clone: Path) -> datetime | None:
         """Return the time of a clone's checked-out commit, by its author's clock; None: unknown."""
+        commit = self.commit(clone)
+        return None if commit is None else _time(commit)
+
+    def commit(self, clone: Path) -> bytes | None:
+        """Return a clone's checked-out commit; None where it cannot be read."""
         theirs = clone / ".git"
         objects = theirs / "objects"
         try:
@@ -133,8 +139,7 @@ class LastCommits:
             return None
         if not size.strip().isdigit() or int(size) > MAX_COMMIT_BYTES:
             return None
-        commit = self._ask(objects, "commit", name)
-        return None if commit is None else _time(commit)
+        return self._ask(objects, "commit", name)
 
     def _ask(self, objects: Path, what: str, name: str) -> bytes | None:
         if self.git is None:
@@ -165,6 +170,19 @@ class LastCommits:
             "GIT_NO_LAZY_FETCH": "1",
             "GIT_TERMINAL_PROMPT": "0",
         }
+
+
+def identities(clone: Path) -> list[str]:
+    """Return the texts of a repository that name its people: config, log, the last commit."""
+    found = []
+    for name in ("config", "logs/HEAD"):
+        with suppress(OSError):
+            if _is_folder(clone / ".git"):
+                found.append(_read(clone / ".git" / name))
+    if found:
+        with make_folder() as scratch:
+            found.append((LastCommits(scratch).commit(clone) or b"").decode("utf-8", "replace"))
+    return found
 
 
 def _commit(theirs: Path) -> str | None:
@@ -205,7 +223,7 @@ def _read(path: Path) -> str:
         return ""
     if not stat.S_ISREG(mode.st_mode) or mode.st_size > _MAX_FILE_BYTES:
         return ""
-    return path.read_bytes().decode("ascii", "replace")
+    return path.read_bytes().decode("utf-8", "replace")
 
 
 def _is_folder(path: Path) -> bool:

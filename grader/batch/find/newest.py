@@ -19,9 +19,10 @@ from pathlib import Path
 from typing import Final
 
 from grader.batch import store
-from grader.batch.entry import HandIn, Person
+from grader.batch.entry import MAX_ID, HandIn, Person, id_of
 from grader.batch.find.attempt import Attempt, Piece, add_note, moment, short
 from grader.batch.find.joining import is_of_roster
+from grader.batch.names.spelling import SPELLED
 from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk, shown
 
@@ -32,12 +33,9 @@ _NO_FILE: Final = msg(
     "What was handed in is neither a file nor a folder, but a pipe, a socket or a device. "
     "It was not opened."
 )
-MAX_ID: Final = 80  # characters; leaves room for the paths below the folder
 _OTHERS: Final = re.compile(r"[^A-Za-z0-9._@+-]+")
 #: Names that Windows reserves for devices, also with a suffix.
 _DEVICES: Final = re.compile(r"(?:con|prn|aux|nul|com\d|lpt\d)(?:\..*)?", re.IGNORECASE)
-#: Letters that people spell otherwise than by leaving out the accent.
-_SPELLED: Final = str.maketrans({"ß": "ss", "æ": "ae", "ø": "o", "ł": "l", "đ": "d", "œ": "oe"})
 
 
 def hand_ins(attempts: Iterable[Attempt], place: Path) -> tuple[list[HandIn], list[Message]]:
@@ -48,7 +46,7 @@ def hand_ins(attempts: Iterable[Attempt], place: Path) -> tuple[list[HandIn], li
     newest = [_newest(each) for each in by_whom.values()]
     several = [each[0].people[0] for each in by_whom.values() if len(each) > 1]
     newest, moved = _one_each(newest)
-    ids = safe_ids([_id(attempt) for attempt in newest])
+    ids = safe_ids([id_of([person.id for person in each.people]) for each in newest])
     made = [_hand_in(attempt, id, place / id) for attempt, id in zip(newest, ids, strict=True)]
     notes: list[Message] = []
     again = msg("Handed in again, alone or in another group; for them the newest counts: {names}.")
@@ -86,13 +84,6 @@ def _one_each(attempts: Sequence[Attempt]) -> tuple[list[Attempt], list[Person]]
             stays[number] = [person for person in stays[number] if person.id != id]
     pairs = zip(attempts, stays, strict=True)
     return [replace(each, people=tuple(people)) for each, people in pairs if people], moved
-
-
-def _id(attempt: Attempt) -> str:
-    ids = [person.id for person in attempt.people]
-    if len("+".join(ids)) <= MAX_ID:
-        return "+".join(ids)
-    return f"{ids[0]}+{len(ids) - 1}" if len(ids) > 1 else ids[0]
 
 
 def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
@@ -225,7 +216,7 @@ def safe_ids(wanted: Sequence[str]) -> list[str]:
 
 def safe_id(text: str) -> str:
     """Return an id of letters, digits and `._@+-` alone, and none that a system reserves."""
-    plain = unicodedata.normalize("NFKD", text.translate(_SPELLED))
+    plain = unicodedata.normalize("NFKD", text.translate(SPELLED))
     letters = "".join(sign for sign in plain if not unicodedata.combining(sign))
     id = _OTHERS.sub("-", letters).lstrip(".-").rstrip(".-")
     unwritten = sum(not sign.isascii() and sign.isalnum() for sign in letters)

@@ -34,6 +34,7 @@ MOODLE_WORKSHEET, MOODLE_GRADES = "moodle-grading-worksheet.csv", "moodle-grade-
 CANVAS_GRADES, NOTES = "canvas-gradebook.csv", "notes.txt"
 MOODLE_FEEDBACK, CANVAS_FEEDBACK = "moodle-feedback.zip", "canvas-feedback.zip"
 FEEDBACK = "feedback.zip"
+PSEUDONYMS = "pseudonyms.csv"
 #: Without it Excel reads UTF-8 as Windows-1252.
 BYTE_ORDER_MARK = "\ufeff"
 _BEFORE = (
@@ -85,6 +86,24 @@ def write(
         else:
             files.clear(out / EXPORT / file)
     return lacking
+
+
+def write_pseudonyms(out: Path, entries: Sequence[Entry]) -> None:
+    """Write who has which pseudonym: that of a group is the group's.
+
+    Args:
+        entries: of a class under pseudonyms, with names: see `grader.batch.names.pseudonyms`.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    rows = [
+        [cell(text) for text in (entry.folder.name, person.id, person.name)]
+        for entry in entries
+        for person in entry.hand_in.people
+    ]
+    text = table([("pseudonym", "id", "name"), *rows])
+    files.put(out / PSEUDONYMS, (BYTE_ORDER_MARK + text).encode("utf-8"))
 
 
 def _feedback(everybody: Sequence[Grade], feedback: Feedback) -> dict[str, bytes]:

@@ -94,8 +94,17 @@ def features_file(source: Path, nominal: Recording, left_out: int = 0) -> bytes:
         OSError: the sources cannot be read.
     """
     commands, path, too_many = _run(nominal)
-    files = (HashedFile(each.name, hashlib.sha256(each.data).hexdigest()) for each in kept(source))
-    return strict_json.line(Features(tuple(files), commands, path, left_out + too_many))
+    return strict_json.line(Features(hashed(source), commands, path, left_out + too_many))
+
+
+def hashed(source: Path) -> tuple[HashedFile, ...]:
+    """Return the names and hashes of kept sources.
+
+    Raises:
+        OSError: they cannot be read.
+    """
+    files = kept(source)
+    return tuple(HashedFile(each.name, hashlib.sha256(each.data).hexdigest()) for each in files)
 
 
 def _run(nominal: Recording) -> tuple[tuple[TimedCommand, ...], tuple[int, ...], int]:
