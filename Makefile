@@ -1,6 +1,7 @@
 # `make` alone lists what there is. PYTHON=python3.12 make ... chooses the Python of .venv.
 
 SHELL := /bin/bash
+GIVEN_ROS := $(ROS)
 # the ROS release from PyPI, where none is sourced; each but Jazzy has an environment of its own
 ROS := $(or $(ROS),jazzy)
 VENV := .venv$(filter-out -jazzy,-$(ROS))
@@ -17,9 +18,10 @@ endif
 # what test-lowest leaves out: what depends on ROS and Python only, or on newer tools. Whole gradings
 # are in tests/grader/cli and tests/packaging/test_rosdep.py
 NOT_AT_LOWEST := tests/docs/test_trust.py tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
-	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
+	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py \
+	tests/packaging/test_licences.py tests/packaging/test_release_workflow.py
 
-.PHONY: help install tools needs test test-more test-all test-lowest test-kilted mutate size catalogues lint docs demo bench wheel clean
+.PHONY: help install tools needs test test-more test-all test-lowest test-kilted mutate size catalogues lint docs demo bench release clean
 .DEFAULT_GOAL := help
 
 help:
@@ -37,7 +39,7 @@ help:
 	@echo "make docs      the site, in build/site/html: pages, exercises, API, gallery; its links checked"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
 	@echo "make bench     what the simulator, a grading and a class cost: tables, in twenty minutes"
-	@echo "make wheel     a wheel for each Python that is here, in dist/jazzy, each tried where there is no gcc"
+	@echo "make release   all that a release consists of, in dist/, installed by name and tried where there is no gcc"
 	@echo "make clean     remove everything that was made here"
 	@echo "PYTHON=python3.12 make install   with that Python (3.11, 3.12 or 3.13)"
 
@@ -110,9 +112,11 @@ bench: install
 	@$(BIN)/python benchmarks/class.py --count 20 80 --jobs 2
 	@$(BIN)/python benchmarks/large_course.py --count 200
 
-wheel:
-	@scripts/wheel.sh
+# ROS and PYTHON: only for these
+release: export ROS := $(GIVEN_ROS)
+release:
+	@scripts/release.sh
 
 clean:
-	rm -rf .venv .venv-* build dist install log demo *.egg-info .eggs .hypothesis .mypy_cache .pytest_cache .ruff_cache
-	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+	rm -rf .venv .venv-* build dist install log demo .eggs .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find . \( -name __pycache__ -o -name "*.egg-info" \) -type d -prune -exec rm -rf {} +

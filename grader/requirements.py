@@ -1,7 +1,7 @@
-"""Packages that only part of the grader needs: a missing one is reported in one line.
+"""ROS, and packages that only part of the grader needs: what is missing is said in one line.
 
-pip installs all of them, the extra `cluster` only on request. `rosdep install` installs what Ubuntu
-has; the rest is for pip, which refuses to change Ubuntu's Python without a flag.
+pip installs all packages, the extra `cluster` only on request. `rosdep install` installs what
+Ubuntu has; the rest is for pip, which refuses to change Ubuntu's Python without a flag.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ import importlib
 import sys
 from importlib.util import find_spec
 
-from grader.errors import GraderFailure
+from grader.errors import GraderFailure, UsageError
 from grader.message import msg
+from turtlesim_py.ros import source
 
 #: The module to import, its use, and the requirement for pip, with the bounds of pyproject.toml.
 OPTIONAL = {
@@ -66,3 +67,19 @@ def require(package: str, load: bool = True) -> None:
             executable=sys.executable,
             requirement=requirement,
         ) from None
+
+
+def missing_ros() -> UsageError | None:
+    """Return what is wrong with ROS here and what to do; None where nothing is."""
+    found = source.complaint()
+    return UsageError(found.text, **found.values) if found else None
+
+
+def require_ros() -> None:
+    """Check that ROS can be imported, before anything that needs it.
+
+    Raises:
+        UsageError: it cannot.
+    """
+    if error := missing_ros():
+        raise error

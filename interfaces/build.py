@@ -1,20 +1,29 @@
-"""The setuptools command that builds the interface packages below `packages/`.
+"""Builds turtlesim-py-jazzy and turtlesim-py-kilted: what of ROS PyPI lacks, for its ROS.
 
-One self-contained extension module a package: generated, compiled and linked against the ROS
-wheels of PyPI, by `grader.rosidl.building`. Used by setup.py, and only where ROS is not sourced.
-Needs the packages listed under `build` in pyproject.toml.
+The interface packages below `packages/`, one self-contained extension module each: generated,
+compiled and linked against the ROS wheels of PyPI, by `grader.rosidl.building`. And ../tf2, and
+what `ros2 run turtlesim ...` looks for. `<release>/pyproject.toml` says what is required.
+
+One distribution for all of a release: they are compiled together, for one rclpy, and nobody needs
+one without the others. None of it may be where ROS is sourced, which has the same by these names.
 """
 
+import os
 import shutil
+import sys
+import tomllib
 from importlib.metadata import version
 from multiprocessing import get_context
 from pathlib import Path
 
+import setuptools
 from setuptools import Extension
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError
 
 from grader.rosidl import building
+from grader.rosidl.compiler import complaint
+from interfaces import ament
 
 HERE = Path(__file__).resolve().parent
 # Package -> the folder with its definitions. Those of turtlesim have two names: from ROS 2 Kilted
@@ -26,6 +35,15 @@ PACKAGES = {
 
 # Packages whose types ours use.
 DEPENDENCIES = (*building.ALWAYS_USED, "std_msgs", "geometry_msgs")
+# What lies in ../tf2, by the names of ROS's own packages: not in a checkout's root, which may stand
+# on Python's path and would hide them.
+TF2 = ("tf2_py", "tf2_ros")
+# Commands that compile, or by which pip asks what compiling needs. It asks before it downloads
+# anything; later the line about a missing compiler would stand below hundreds of others.
+COMPILING = {"egg_info", "dist_info", "bdist_wheel", "editable_wheel", "install", "build"}
+# Names the ROS releases that PyPI's ROS is from here (turtlesim_py/ros/source.py), as a resource of
+# the ament index.
+BROUGHT = "share/ament_index/resource_index/turtlesim_py_ros"
 # <prefix>/lib, seen from site-packages/<package>
 LIBRARIES = "$ORIGIN/../../../../lib"
 
@@ -36,6 +54,47 @@ AMENT_PREFIX_PTH = (
     "_p = [p for p in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep) if p]; "
     "sys.prefix in _p or os.environ.update(AMENT_PREFIX_PATH=os.pathsep.join([*_p, sys.prefix]))\n"
 )
+
+
+def setup() -> None:
+    """Build what the folder of a release describes, which is the current one."""
+    folder = Path.cwd()
+    if COMPILING.intersection(sys.argv):
+        if release := os.environ.get("ROS_DISTRO"):
+            sys.exit(
+                f"Cannot install: ROS 2 {release} is sourced, and has all that is built here. "
+                "Install the project alone, or take a shell without ROS."
+            )
+        if line := complaint():
+            sys.exit(line)
+    ours = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
+    setuptools.setup(
+        license="BSD-3-Clause AND Apache-2.0",
+        setup_requires=ours["tool"]["turtlesim-py"]["build"],
+        ext_modules=extensions(),
+        packages=[*TF2],
+        package_dir={name: f"../../tf2/{name}" for name in TF2},
+        data_files=data_files(folder.name),
+        include_package_data=False,
+        distclass=ament.AmentDistribution,
+        cmdclass={"build_py": ament.BuildPy, "build_ext": BuildInterfaces},
+        # what is compiled for one release of ROS is not for another
+        options={"build": {"build_base": f"../../build/{folder.name}"}},
+        zip_safe=False,
+    )
+
+
+def data_files(release: str) -> list[tuple[str, list[str]]]:
+    """What `ros2 run` and `ros2 launch` look for in ROS's own packages, as tutorials have it."""
+    nodes = [(Path(path).name, path) for path in ament.programs("robot_py")]
+    return [
+        (BROUGHT, [f"ament_marker/{release}"]),
+        (f"share/turtlesim-py-{release}", ["../../LICENSE"]),
+        ("share/turtlesim/launch", ["../../launch/multisim.launch.py"]),
+        ("lib/turtlesim", ament.programs("turtlesim_py")),
+        *((ament.PACKAGES, [f"ament_marker/{name}"]) for name, _ in nodes),
+        *((f"lib/{name}", [path]) for name, path in nodes),
+    ]
 
 
 def extensions() -> list[Extension]:
@@ -111,9 +170,9 @@ class BuildInterfaces(build_ext):
 
 def _inputs() -> list[Path]:
     """Return the inputs of the build; pyproject.toml has the versions of ROS."""
-    sources = [path for path in HERE.rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    sources = [path for path in (HERE / "packages").rglob("*") if path.is_file()]
     ours = (building.HERE / name for name in ("building.py", "dispatch.c"))
-    return [*sources, *ours, HERE.parent / "pyproject.toml"]
+    return [*sources, *ours, Path(__file__), *HERE.glob("*/pyproject.toml")]
 
 
 def _ros_version() -> str:

@@ -34,7 +34,7 @@ _PAIR_IN_TEMPLATE = re.compile(rf"\btr_many\(\s*{_STRING},\s*{_STRING}")
 _IN_SCRIPT = re.compile(rf"\b(?:t|key)\(\s*{_STRING}")
 #: The argument of an error is a sentence, too, if there are values for it.
 ERRORS = ("UsageError", "SubmissionError", "ExerciseError", "CheckFailed", "RecordingError")
-ERRORS += ("GraderFailure", "NotCompiled", "NotNow", "NotOffered", "SceneFailure")
+ERRORS += ("Complaint", "GraderFailure", "NotCompiled", "NotNow", "NotOffered", "SceneFailure")
 #: Folders of students' programs, and of no sources.
 NOT_OURS = ("starter", "reference", "right", "__pycache__")
 
@@ -92,6 +92,7 @@ def of_html(path: Path) -> Iterator[Sentence]:
 
 def of_grader() -> Iterator[Sentence]:
     """Yield the sentences of the grader and its robots; not those that its players share."""
+    yield from of_code(ROOT / "turtlesim_py" / "ros" / "source.py")
     players = [ROOT / "grader" / "scenes" / "turtlesim" / "player" / "page", HOPS.parent, HOPS]
     shared = set(of_simulator())
     for player in players:

@@ -121,16 +121,28 @@ fi
 
 requirements installed-requirements
 
-# content, not dates: git changes dates, and a deleted file has none
-sources=$(find turtlesim_py turtlesim_challenge robot_py grader grader_robots interfaces tf2 launch LICENSE MANIFEST.in \
-    README.md package.xml pyproject.toml setup.py -type f ! -name '*.pyc' -print0 |
-    LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
-if ! stamped installed-sources "$sources"; then
-    say "installing the project (seconds; up to a minute where turtlesim's interfaces are to be compiled)"
-    packages --no-build-isolation --no-deps --force-reinstall .
+# $1, which is called $2 and made from the files below the rest, unless that is what was installed
+project() {
+    local sources
+    # content, not dates: git changes dates, and a deleted file has none
+    sources=$(find "${@:3}" -type f ! -name '*.pyc' -print0 |
+        LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
+    stamped "installed-$2" "$sources" && return
+    say "installing the $2 (seconds${compiles:+; up to a minute where they are to be compiled})"
+    packages --no-build-isolation --no-deps --force-reinstall "$1"
     byte_code
-    stamp installed-sources "$sources"
+    stamp "installed-$2" "$sources"
+}
+
+packaging="LICENSE launch pyproject.toml interfaces/ament.py"
+if [ -z "${ROS_DISTRO:-}" ]; then
+    # shellcheck disable=SC2086  # several words
+    compiles=yes project "./interfaces/${ROS:-jazzy}" interfaces $packaging tf2 grader/rosidl \
+        interfaces/build.py interfaces/packages "interfaces/${ROS:-jazzy}"/{setup.py,pyproject.toml}
 fi
+# shellcheck disable=SC2086
+project . project $packaging turtlesim_py turtlesim_challenge robot_py grader grader_robots \
+    MANIFEST.in README.md package.xml setup.py
 
 for tools in "$@"; do
     requirements "installed-$tools-requirements" "$tools"

@@ -1,8 +1,9 @@
 """Print everything to install into .venv beside the project itself, one requirement a line.
 
-    requirements.py         for building and running it
-    requirements.py test    ... and also for `make test` and `make lint`
-    requirements.py docs    ... and also for `make docs`
+    requirements.py           for building and running it
+    requirements.py test      ... and also for `make test` and `make lint`
+    requirements.py docs      ... and also for `make docs`
+    requirements.py release   for scripts/release.sh alone
 
 BOUNDS=lowest asks for our dependencies at their lower bounds.
 """
@@ -11,9 +12,16 @@ import os
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
+ROOT = Path(__file__).resolve().parents[1]
 # Needs newer packages than our lower bounds; only what `make test-lowest` leaves out uses it.
 NOT_AT_LOWEST = ("check-jsonschema",)
+
+
+def read(path: Path) -> Any:
+    """Return what a pyproject.toml holds."""
+    return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
 def lowest(requirement: str) -> str:
@@ -21,22 +29,34 @@ def lowest(requirement: str) -> str:
     return requirement.partition(",")[0].replace(">=", "==")
 
 
-pyproject = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))
-ours = pyproject["tool"]["turtlesim-py"]
-build = pyproject["build-system"]["requires"]
-is_sourced = bool(os.environ.get("ROS_DISTRO"))  # the same rule as in setup.py
-dependencies = [*ours["dependencies"], *([] if is_sourced else ours["robots_without_ros"])]
-lists = {"test": ["robots", "test"], "docs": ["docs"]}
-tools = [each for word in sys.argv[1:] for name in lists[word] for each in ours["extras"][name]]
-if os.environ.get("BOUNDS") == "lowest":
-    # our own build needs a newer setuptools than packages are read with
-    dependencies = [each for each in dependencies if not each.startswith("setuptools")]
-    build, dependencies = map(lowest, build), map(lowest, dependencies)
-    tools = [name for name in tools if not name.startswith(NOT_AT_LOWEST)]
-requirements = ["pip", *build, *dependencies, *tools]  # uv brings no pip
-if not is_sourced:
-    release = os.environ.get("ROS") or "jazzy"
-    if release not in ours["ros"]:
-        sys.exit(f"ROS={release}: pyproject.toml has {' and '.join(ours['ros'])}")
-    requirements += [*ours["ros"][release]["run"], *ours["ros"][release]["build"]]
-print("\n".join(requirements))
+def ros(release: str) -> list[str]:
+    """Return what running and building with a ROS release from PyPI takes."""
+    found = {path.parent.name: path for path in ROOT.glob("interfaces/*/pyproject.toml")}
+    if release not in found:
+        sys.exit(f"ROS={release}: interfaces/ has {' and '.join(sorted(found))}")
+    its = read(found[release])
+    return [*its["project"]["dependencies"], *its["tool"]["turtlesim-py"]["build"]]
+
+
+def main() -> list[str]:
+    """Return the requirements."""
+    ours = read(ROOT / "pyproject.toml")
+    groups = ours["dependency-groups"]
+    if "release" in sys.argv:
+        return list(groups["release"])
+    build, dependencies = ours["build-system"]["requires"], ours["project"]["dependencies"]
+    lists = {"test": [*ours["project"]["optional-dependencies"]["robots"], *groups["test"]]}
+    lists["docs"] = groups["docs"]
+    tools = [each for word in sys.argv[1:] for each in lists[word]]
+    # where ROS is sourced, it is all there
+    is_sourced = bool(os.environ.get("ROS_DISTRO"))
+    of_ros = [] if is_sourced else ros(os.environ.get("ROS") or "jazzy")
+    if os.environ.get("BOUNDS") == "lowest":
+        # our own build needs a newer setuptools than packages are read with
+        dependencies = [each for each in dependencies if not each.startswith("setuptools")]
+        build, dependencies, of_ros = ([*map(lowest, n)] for n in (build, dependencies, of_ros))
+        tools = [name for name in tools if not name.startswith(NOT_AT_LOWEST)]
+    return ["pip", *build, *dependencies, *tools, *of_ros]  # uv brings no pip
+
+
+print("\n".join(main()))

@@ -50,7 +50,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # where ROS is not sourced, these stand for its own; nothing of ours but programs needs them
     "tf2_py": set(),
     "tf2_ros": {"tf2_py"},
-    "turtlesim_challenge": set(),
+    "turtlesim_challenge": {"turtlesim_py.ros.source"},
     # robots: data and arithmetic, of which only the nodes know that there is ROS
     "robot_py.__init__": set(),
     "robot_py.model": set(),
@@ -69,12 +69,16 @@ MAY_IMPORT: dict[str, set[str]] = {
     "turtlesim_py.ros.node": below("turtlesim_py", "world", "ros", "live"),
     "turtlesim_py.live": {"turtlesim_py.world"},
     "turtlesim_py.programs": below("turtlesim_py", "world", "ros", "browser"),
+    # what is installed as a command; it names its program, which it imports where it can
+    "turtlesim_py.commands": {"turtlesim_py.ros.source"},
+    "robot_py.commands": {"turtlesim_py.commands"},
     # ... which are nodes as the simulator is one
     "robot_py.robot_state_publisher": {"robot_py.robot_state"}
     | below("turtlesim_py.ros", "program", "rclcpp_node"),
     "robot_py.joint_state_publisher": {"robot_py.joint_states"}
     | below("turtlesim_py.ros", "program", "rclcpp_node"),
     **dict.fromkeys(GROUND, GROUND),
+    "grader.requirements": GROUND | {"turtlesim_py.ros.source"},
     # a library of its own
     "grader.rosidl": below("grader", "message", "errors"),
     "grader.recording": GROUND | {"grader.rosidl.bag_types"},

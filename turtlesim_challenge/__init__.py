@@ -19,6 +19,10 @@ def main() -> None:
     if not {"-h", "--help"}.isdisjoint(arguments):
         print(ABOUT)
         return
+    from turtlesim_py.ros import source
+
+    if source.complains("turtle_controller"):
+        sys.exit(source.UNUSABLE)
     from turtlesim_challenge import turtle_controller
 
     turtle_controller.main()

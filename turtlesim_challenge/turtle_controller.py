@@ -9,8 +9,13 @@ import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from turtlesim.msg import Pose
-from turtlesim.srv import SetPen
+
+try:
+    from turtlesim.msg import Pose
+    from turtlesim.srv import SetPen
+except ImportError:  # from ROS 2 Kilted on
+    from turtlesim_msgs.msg import Pose
+    from turtlesim_msgs.srv import SetPen
 
 CENTRE = 5.544445  # metres; the window is 11.088889 m wide and high
 EDGE = 0.5  # stop when a wall is nearer than this, in metres

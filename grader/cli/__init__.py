@@ -27,7 +27,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 try:  # Ctrl-C may come as early as this
     import importlib
 
-    from grader import system
+    from grader import requirements, system
     from grader.cli import options
     from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
     from grader.text import for_terminal
@@ -152,6 +152,9 @@ def _main(words: Sequence[str], refused: Text) -> int:
         _print_error(_heading(error, args.verb), error.message)
         return _ended(error, args)
     except Exception as error:
+        if isinstance(error, ImportError) and (missing := requirements.missing_ros()):
+            _print_error(_who(args.verb), missing.message)
+            return _ended(missing, args)
         what = "".join(traceback.format_exception_only(error)).strip()
         if isinstance(error, OSError) and error.errno in _OF_THE_MACHINE:
             _print_error(FAILED, what)

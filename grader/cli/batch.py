@@ -18,6 +18,7 @@ from grader.cli.run import LEVELS, add_of_runs
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.message import NOTHING, Message, joined, msg, msg_many
+from grader.requirements import require_ros
 from grader.translations import tr
 
 if TYPE_CHECKING:
@@ -102,6 +103,8 @@ def main(args: argparse.Namespace) -> int:
         from grader.cli import regrading
 
         return regrading.run(args, _jobs_of(args), view)
+    if not args.scheduler:
+        require_ros()
     if args.isolation and not args.scheduler:
         from grader.run.processes import levels
 

@@ -16,6 +16,7 @@ from grader.cli import say
 from grader.cli.batch import processes
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.requirements import require_ros
 from grader.testing.checking import Progress, check_exercise
 from grader.testing.examination import Examination
 from grader.translations import tr, translate
@@ -55,6 +56,7 @@ def main(args: argparse.Namespace) -> int:
 
 def tried(exercise: Exercise, mutants: Path | None = None, jobs: int | None = None) -> Examination:
     """Try an exercise, and show the progress; raises what `check_exercise` raises."""
+    require_ros()
     with _shown(Console(stderr=True, highlight=False), exercise.name) as progress:
         return check_exercise(exercise, mutants=mutants, jobs=jobs, progress=progress)
 

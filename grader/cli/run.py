@@ -10,6 +10,7 @@ from pathlib import Path
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.message import msg
+from grader.requirements import require, require_ros
 from grader.translations import tr
 
 #: Those of `grader.run.processes.levels.LEVELS`, which takes long to import.
@@ -116,6 +117,7 @@ def day(text: str) -> date:
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
     _check_speed(args)
+    require_ros()
     if args.isolation:
         from grader.run.processes import levels
 
@@ -134,8 +136,6 @@ def main(args: argparse.Namespace) -> int:
         grade = watch.grade_each_save
     if not args.live:
         return grade(args, None)
-    from grader.requirements import require
-
     require("websockets")
     from grader.cli.live import Live
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from grader.errors import GraderFailure, UsageError
 from grader.message import Message, msg
+from grader.requirements import require_ros
 from grader.servers import client, place
 from grader.translations import tr, translate
 
@@ -49,6 +50,7 @@ def main(args: argparse.Namespace) -> int:
                 setting=place.SETTING,
                 value=os.environ[place.SETTING],
             )
+        require_ros()
         _start(args.idle)
         print(tr("Servers run; `grader servers stop` ends them."))
         return 0

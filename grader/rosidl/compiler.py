@@ -1,7 +1,7 @@
 """The requirements for compiling the interface packages, and the line on what is missing.
 
-setup.py asks before pip downloads anything. As a program (for scripts/check_setup.sh) this prints
-the line, and fails.
+interfaces/build.py asks before pip downloads anything. As a program (for scripts/check_setup.sh)
+this prints the line, and fails.
 """
 
 import os
@@ -34,7 +34,7 @@ def complaint() -> str | None:
         f"Cannot install: missing: {', '.join(names)} "
         f"(Debian, Ubuntu: sudo apt install build-essential {python}-dev; "
         f"Fedora: sudo dnf install gcc gcc-c++ {python}-devel). "
-        "A wheel needs none of these: see `make wheel`."
+        "Wheels need none of these: pip install 'turtlesim_py[jazzy]'."
     )
 
 

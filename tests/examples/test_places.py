@@ -81,7 +81,7 @@ def test_pixi_requires_what_we_require(pixi) -> None:
     ours = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     required = {}
     # what builds is installed there, too, and asks for more of the same
-    for text in (*ours["tool"]["turtlesim-py"]["dependencies"], *ours["build-system"]["requires"]):
+    for text in (*ours["project"]["dependencies"], *ours["build-system"]["requires"]):
         match = re.match(r"([\w.-]+)([^;]*)", text)
         assert match
         required[match[1]] = match[2]

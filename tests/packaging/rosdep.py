@@ -48,13 +48,14 @@ sys.meta_path.insert(0, Hidden())
 
 
 def dependencies(extra: str = "") -> dict[str, str]:
-    """What pip is to install, or what an extra adds where no ROS is sourced, by name."""
+    """What pip is to install, or what an extra adds, or the tests need besides, by name."""
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    ours = pyproject["tool"]["turtlesim-py"]
-    wanted = ours["extras"][extra] if extra else ours["dependencies"]
-    if extra == "robots":
-        wanted = [*wanted, *ours["robots_without_ros"]]
-    return {_name(line): line for line in wanted}
+    extras = {
+        "": pyproject["project"]["dependencies"],
+        **pyproject["project"]["optional-dependencies"],
+        **pyproject["dependency-groups"],
+    }
+    return {_name(line): line for line in extras[extra]}
 
 
 def depends(manifest: str, release: str) -> set[str]:
@@ -79,7 +80,7 @@ def hide_all_but(folder: Path, names: Iterable[str]) -> Path:
     """
     installed = packages_distributions()
     ros = {name for owners in installed.values() for name in owners if name.startswith("ros-")}
-    kept: set[str] = {"turtlesim-py"}
+    kept = {"turtlesim-py", "turtlesim-py-jazzy", "turtlesim-py-kilted"}
     wanted = [*names, *ros]
     while wanted:
         name = _name(wanted.pop())

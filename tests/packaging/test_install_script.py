@@ -11,6 +11,7 @@ import pytest
 from .conftest import ROOT, System
 
 PYTHON = str(Path(sys.executable).resolve())
+JAZZY = "pip ./interfaces/jazzy"
 #: Answers as the Python of .venv does, and notes what it was asked.
 VENV_PYTHON = f"""\
 [ "$*" = "-c " ] || echo "$*" >>calls
@@ -71,11 +72,12 @@ def install(checkout: Path) -> Install:
 
 
 def packages(calls: list[str]) -> list[str]:
-    """Whose packages: `pip` or `uv`, and `.` for the project's own."""
+    """Whose packages: `pip` or `uv`, and `.` or a folder of interfaces/ for the project's own."""
     return [
-        f"{'uv' if call.startswith('uv') else 'pip'} {'.' if call.endswith(' .') else 'needs'}"
+        f"{'uv' if call.startswith('uv') else 'pip'} {last if last.startswith('.') else 'needs'}"
         for call in calls
         if " install " in call
+        for last in [call.rpartition(" ")[2]]
     ]
 
 
@@ -83,9 +85,24 @@ def test_the_project_goes_in_after_what_it_needs_and_then_byte_code_is_made(
     install: Install,
 ) -> None:
     calls = install.calls()
-    assert packages(calls) == ["pip needs", "pip ."]
-    assert all("--no-compile" in call for call in calls[:2])
-    assert [call.partition(" -qq")[0] for call in calls[2:]] == ["-m compileall"]
+    assert packages(calls) == ["pip needs", JAZZY, "pip ."]
+    assert all("--no-compile" in call for call in calls if " install " in call)
+    compiled = [call.startswith("-m compileall") for call in calls]
+    assert compiled == [False, False, True, False, True]
+
+
+def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install: Install) -> None:
+    install.calls()
+    (install.folder / "tf2" / "tf2_ros" / "buffer.py").touch()
+    assert install.calls() == []
+    (install.folder / "tf2" / "tf2_ros" / "buffer.py").write_text("")
+    assert packages(install.calls()) == [JAZZY]
+
+
+def test_another_release_of_ros_is_chosen_by_its_name(install: Install) -> None:
+    (install.folder / ".venv").rename(install.folder / ".venv-kilted")
+    install.env["ROS"] = "kilted"
+    assert packages(install.calls()) == ["pip needs", "pip ./interfaces/kilted", "pip ."]
 
 
 @pytest.mark.parametrize("target", ["install", "tools"])
@@ -114,7 +131,7 @@ def test_a_file_that_is_not_as_it_was_is_noticed(install: Install, change: str) 
 def test_what_failed_is_tried_again(install: Install) -> None:
     install.complaint("ERROR: no space left")
     (install.folder / "says").unlink()
-    assert packages(install.calls()) == ["pip needs", "pip ."]
+    assert packages(install.calls()) == ["pip needs", JAZZY, "pip ."]
 
 
 def test_only_tests_and_linters_get_what_they_need_besides(install: Install) -> None:
@@ -140,13 +157,13 @@ def test_what_the_tests_need_holds_all_that_the_project_needs() -> None:
 
 def test_uv_is_used_where_it_is(install: Install) -> None:
     install.commands.add("uv", UV)
-    assert packages(install.calls()) == ["uv needs", "uv ."]
+    assert packages(install.calls()) == ["uv needs", JAZZY.replace("pip", "uv"), "uv ."]
 
 
 def test_who_wants_pip_beside_uv_gets_it(install: Install) -> None:
     install.commands.add("uv", UV)
     install.env["UV"] = ""
-    assert packages(install.calls()) == ["pip needs", "pip ."]
+    assert packages(install.calls()) == ["pip needs", JAZZY, "pip ."]
 
 
 def test_beside_a_sourced_ros_uv_is_not_used(install: Install) -> None:

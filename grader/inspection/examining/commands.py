@@ -34,7 +34,7 @@ def xacro(words: list[str]) -> Ended:
         import xacro as program
     except ImportError:
         raise NotKnown(
-            msg("xacro is not installed where this was graded (pip install 'turtlesim_py[robots]')")
+            msg("xacro is not installed where this was graded (pip install xacro)")
         ) from None
     out, errors, before = io.StringIO(), io.StringIO(), sys.argv
     sys.argv = ["xacro", *words]

@@ -203,3 +203,25 @@ def test_a_folder_with_something_else_in_it_is_left_alone(machine: Machine) -> N
     assert install.returncode == 1
     assert "holds something else" in install.stderr
     assert (machine.venv / "bin" / "grader").exists()
+
+
+@pytest.mark.parametrize(
+    ("source", "wanted"),
+    [
+        ("turtlesim_py[jazzy]==1.2.3", []),
+        ("/a/release[kilted]", ["/a/release/interfaces/kilted"]),
+        (
+            "turtlesim_py[jazzy] @ git+https://x/y.git@v1",
+            ["git+https://x/y.git@v1#subdirectory=interfaces/jazzy"],
+        ),
+    ],
+)
+def test_what_is_needed_of_ros_comes_from_where_the_grader_does(machine, source, wanted) -> None:
+    asked = machine.folder / "asked"
+    made = rf'mkdir "$3/bin"; printf "#!/bin/sh\nprintf %%s\\\\\\\\n \"\$@\" >{asked}; exit 1" '
+    made += '>"$3/bin/python"; chmod +x "$3/bin/python"'
+    program(machine.folder / "bin" / "python3.12", f'[ "$2" != venv ] || {{ {made}; }}')
+    venv = str(machine.folder / "new")
+    install = machine.bash(scripts() / "install.sh", GRADER_SOURCE=source, GRADER_VENV=venv)
+    assert install.returncode == 1  # this Python installs nothing
+    assert asked.read_text().partition("--no-input\n")[2].splitlines() == [*wanted, source]

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs the grader, as root: on Ubuntu 22.04 or 24.04, Debian 12, or in the image python:3.12.
 #
-#     GRADER_SOURCE=...  what pip installs: a release by its name, git+https://HOST/PATH.git@TAG, or
-#                        the full path of an unpacked release
+#     GRADER_SOURCE=...  what pip installs: a release by its name, turtlesim_py[jazzy]==1.2.3;
+#                        turtlesim_py[jazzy] @ git+https://HOST/PATH.git@TAG; or the full path of an
+#                        unpacked release, /PATH[jazzy]
 #     GRADER_VENV=...    where to; default /opt/turtlesim-grader
 #     EXERCISE=...       as for grade.sh, if there is one; only to see that it can be used
 #
@@ -76,7 +77,14 @@ find "$venv" -mindepth 1 -delete
 unset _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH
 "$python" -m venv "$venv"
 echo "install.sh: installing the grader (a minute or two)"
-"$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-input "$source"
+ros=jazzy
+if [[ $source =~ \[[^]]*kilted ]]; then ros=kilted; fi
+case $source in # at an address and in a folder, what is needed of ROS lies beside
+*://*) wanted=("${source##*@ }#subdirectory=interfaces/$ros" "$source") ;;
+/*) wanted=("${source%%\[*}/interfaces/$ros" "$source") ;;
+*) wanted=("$source") ;;
+esac
+"$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-input "${wanted[@]}"
 
 check=$(mktemp -d)
 trap 'rm -rf "$check"' EXIT

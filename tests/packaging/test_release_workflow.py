@@ -1,0 +1,50 @@
+""".github/workflows/release.yml, as far as it can be seen without GitHub."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+
+import yaml
+
+from tests.needs import needs
+
+from .conftest import ROOT
+
+FILE = ROOT / ".github" / "workflows" / "release.yml"
+JOBS = yaml.safe_load(FILE.read_text(encoding="utf-8"))["jobs"]
+
+
+def test_it_follows_the_schema() -> None:
+    words = ["--builtin-schema", "vendor.github-workflows", str(FILE)]
+    check = subprocess.run([sys.executable, "-m", "check_jsonschema", *words], capture_output=True)
+    assert check.returncode == 0, check.stdout
+
+
+def test_only_the_job_that_publishes_gets_a_token_of_the_index_and_it_runs_nothing_of_ours() -> (
+    None
+):
+    trusted = {name for name, job in JOBS.items() if "id-token" in job["permissions"]}
+    assert trusted == {"publish"}
+    assert [step["uses"].partition("@")[0] for step in JOBS["publish"]["steps"]] == [
+        "actions/download-artifact",
+        "pypa/gh-action-pypi-publish",
+    ]
+    assert JOBS["publish"]["environment"] == "pypi"
+    uploaded = JOBS["publish"]["steps"][1]["with"]["packages-dir"]
+    assert uploaded == "dist/pypi/"
+    assert "dist/pypi/ " in (ROOT / "scripts" / "release.sh").read_text(encoding="utf-8")
+
+
+def test_actions_are_pinned_to_commits() -> None:
+    used = [step["uses"] for job in JOBS.values() for step in job["steps"] if "uses" in step]
+    assert used
+    assert [each for each in used if not re.search(r"@[0-9a-f]{40}$", each)] == []
+
+
+@needs("shellcheck")
+def test_the_scripts_are_good_shell() -> None:
+    scripts = sorted((ROOT / "scripts").glob("*.sh"))
+    check = subprocess.run(["shellcheck", *scripts], capture_output=True, text=True)
+    assert check.returncode == 0, check.stdout
