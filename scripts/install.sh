@@ -135,14 +135,15 @@ project() {
 }
 
 packaging="LICENSE launch pyproject.toml interfaces/ament.py"
+# First: until November 2026 it had the interfaces within, which go when it is replaced.
+# shellcheck disable=SC2086  # several words
+project . project $packaging turtlesim_py turtlesim_challenge robot_py grader grader_robots \
+    MANIFEST.in README.md package.xml setup.py
 if [ -z "${ROS_DISTRO:-}" ]; then
-    # shellcheck disable=SC2086  # several words
+    # shellcheck disable=SC2086
     compiles=yes project "./interfaces/${ROS:-jazzy}" interfaces $packaging tf2 grader/rosidl \
         interfaces/build.py interfaces/packages "interfaces/${ROS:-jazzy}"/{setup.py,pyproject.toml}
 fi
-# shellcheck disable=SC2086
-project . project $packaging turtlesim_py turtlesim_challenge robot_py grader grader_robots \
-    MANIFEST.in README.md package.xml setup.py
 
 for tools in "$@"; do
     requirements "installed-$tools-requirements" "$tools"
