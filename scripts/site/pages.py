@@ -54,14 +54,14 @@ def lay_out(root: Path, into: Path) -> None:
 
 def place_of(root: Path, path: Path) -> PurePosixPath:
     """Return where the site has a file or folder of the repository, from its own top."""
-    pure = PurePosixPath(path)
+    pure = PurePosixPath(*(part.lstrip(".") for part in path.parts))  # what is hidden is no page
     if (root / path).is_dir():
         return pure / "files.md"
     if pure.name == HOME:
         return pure.with_name("index.md")
     if pure.suffix == ".md" or pure.suffix in PICTURES:
         return pure
-    return pure.with_name(f"{pure.name.lstrip('.')}.md")  # what is hidden becomes no page
+    return pure.with_name(f"{pure.name}.md")
 
 
 def with_links(root: Path, path: Path, text: str, linked: Callable[[Path], object]) -> str:

@@ -39,9 +39,10 @@ def laid_out(tmp_path):
     readme = f"# It\n\n{head}\n## Then\n"
     page = (
         "[home](../README.md#then) [module](../code/run.py) [all](../code) [web](https://a.b/c.md) "
-        "[gone](gone.md)"
+        "[gone](gone.md) [hidden](../.ci/run.sh)"
     )
     write(tmp_path / "repo", README_md=readme, docs__in_md=page, code__run_py="print('```')\n")
+    write(tmp_path / "repo", **{".ci__run_sh": "make\n"})
     (tmp_path / "repo" / "docs" / "it.png").write_bytes(b"")
     pages.lay_out(tmp_path / "repo", tmp_path / "site")
     return tmp_path / "site"
@@ -50,8 +51,9 @@ def laid_out(tmp_path):
 def test_links_to_files_of_the_repository_lead_to_pages_that_show_them(laid_out):
     assert (laid_out / "docs" / "in.md").read_text() == (
         "[home](../index.md#then) [module](../code/run.py.md) [all](../code/files.md) "
-        "[web](https://a.b/c.md) [gone](gone.md)"
+        "[web](https://a.b/c.md) [gone](gone.md) [hidden](../ci/run.sh.md)"
     )
+    assert "make" in (laid_out / "ci" / "run.sh.md").read_text()
     assert "````python\nprint('```')\n" in (laid_out / "code" / "run.py.md").read_text()
     assert "[`run.py`](run.py.md)" in (laid_out / "code" / "files.md").read_text()
 
