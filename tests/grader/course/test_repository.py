@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import compileall
+import csv
 import json
+import os
 import re
 import shlex
 import shutil
@@ -22,7 +24,7 @@ from grader.course import repository
 from grader.course.kinds import KINDS
 from grader.exercise.loading import load_exercise
 from grader.submission.manifest import exercises_named
-from tests.grader.course.machine import EXERCISES, SOURCE, Machine, course
+from tests.grader.course.machine import EXERCISES, SOURCE, Machine, an_error, course
 from tests.grader.reports.samples import FORMATS
 from tests.needs import needs
 
@@ -168,6 +170,34 @@ def test_what_pip_has_compiled_is_no_part_of_a_course(tmp_path: Path, monkeypatc
 # What one kind has
 
 
+def test_the_grades_that_github_keeps_are_collected_also_of_what_was_unusable(
+    machine: Machine,
+) -> None:
+    """From downloaded artifacts, whether there are results, errors or both."""
+    (block,) = (text for text in commands("github") if "grades.csv" in text)
+    collect = block[block.index("find results") :]
+    results = machine.folder / "results"
+    results.mkdir()
+
+    def collected() -> list[tuple[str, str]]:
+        path = f"{machine.venv / 'bin'}:{machine.env['PATH']}"
+        done = machine.bash("-e", "-o", "pipefail", "-c", collect, PATH=path)
+        assert done.returncode == 0, done.stderr
+        rows = csv.DictReader((results / "grades.csv").read_text().splitlines())
+        return sorted((row["submission"], row["score"]) for row in rows)
+
+    for student, does in (("ada", "exit 0"), ("bob", an_error("submission", "it is empty"))):
+        machine.grade(does)  # what lies in its folder is the artifact
+        machine.work.rename(results / student)
+        shutil.rmtree(machine.folder / "student")
+    assert collected() == [("bob", "0"), ("student", "17.5")]
+    (results / "ada").rename(machine.folder / "ada")
+    assert collected() == [("bob", "0")]
+    shutil.rmtree(results / "bob")
+    (machine.folder / "ada").rename(results / "ada")
+    assert collected() == [("student", "17.5")]
+
+
 @pytest.mark.parametrize(
     ("kind", "schema", "file"),
     [("github", "github-workflows", GITHUB), ("gitlab", "gitlab-ci", GITLAB)],
@@ -260,7 +290,7 @@ def test_an_assessment_of_autolab_has_a_problem_for_each_check() -> None:
 
 @needs("git")
 def test_templates_are_pushed_and_pushed_again_after_an_edit(machine: Machine) -> None:
-    """To folders in place of the system; the second time on top of the first."""
+    """To folders in place of the system; the second time on top of what is there by then."""
     laid = machine.lay("gitlab")
     address = machine.folder / "hub"
     there = address / f"{EXERCISES[1]}.git"
@@ -289,3 +319,13 @@ def test_templates_are_pushed_and_pushed_again_after_an_edit(machine: Machine) -
     assert published() == first
     (laid / "templates" / EXERCISES[1] / "README.md").write_text("edited")
     assert published() == [f"The exercise {EXERCISES[1]}", "", "README.md", *first]
+
+    clone = machine.folder / "clone"  # what somebody adds there
+    subprocess.run(["git", "clone", "--quiet", "--branch=main", there, clone], check=True)
+    (clone / "LICENSE").write_text("theirs")
+    for words in (["add", "LICENSE"], ["commit", "-qm", "A licence"], ["push", "-q"]):
+        subprocess.run(["git", "-C", clone, *words], check=True, env=os.environ | env)
+    before = published()
+    assert "LICENSE" in before
+    (laid / "templates" / EXERCISES[1] / "README.md").write_text("edited again")
+    assert published() == [f"The exercise {EXERCISES[1]}", "", "README.md", *before]

@@ -25,11 +25,11 @@ for name; do
     esac
     git -c init.defaultBranch=main init --quiet "$copy/$name"
     cp -R "$name/." "$copy/$name"
-    git -C "$copy/$name" add --all
     # what is there already stays as it was, with these files upon it
     if git -C "$copy/$name" fetch --quiet "$there" main 2>/dev/null; then
-        git -C "$copy/$name" reset --quiet --soft FETCH_HEAD
+        git -C "$copy/$name" reset --quiet FETCH_HEAD
     fi
+    git -C "$copy/$name" add --ignore-removal .
     git -C "$copy/$name" diff --cached --quiet HEAD 2>/dev/null ||
         git -C "$copy/$name" commit --quiet --message "The exercise $name"
     git -C "$copy/$name" push --quiet "$there" HEAD:main
