@@ -6,6 +6,7 @@ import re
 
 import yaml
 
+from grader.course.kinds import KINDS
 from grader.exercise.places import names
 from tests.once import ROOT
 
@@ -70,5 +71,7 @@ def test_its_numbers_are_the_repository_s():
     measured = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `.+?\|(.+)\|$", BODY, re.MULTILINE)
     assert rows and all(row in measured for row in rows)
-    (each, minute) = re.findall(r"takes ([\d.]+) s of a core each, which is (\d+)", BODY)[0]
-    assert f"| 80 | {minute} | {each} |" in measured
+    (row,) = re.findall(r"class of (80),\s(\d+) hand-ins .* one took ([\d.]+) s of CPU", BODY)
+    assert f"| {' | '.join(row)} |" in measured
+    assert "one of eight" in BODY and len(KINDS) == 8
+    assert all(kind.title in BODY for kind in KINDS.values())
