@@ -157,6 +157,8 @@ def make_folder(folder: Path) -> None:
 def filling(folder: Path) -> Iterator[Path]:
     """Yield a path for what fills a new or empty folder, whole or not at all.
 
+    One in which only `.git` lies is empty.
+
     Raises:
         UsageError: the folder is a file, is not empty, or cannot be written.
     """
@@ -166,7 +168,7 @@ def filling(folder: Path) -> Iterator[Path]:
                 "{folder} is a file; give a new folder, nothing was written", folder=folder
             )
         is_new = not folder.exists()
-        if not is_new and any(folder.iterdir()):
+        if not is_new and any(path.name != ".git" for path in folder.iterdir()):  # `git init`
             raise UsageError(
                 "{folder} is not empty; give a new folder, nothing was written", folder=folder
             )

@@ -222,6 +222,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | RECORDED
     | below("grader", "__init__", "grading", "judging", "testing", "batch", "course", "cli.live")
     | below("grader", "reports", "run", "submission"),
+    # what a teacher installs from has an address as well
+    "grader.cli.course": GROUND | below("grader", "added.address", "course", "exercise"),
     "grader.cli.exercises": GROUND
     | below("grader", "added", "exercise", "cli", "testing")
     | {"grader.cli"},

@@ -22,6 +22,8 @@ _SCP: Final = re.compile(rf"{_HOST}:(?!/?-){_PATH}", re.ASCII)
 #: A tag, a branch without a slash, or a commit.
 _TAG: Final = re.compile(r"[A-Za-z0-9_](?:[\w.+-]{0,98}\w)?", re.ASCII)
 _FOLDER: Final = re.compile(r"(?:[A-Za-z0-9_][\w.-]*)(?:/[A-Za-z0-9_][\w.-]*)*", re.ASCII)
+#: What stands before a host: over https a token may pose as the user.
+_SECRET: Final = re.compile(r"https?://[^/@]*@|\w+://[^/@]*:[^/@]*@")
 _EXPECTED: Final = msg(
     "expected https://HOST/PATH, ssh://HOST/PATH, git@HOST:PATH, or the path of a repository here, "
     "then perhaps @TAG and #FOLDER"
@@ -63,12 +65,20 @@ class Address:
         return cls(_repository(repository, text), tag, folder)
 
 
+def has_secret(address: str) -> bool:
+    """Whether a password or a token is, or may be, in an address."""
+    return _SECRET.search(address) is not None
+
+
 def _repository(given: str, text: str) -> str:
+    if has_secret(given):
+        why = msg(
+            "a password or token before the host of an address would be in every result: leave it "
+            "out, git has credential helpers"
+        )
+        raise UsageError(why)
     if _URL.fullmatch(given) or (_SCP.fullmatch(given) and "://" not in given):
         return given
-    if re.match(r"\w+://[^/@]*:[^/@]*@", given):
-        why = msg("a password in an address would be in every result: git has credential helpers")
-        raise UsageError(why)
     path = given.removeprefix("file://")
     if given and not given.startswith("-") and "://" not in path and "::" not in path:
         folder = Path(path)

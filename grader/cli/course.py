@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from grader import files, system, text
+from grader.added.address import has_secret
 from grader.course import repository
 from grader.course.kinds import HAVE_A_CHECK, HAVE_AN_IMAGE, KINDS
 from grader.errors import UsageError
@@ -22,7 +23,14 @@ from grader.translations import tr
 #: The releases of ROS 2 that PyPI has, as extras of ours.
 RELEASES = ("jazzy", "kilted")
 #: What pip installs: in shells, YAML, JSON, Python and Dockerfiles, quoted, the same text.
-SOURCE = re.compile(r"[\w.+:/@\[\]=~<>!,;#&%?][\w.+:/@\[\]=~<>!,;#&%? -]*", re.ASCII)
+SOURCE = re.compile(r"[\w.+:/@\[\]=~<>!,;#&%][\w.+:/@\[\]=~<>!,;#&% -]*", re.ASCII)
+#: An address, perhaps behind a name: of a git repository at a tag, or of an archive.
+ADDRESS = re.compile(
+    r"([\w.-]+(?:\[[\w,-]+\])? *@ *)?"
+    r"(?:git\+\w+://[^/]*/[^#]*[^#/]@[^#/@]+|\w+://[^#]*\.(?:whl|zip|tar\.gz))(?:#.*)?",
+    re.ASCII,
+)
+RELEASE = re.compile(r"([\w.-]+)(\[[\w,-]+\])?( *[=~<>!].+)", re.ASCII)
 #: The name of an image, as docker takes it.
 IMAGE = re.compile(r"[a-z0-9][\w.:/-]*", re.ASCII)
 DEFAULT_IMAGE = "turtlesim-grader"
@@ -87,6 +95,11 @@ def main(args: argparse.Namespace) -> int:
         ExerciseError: there is no such exercise.
     """
     kind = KINDS[args.kind]
+    if any("," in name for name in args.exercises):
+        raise UsageError(
+            "--exercises {names}: separate them by blanks, not commas",
+            names=" ".join(args.exercises),
+        )
     exercises = [load_exercise(installed(name).name) for name in dict.fromkeys(args.exercises)]
     if added := next((each for each in exercises if each.origin is not None), None):
         raise UsageError(
@@ -153,17 +166,30 @@ def _source(source: str | None, ros: str) -> str:
                 "the version of this grader is not known; say with --source what to install"
             )
         return f"turtlesim_py[{ros}]=={version}"
-    is_address = "://" in source
-    is_path = not is_address and (source.startswith(".") or os.sep in source)  # as pip sees it
-    if is_path:
-        source = str(Path(source).resolve())
-    if "[" not in source:  # ROS comes by the extra
-        source = f"{source}[{ros}]" if is_path else source
-        source = f"turtlesim_py[{ros}] @ {source}" if is_address and "@ " not in source else source
-    if not SOURCE.fullmatch(source):
+    if has_secret(source):
         raise UsageError(
-            "--source {source}: expected what pip installs, without quotes, $ and \\: "
-            "git+https://HOST/PATH.git@TAG, or a path",
+            "a password or token in --source would be in files that students may read: leave it "
+            "out. The whole address goes into the CI's secret GRADER_SOURCE ({kinds}), elsewhere "
+            'where {readme} says under "Secrets"',
+            kinds=", ".join(HAVE_A_CHECK),
+            readme=repository.README,
+        )
+    extra = f"[{ros}]"  # ROS comes by it
+    whole = None
+    if "://" in source:
+        if address := ADDRESS.fullmatch(source):
+            whole = source if address[1] else f"turtlesim_py{extra} @ {source}"
+    elif source.startswith(".") or os.sep in source:  # a path, as pip sees it
+        path = str(Path(source).resolve())
+        whole = path if "[" in path else f"{path}{extra}"
+    elif release := RELEASE.fullmatch(source):
+        name, given, version = release.groups()
+        whole = f"{name}{given or extra}{version}"
+    if whole is None or not SOURCE.fullmatch(whole):
+        raise UsageError(
+            "--source {source}: expected what pip installs, without quotes, $, ? and \\: "
+            "git+https://HOST/PATH.git@TAG, the address of an archive (.whl, .zip, .tar.gz), a "
+            "folder as a path, or a name with its version (turtlesim_py==1.0)",
             source=repr(source),
         )
-    return source
+    return whole

@@ -115,7 +115,7 @@ def _of_course(
         "first": slug,
         "first_name": first.name,
         "first_title": str(first.title),
-        "others": OTHERS if len(slugs) > 1 else "",
+        "others": f"\n{OTHERS}" if len(slugs) > 1 else "",
         "rubric": kind.rubric.replace(EXERCISE, slug),
         "table": "\n".join(map(_row, exercises, slugs)),
         "questions": ",\n".join(

@@ -47,7 +47,8 @@ def test_what_is_no_address_is_refused(text):
         Address.parse(text)
 
 
-def test_a_password_is_refused_and_not_repeated():
+@pytest.mark.parametrize("secret", ["https://me:hunter2", "https://hunter2", "ssh://me:hunter2"])
+def test_a_password_or_token_is_refused_and_not_repeated(secret):
     with pytest.raises(UsageError, match="credential helpers") as refused:
-        Address.parse("https://me:hunter2@example.org/x")
+        Address.parse(f"{secret}@example.org/x")
     assert "hunter2" not in str(refused.value)
