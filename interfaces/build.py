@@ -89,7 +89,8 @@ def data_files(release: str) -> list[tuple[str, list[str]]]:
     nodes = [(Path(path).name, path) for path in ament.programs("robot_py")]
     return [
         (BROUGHT, [f"ament_marker/{release}"]),
-        (f"share/turtlesim-py-{release}", ["../../LICENSE"]),
+        # the second is that of example_interfaces and action_tutorials_interfaces
+        (f"share/turtlesim-py-{release}", ["../../LICENSE", "../LICENSE-Apache-2.0"]),
         ("share/turtlesim/launch", ["../../launch/multisim.launch.py"]),
         ("lib/turtlesim", ament.programs("turtlesim_py")),
         *((ament.PACKAGES, [f"ament_marker/{name}"]) for name, _ in nodes),

@@ -142,7 +142,7 @@ project . project $packaging turtlesim_py turtlesim_challenge robot_py grader gr
 if [ -z "${ROS_DISTRO:-}" ]; then
     # shellcheck disable=SC2086
     compiles=yes project "./interfaces/${ROS:-jazzy}" interfaces $packaging tf2 grader/rosidl \
-        interfaces/build.py interfaces/packages "interfaces/${ROS:-jazzy}"/{setup.py,pyproject.toml}
+        interfaces/{build.py,LICENSE-Apache-2.0,packages} "interfaces/${ROS:-jazzy}"/{setup.py,pyproject.toml}
 fi
 
 for tools in "$@"; do

@@ -76,3 +76,13 @@ def test_a_library_in_a_wheel_of_ros_that_nobody_has_looked_at_fails(environment
     assert "libstrange" in said
     (environment / "lib" / "libstrange.so.1").touch()  # it is ROS's own, once more
     assert "libstrange" not in check(environment)[1]
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="there is nothing of ours beside ROS's")
+def test_the_texts_come_with_what_is_under_them() -> None:
+    (shared,) = Path(sys.prefix, "share").glob("turtlesim-py-*")
+    texts = {path.name: path.read_text().split() for path in shared.iterdir()}
+    assert {name: text[:2] for name, text in texts.items()} == {
+        "LICENSE": (ROOT / "LICENSE").read_text().split()[:2],
+        "LICENSE-Apache-2.0": ["Apache", "License"],
+    }
