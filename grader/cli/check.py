@@ -14,7 +14,7 @@ from grader.cli.run import points
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
-from grader.exercise.loading import load_exercise
+from grader.exercise.loading import load_exercise, load_recorded
 from grader.exercise.places import names
 from grader.message import Message, msg
 from grader.recording.folder import WINDOW_PICTURE
@@ -118,7 +118,7 @@ def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) 
     """Load the exercise of the call, else the one that the recording was made for.
 
     Raises:
-        UsageError: that one is not installed.
+        UsageError: that one is not installed, or another of its name was added.
     """
     if asked is not None:
         return load_exercise(asked)
@@ -130,7 +130,7 @@ def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) 
             "installed here; give its folder: --exercise FOLDER",
             name=name,
         )
-    return load_exercise(name)
+    return load_recorded(name, "" if origin is None else origin.exercise_sha256)
 
 
 def _is_same(file: Path, place: RecordingPlace) -> bool:

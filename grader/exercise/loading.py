@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from grader.errors import CheckFailed, ExerciseError
+from grader.errors import CheckFailed, ExerciseError, UsageError
 from grader.exercise import cases, places, translated
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
@@ -66,6 +66,28 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
             strerror=error.strerror,
             filename=error.filename,
         ) from None
+
+
+def load_recorded(name: str, sha256: str) -> Exercise:
+    """Load the installed or added exercise that a recording or a class names.
+
+    Args:
+        sha256: of the exercise that it was made for; '' where that is not recorded.
+
+    Raises:
+        UsageError: an added one of this name is another exercise, as it may be of one's own folder.
+        ExerciseError: as `load_exercise`.
+    """
+    exercise = load_exercise(name)
+    if exercise.origin is not None and sha256 not in ("", exercise.sha256):
+        raise UsageError(
+            "it was made for another exercise {name!r} than the one that was added from {origin}: "
+            "an older or edited one, or one in a folder. Say which one you mean: --exercise FOLDER,"
+            " or --exercise {name}",
+            name=name,
+            origin=str(exercise.origin),
+        )
+    return exercise
 
 
 def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
@@ -167,7 +189,8 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
             name=repr(place.name),
             own_name=repr(name),
         )
-    if not place.name and name in names():
+    # an added one may have it too: a name alone means that one, a path this one
+    if not place.name and name in places.installed_names():
         raise Mistake(
             ("exercise",),
             "{name} is the name of an installed exercise; give yours another",

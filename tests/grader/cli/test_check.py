@@ -11,6 +11,7 @@ import yaml
 
 from grader import grading
 from grader.cli import main
+from tests.grader.added.repositories import added, commit
 from tests.grader.driving import Spiral, drive
 from tests.grader.testing import exercises
 
@@ -142,6 +143,23 @@ def test_the_exercise_is_the_one_that_it_was_made_for(graded, tmp_path, capsys):
     assert main(["check", str(graded)]) == 2
     assert "not installed here; give its folder" in capsys.readouterr().err
     assert main(["check", str(graded), "--exercise", str(folder)]) == 0
+
+
+def test_a_folder_s_recording_is_not_judged_by_an_added_exercise_of_its_name(
+    graded, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    theirs = exercises.write(tmp_path / "theirs")
+    commit(theirs)
+    added(theirs, "ahead")
+    mine = exercises.write(tmp_path / "mine", points={"commands": 1})
+    assert main(["run", "alice.py", "--exercise", str(mine)]) == 0
+    assert result(graded)["max_score"] == 1
+    assert main(["check", str(graded)]) == 2
+    assert "Say which one you mean: --exercise FOLDER" in " ".join(capsys.readouterr().err.split())
+    assert main(["check", str(graded), "--exercise", str(mine)]) == 0
+    assert main(["check", str(graded), "--exercise", "ahead"]) == 0
+    assert result(graded)["provenance"]["judged"]["exercise_from"]["address"] == theirs.as_uri()
 
 
 def test_what_students_are_not_to_see_is_in_the_result_alone(graded, tmp_path, capsys):
