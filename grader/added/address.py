@@ -57,8 +57,8 @@ class Address:
         at = rest.rfind("@")
         tag = rest[at + 1 :] if at > last else ""
         repository = rest[:at] if at > last else rest
-        if (at > last and not _TAG.fullmatch(tag)) or ".." in tag:
-            raise _refused(text, msg("{tag!r} is no tag, branch or commit", tag=tag))
+        if at > last:
+            check_tag(tag, text)
         is_folder = _FOLDER.fullmatch(folder) and ".." not in PurePosixPath(folder).parts
         if hash_sign and not is_folder:
             raise _refused(text, msg("{folder!r} is no folder in a repository", folder=folder))
@@ -68,6 +68,16 @@ class Address:
 def has_secret(address: str) -> bool:
     """Whether a password or a token is, or may be, in an address."""
     return _SECRET.search(address) is not None
+
+
+def check_tag(tag: str, text: str) -> None:
+    """Refuse what is no tag.
+
+    Raises:
+        UsageError: it is none; with the text that it is in.
+    """
+    if not _TAG.fullmatch(tag) or ".." in tag:
+        raise _refused(text, msg("{tag!r} is no tag, branch or commit", tag=tag))
 
 
 def _repository(given: str, text: str) -> str:

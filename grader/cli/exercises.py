@@ -42,7 +42,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     }
     address = tr("its git repository, a tag, branch or commit in it, and the folder in that")
     each["add"].add_argument("address", metavar="ADDRESS[@TAG][#FOLDER]", help=address)
-    each["update"].add_argument("name", nargs="?", metavar="NAME", help=tr("one alone (all)"))
+    one_alone = tr("one alone (all), and another tag of it, a branch or a commit")
+    each["update"].add_argument("name", nargs="?", metavar="NAME[@TAG]", help=one_alone)
     each["remove"].add_argument("name", metavar="NAME", help=tr("as `list` shows it"))
     for name in ("add", "update"):
         each[name].add_argument("--yes", action="store_true", help=tr("do not ask"))
@@ -104,11 +105,7 @@ def _add(args: argparse.Namespace, console: Console) -> int:
                 name=pin.name,
                 where=msg("installed with a package")
                 if folder is None
-                else msg(
-                    "added from {origin}; `grader exercises update {name}` fetches it anew",
-                    origin=str(_pin_of(pin.name).origin),
-                    name=pin.name,
-                ),
+                else _taken(_pin_of(pin.name), pin.origin),
             )
         _show_what(console, pin)
         _show_origin(console, pin.origin)
@@ -122,6 +119,17 @@ def _add(args: argparse.Namespace, console: Console) -> int:
     return DONE
 
 
+def _taken(there: Pin, asked: Origin) -> Message:
+    """Say where an added exercise is from, and which command brings what is asked for."""
+    name, tag = there.name, "" if asked.tag == there.origin.tag else f"@{asked.tag or 'HEAD'}"
+    is_same = (asked.address, asked.folder) == (there.origin.address, there.origin.folder)
+    way = f"grader exercises update {name}{tag}" if is_same else f"grader exercises remove {name}"
+    words = {"origin": str(there.origin), "command": way}
+    if is_same:
+        return msg("added from {origin}; `{command}` fetches what you ask for", **words)
+    return msg("added from {origin}; `{command}` makes room", **words)
+
+
 def _update(args: argparse.Namespace, console: Console) -> int:
     if args.name is None:
         codes = [_update_one(name, args, console) for name in pins.names()]
@@ -131,15 +139,20 @@ def _update(args: argparse.Namespace, console: Console) -> int:
     return _update_one(args.name, args, console)
 
 
-def _update_one(name: str, args: argparse.Namespace, console: Console) -> int:
-    from grader.added.address import Address
+def _update_one(asked: str, args: argparse.Namespace, console: Console) -> int:
+    from grader.added.address import Address, check_tag
     from grader.added.fetching import changed, fetch
 
+    name, at, tag = asked.partition("@")
+    if at:
+        check_tag(tag, asked)
     pin, folder = _pin_of(name), pins.home() / name / FILES
     there = pin.origin
-    fetched = fetch(Address(there.address, there.tag, there.folder))
+    tag = tag or there.tag
+    fetched = fetch(Address(there.address, tag, there.folder))
     is_changed_here = bool(pin.differs(folder))
-    if fetched.origin.sha256 == there.sha256 and not is_changed_here:
+    is_same = (fetched.origin.sha256, tag) == (there.sha256, there.tag)
+    if is_same and not is_changed_here:
         say(console, msg("{name} is up to date: {origin}", name=name, origin=str(there)))
         return DONE
     with pins.unfinished() as place:
@@ -147,11 +160,11 @@ def _update_one(name: str, args: argparse.Namespace, console: Console) -> int:
         if new.name != name:
             raise UsageError(
                 "{origin} holds another exercise now, {found!r}: add that one, and remove {name!r}",
-                origin=str(there),
+                origin=str(new.origin),
                 found=new.name,
                 name=name,
             )
-        _show_what(console, pin)
+        _show_what(console, new)
         say(console, msg("    until now: commit {commit}", commit=there.commit))
         _show_origin(console, new.origin)
         if is_changed_here:

@@ -114,6 +114,10 @@ def test_a_name_that_is_taken_is_refused_and_says_by_what(call, tmp_path, reposi
     code, _, err = call("add", repository, "--yes")
     assert code == 2
     assert "there is an exercise 'ahead' already, added from file://" in err
+    assert "`grader exercises update ahead` fetches" in err
+    other = exercises.write(tmp_path / "other")
+    commit(other)
+    assert "`grader exercises remove ahead` makes room" in call("add", other, "--yes")[2]
     folder = exercises.write(tmp_path / "square", exercise="square")
     commit(folder)
     code, _, err = call("add", folder, "--yes")
@@ -153,6 +157,25 @@ def test_an_update_shows_what_changes(call, repository, tried):
     assert "    ~ checks.py\n    + mute.py\n    - silent.py\n" in out
     assert origin_of(pins.folder_of("ahead")).commit == second
     assert [each.commit for each in tried] == [first, second]
+
+
+def test_an_update_takes_another_tag_as_add_says(call, repository):
+    call("add", f"{repository}@v1", "--yes")
+    (repository / "checks.py").write_text(exercises.CHECKS + "\n# more\n")
+    second = commit(repository)
+    git(repository, "tag", "v2")
+    code, _, err = call("add", f"{repository}@v2", "--yes")
+    assert code == 2
+    assert "`grader exercises update ahead@v2` fetches what you ask for" in err
+    code, out, _ = call("update", "ahead@v2", "--yes")
+    assert code == 0
+    assert f"The exercise ahead, from {repository.as_uri()}@v2\n    until now: " in out
+    origin = origin_of(pins.folder_of("ahead"))
+    assert (origin.commit, origin.tag) == (second, "v2")
+    assert "up to date" in call("update", "ahead")[1]
+    assert "update ahead@HEAD`" in call("add", repository, "--yes")[2]
+    assert call("update", "ahead@HEAD", "--yes")[0] == 0
+    assert "'' is no tag, branch or commit" in call("update", "ahead@", "--yes")[2]
 
 
 def test_an_update_puts_back_what_was_changed_here(call, repository):
