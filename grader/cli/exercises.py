@@ -33,7 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.epilog = tr(
         "Exit code: 0 done, 1 not added or updated (you said no, or check-exercise found something "
-        "to fix), 2 it cannot be used."
+        "to fix), 2 it cannot be used, 3 its checks end their process, answer too much or do not "
+        "end."
     )
     does = parser.add_subparsers(dest="what", required=True, metavar="list|add|update|remove")
     each = {
@@ -111,7 +112,7 @@ def _add(args: argparse.Namespace, console: Console) -> int:
         _show_origin(console, pin.origin)
         for name, data in fetched.files.items():
             say(console, msg("    {file} ({size:,} bytes)", file=name, size=len(data)))
-        if not (_is_wanted(args, console) and _is_fine(args, place)):
+        if not (_is_wanted(args, console) and _is_fine(args, console, place)):
             say(console, msg("Nothing was added."))
             return NOT_DONE
         pins.put(place, pin.name)
@@ -171,7 +172,7 @@ def _update_one(asked: str, args: argparse.Namespace, console: Console) -> int:
             say(console, msg("    its files were changed here; these changes go"))
         for line in changed(content.hashes_of(folder), content.hashes_of(place / FILES)):
             say(console, f"    {line}")
-        if not (_is_wanted(args, console) and _is_fine(args, place)):
+        if not (_is_wanted(args, console) and _is_fine(args, console, place)):
             say(console, msg("Nothing was changed."))
             return NOT_DONE
         pins.put(place, name)
@@ -266,12 +267,13 @@ def _is_wanted(args: argparse.Namespace, console: Console) -> bool:
     return input(tr("Go on? [y/N] ")).strip().lower() in ("y", "yes", *tr("y yes").split())
 
 
-def _is_fine(args: argparse.Namespace, place: Path) -> bool:
+def _is_fine(args: argparse.Namespace, console: Console, place: Path) -> bool:
     """Try the exercise as `grader check-exercise` does, and show what that finds."""
     from grader.cli import check_exercise
 
+    say(console, msg("Trying it: each of its solutions is run and judged. That may take minutes."))
     examination = check_exercise.tried(load_exercise(place / FILES), jobs=args.jobs)
-    check_exercise.show(examination, Console(highlight=False))
+    check_exercise.show(examination, console)
     return examination.is_fine
 
 
