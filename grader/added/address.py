@@ -21,6 +21,10 @@ _URL: Final = re.compile(rf"(?:https|ssh)://{_HOST}(?::[0-9]{{1,5}})?/{_PATH}", 
 _SCP: Final = re.compile(rf"{_HOST}:(?!/?-){_PATH}", re.ASCII)
 #: A tag, a branch without a slash, or a commit.
 _TAG: Final = re.compile(r"[A-Za-z0-9_](?:[\w.+-]{0,98}\w)?", re.ASCII)
+#: A folder as a host's own page shows it: https://github.com/me/x/tree/main/corner.
+_SHOWN: Final = re.compile(
+    r"(https://(?:github\.com/[^/]+/[^/]+|.+(?=/-/)))/(?:-/)?tree/([^/]+)(?:/(.+?))?/?", re.ASCII
+)
 _FOLDER: Final = re.compile(r"(?:[A-Za-z0-9_][\w.-]*)(?:/[A-Za-z0-9_][\w.-]*)*", re.ASCII)
 #: What stands before a host: over https a token may pose as the user.
 _SECRET: Final = re.compile(r"https?://[^/@]*@|\w+://[^/@]*:[^/@]*@")
@@ -51,6 +55,12 @@ class Address:
         Raises:
             UsageError: it is none, or one that is not fetched from.
         """
+        if has_secret(text):  # first: other refusals repeat the text
+            why = msg(
+                "a password or token before the host of an address would be in every result: leave "
+                "it out, git has credential helpers"
+            )
+            raise UsageError(why)
         rest, hash_sign, folder = text.partition("#")
         # "@" is also before a host: a tag is behind the last "/" and ":"
         last = max(rest.rfind("/"), rest.rfind(":"))
@@ -77,25 +87,45 @@ def check_tag(tag: str, text: str) -> None:
         UsageError: it is none; with the text that it is in.
     """
     if not _TAG.fullmatch(tag) or ".." in tag:
-        raise _refused(text, msg("{tag!r} is no tag, branch or commit", tag=tag))
+        raise UsageError(
+            "{text!r}: expected a tag, a branch without a slash, or a commit behind the @, found "
+            "{tag!r}",
+            text=text[:200],
+            tag=tag[:200],
+        )
 
 
 def _repository(given: str, text: str) -> str:
-    if has_secret(given):
-        why = msg(
-            "a password or token before the host of an address would be in every result: leave it "
-            "out, git has credential helpers"
+    if page := _SHOWN.fullmatch(given):
+        shown, tag, inside = page.groups("")
+        raise UsageError(
+            "{text!r} is the address of a page; the repository's is {address}",
+            text=text[:200],
+            address=f"{shown}@{tag}" + (f"#{inside}" if inside else ""),
         )
-        raise UsageError(why)
-    if _URL.fullmatch(given) or (_SCP.fullmatch(given) and "://" not in given):
+    if _is_url(given):
         return given
     path = given.removeprefix("file://")
     if given and not given.startswith("-") and "://" not in path and "::" not in path:
         folder = Path(path)
         if folder.is_dir():
             return folder.resolve().as_uri()
+        _check_no_slash(given, text)
         raise _refused(text, msg("there is no folder {path!r} here", path=path))
+    _check_no_slash(given, text)
     raise _refused(text, msg("it is no address that exercises are fetched from"))
+
+
+def _check_no_slash(given: str, text: str) -> None:
+    """Refuse what would be an address but for a slash behind the @."""
+    repository, at, tag = given.rpartition("@")
+    if at and (_is_url(repository) or Path(repository.removeprefix("file://")).is_dir()):
+        check_tag(tag, text)
+
+
+def _is_url(given: str) -> bool:
+    is_scp = _SCP.fullmatch(given) is not None and "://" not in given
+    return is_scp or _URL.fullmatch(given) is not None
 
 
 def _refused(text: str, why: object) -> UsageError:

@@ -21,7 +21,7 @@ from grader import content, linux, scratch
 from grader.added.address import Address
 from grader.added.pins import Origin
 from grader.errors import UsageError
-from grader.message import msg
+from grader.message import Message, msg
 
 #: How much an exercise may be: files, and all their bytes; and one that is parsed as YAML.
 MOST_FILES, MOST_BYTES, MOST_YAML_BYTES = 2_000, 20_000_000, 250_000
@@ -35,6 +35,9 @@ _OTHERS: Final = {
     b"120000": msg("a symbolic link"),
     b"160000": msg("a submodule"),
 }
+#: How a file begins that stands for one of Git LFS:
+#: https://github.com/git-lfs/git-lfs/blob/main/docs/spec.md
+_LFS: Final = b"version https://git-lfs.github.com/spec/v1\n"
 #: Nothing but these transports, no program of the repository's or of its host's choice, and no
 #: question that nobody answers.
 _SETTINGS: Final = (
@@ -172,18 +175,23 @@ def _files(git: _Git, address: Address, commit: str) -> dict[str, bytes]:
         mode, _, number, size = facts.split()
         path = _path(name)
         if mode not in _FILES:
-            raise UsageError(
-                "{path} is {what}: an exercise holds ordinary files alone",
-                path=path,
-                what=_OTHERS.get(mode, msg("no file")),
-            )
+            raise _no_ordinary_file(path, _OTHERS.get(mode, msg("no file")))
         found[path] = number.decode(), int(size)
     _check_size({path: size for path, (_, size) in found.items()})
     numbers = [number for number, _ in found.values()]
     objects = _blobs(git.run("cat-file", "--batch", given="\n".join([*numbers, ""]).encode()))
     files = dict(zip(found, objects, strict=True))
+    for path, data in files.items():
+        if data.startswith(_LFS):
+            raise _no_ordinary_file(path, msg("a pointer of Git LFS"))
     _check_is_exercise(files)
     return files
+
+
+def _no_ordinary_file(path: str, what: Message) -> UsageError:
+    return UsageError(
+        "{path} is {what}: an exercise holds ordinary files alone", path=path, what=what
+    )
 
 
 def _blobs(data: bytes) -> list[bytes]:

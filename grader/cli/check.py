@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -125,6 +126,15 @@ def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) 
     origin = recordings.nominal.provenance
     name = (origin and origin.exercise) or (place.older and place.older.exercise) or DEFAULT
     if name not in names():
+        judged = place.older and place.older.provenance and place.older.provenance.judged
+        if judged and judged.exercise_from is not None:
+            address = str(replace(judged.exercise_from, tag=judged.exercise_from.commit))
+            raise UsageError(
+                "the recording was made for the exercise {name!r}, which was added, and is no "
+                "longer here: {command}",
+                name=name,
+                command=f"grader exercises add {shlex.quote(address)}",
+            )
         raise UsageError(
             "the recording was made for the exercise {name!r}, which is not "
             "installed here; give its folder: --exercise FOLDER",

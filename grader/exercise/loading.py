@@ -110,7 +110,7 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
 
 
 def _from_place(place: Place) -> Exercise:
-    with _naming(place.folder):
+    with _naming(place.shown):
         file = _read(place.description)
         with _placing(file):
             return build(_described(file, place), place)
@@ -119,7 +119,7 @@ def _from_place(place: Place) -> Exercise:
 def _from_file(path: Path) -> Exercise:
     if path.name == DESCRIPTION and places.is_exercise(path.parent):
         return _from_place(places.in_folder(path.parent))
-    with _naming(path):
+    with _naming(str(path)):
         edited = _read(path)
         with _placing(edited):
             _check_keys(edited.data)
@@ -128,15 +128,15 @@ def _from_file(path: Path) -> Exercise:
 
 
 @contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """Name the folder or the file of an exercise in an error of it."""
+def _naming(path: str) -> Iterator[None]:
+    """Name the folder, the address or the file of an exercise in an error of it."""
     try:
         yield
     except CheckFailed:  # of an added exercise, and told as such
         raise
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            "{path} is not an exercise: {why}", path=str(path), why=reason(error)
+            "{path} is not an exercise: {why}", path=path, why=reason(error)
         ) from error
 
 

@@ -60,6 +60,11 @@ class Place:
         """Its exercise.yaml."""
         return self.folder / DESCRIPTION
 
+    @property
+    def shown(self) -> str:
+        """What its user knows it by: its folder, or the address that it was added from."""
+        return str(self.folder if self.pin is None else self.pin.origin)
+
 
 def names() -> list[str]:
     """Return the names of the installed exercises, and of the added ones."""
@@ -107,11 +112,14 @@ def in_folder(folder: Path) -> Place:
     Raises:
         ExerciseError: one of its two files is missing; or it was added, and was changed since.
     """
-    if why := _wrong_with(folder):
-        raise ExerciseError("{path} is not an exercise: {why}", path=str(folder), why=why)
-    folder = folder.resolve()
-    if pin := pins.around(folder):
+    pin = pins.around(folder)
+    if pin is not None:
         pin.check(folder)
+    if why := _wrong_with(folder):
+        where = Place(folder, pin=pin).shown
+        raise ExerciseError("{path} is not an exercise: {why}", path=where, why=why)
+    folder = folder.resolve()
+    if pin is not None:
         return Place(folder, name=pin.name, pin=pin)
     for name, points in extensions.points(EXERCISES).items():
         with suppress(ExerciseError):

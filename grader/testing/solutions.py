@@ -41,7 +41,7 @@ from typing import Any, Literal
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
-from grader.message import reason
+from grader.message import msg, reason
 from grader.yaml_file import Keys, Mistake, read_yaml
 
 FILE_NAME = "mutants.yaml"
@@ -101,7 +101,7 @@ class Solution:
                     "mutants: {name}: there is no file {file!r} in {path}",
                     name=self.name,
                     file=change.file,
-                    path=str(self.path),
+                    path=self.path.name,
                 )
             if change.old is None:
                 texts[change.file] = change.new
@@ -154,7 +154,10 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
     Raises:
         ExerciseError: there is none, or it is not valid.
     """
+    # an added exercise lies where its user does not look, and `exercises add` takes no other file
+    is_added = path is None and exercise.origin is not None
     path = path or exercise.folder / FILE_NAME
+    shown = path.name if is_added else str(path)
     try:
         file = read_yaml(path)
         try:
@@ -165,17 +168,18 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
             solution.texts()
     except OSError as error:
         raise ExerciseError(
-            "cannot read the solutions of {name!r}, {path}: {why}. Expected a "
-            "{file} in the exercise's folder, or --mutants FILE.",
+            "cannot read the solutions of {name!r}, {path}: {why}. {expected}.",
             name=exercise.name,
-            path=str(path),
+            path=shown,
             why=str(error.strerror),
-            file=FILE_NAME,
+            expected=msg("Expected a {file} in the exercise's folder", file=FILE_NAME)
+            if is_added
+            else msg(
+                "Expected a {file} in the exercise's folder, or --mutants FILE", file=FILE_NAME
+            ),
         ) from None
     except (ExerciseError, ValueError) as error:
-        raise ExerciseError(
-            "{path} cannot be used: {why}", path=str(path), why=reason(error)
-        ) from None
+        raise ExerciseError("{path} cannot be used: {why}", path=shown, why=reason(error)) from None
     return found
 
 

@@ -47,8 +47,30 @@ def test_what_is_no_address_is_refused(text):
         Address.parse(text)
 
 
+@pytest.mark.parametrize("address", ["https://example.org/x", "git@example.org:x", "."])
+def test_a_tag_has_no_slash(address):
+    with pytest.raises(UsageError, match="a branch without a slash, or a commit"):
+        Address.parse(f"{address}@feat/x")
+
+
+@pytest.mark.parametrize(
+    ("page", "address"),
+    [
+        ("https://github.com/me/x/tree/main/a/b", "https://github.com/me/x@main#a/b"),
+        ("https://github.com/me/x/tree/v1/", "https://github.com/me/x@v1"),
+        ("https://example.org/a/b/x/-/tree/main/a", "https://example.org/a/b/x@main#a"),
+    ],
+)
+def test_the_address_of_a_host_s_page_is_told_as_that_of_its_repository(page, address):
+    with pytest.raises(UsageError) as refused:
+        Address.parse(page)
+    assert str(refused.value).endswith(f"the repository's is {address}")
+    Address.parse(address)
+
+
 @pytest.mark.parametrize("secret", ["https://me:hunter2", "https://hunter2", "ssh://me:hunter2"])
-def test_a_password_or_token_is_refused_and_not_repeated(secret):
+@pytest.mark.parametrize("behind", ["", "@-v", "#..", "@feat/x", "/-/tree/main"])
+def test_a_password_or_token_is_refused_and_not_repeated(secret, behind):
     with pytest.raises(UsageError, match="credential helpers") as refused:
-        Address.parse(f"{secret}@example.org/x")
+        Address.parse(f"{secret}@example.org/x{behind}")
     assert "hunter2" not in str(refused.value)

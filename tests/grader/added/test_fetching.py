@@ -89,6 +89,11 @@ def test_what_is_no_ordinary_file_is_refused(repository):
     git(repository, "update-index", "--add", "--cacheinfo", f"160000,{'1' * 40},inner")
     git(repository, "commit", "--quiet", "--message=x")
     assert "inner is a submodule" in why_not(repository)
+    git(repository, "rm", "--quiet", "--cached", "inner")
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n"
+    (repository / "map.png").write_text(pointer)
+    commit(repository)
+    assert "map.png is a pointer of Git LFS: an exercise" in why_not(repository)
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from grader.cli import exercises as cli_exercises
 from grader.exercise.places import names
 from grader.message import msg
 from grader.testing.examination import Examination, Fault, Problem
+from grader.testing.solutions import read_solutions
 from tests.grader.added.repositories import commit, git
 from tests.grader.testing import exercises
 
@@ -175,7 +176,7 @@ def test_an_update_takes_another_tag_as_add_says(call, repository):
     assert "up to date" in call("update", "ahead")[1]
     assert "update ahead@HEAD`" in call("add", repository, "--yes")[2]
     assert call("update", "ahead@HEAD", "--yes")[0] == 0
-    assert "'' is no tag, branch or commit" in call("update", "ahead@", "--yes")[2]
+    assert "behind the @, found ''" in call("update", "ahead@", "--yes")[2]
 
 
 def test_an_update_puts_back_what_was_changed_here(call, repository):
@@ -211,6 +212,25 @@ def test_an_exercise_without_a_name_is_refused(call, repository):
     code, _, err = call("add", repository, "--yes")
     assert code == 2
     assert "expected a name such as my_exercise" in err
+
+
+def test_no_message_names_the_folder_in_which_it_is_tried(call, repository, monkeypatch):
+    monkeypatch.setattr(cli_exercises, "load_exercise", load_exercise)
+    monkeypatch.setattr(check_exercise, "tried", lambda exercise, **_: read_solutions(exercise))
+    (repository / "mutants.yaml").unlink()
+    commit(repository)
+    code, _, err = call("add", repository, "--yes")
+    assert code == 2
+    assert "'ahead', mutants.yaml: No such file" in err
+    assert "--mutants" not in err
+    (repository / "checks.py").unlink()
+    commit(repository)
+    err = call("add", repository, "--yes")[2]
+    assert f"{repository.as_uri()} is not an exercise: it has no checks.py" in err
+    exercises.write(repository, points=3)
+    commit(repository)
+    err = call("add", repository, "--yes")[2]
+    assert f"{repository.as_uri()} is not an exercise: exercise.yaml, line" in err
 
 
 def test_elsewhere_than_on_linux_it_lists_and_removes(call, repository, monkeypatch):
