@@ -156,7 +156,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"grader.diagnosis.diagnosis"},
     "grader.reports": GROUND
     | below("grader", "recording", "exercise.verdict", "result", "diagnosis.diagnosis")
-    | {"grader.scenes.scene"},
+    | {"grader.scenes.scene", "grader.added.pins"},
     "grader.judging": GROUND | RECORDED | {"grader.diagnosis"},
     "grader.grading": GROUND
     | RECORDED
