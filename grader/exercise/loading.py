@@ -81,9 +81,9 @@ def load_recorded(name: str, sha256: str) -> Exercise:
     exercise = load_exercise(name)
     if exercise.origin is not None and sha256 not in ("", exercise.sha256):
         raise UsageError(
-            "it was made for another exercise {name!r} than the one that was added from {origin}: "
-            "an older or edited one, or one in a folder. Say which one you mean: --exercise FOLDER,"
-            " or --exercise {name}",
+            "the recordings were made for another exercise {name!r} than the one added from "
+            "{origin}: an older or edited one, or one in a folder. Say which one you mean: "
+            "--exercise FOLDER, or --exercise {name}",
             name=name,
             origin=str(exercise.origin),
         )
