@@ -122,7 +122,7 @@ def make(task: Task) -> None:
         RecordingError: the task names a run that cannot be read.
     """
     exercise = _exercise(task.exercise)
-    found = _without_names(_loaded(task), _names(task)) or _run(task, exercise)
+    found = _without_names(_loaded(task), _names(task, exercise)) or _run(task, exercise)
     for hand_in in task.hand_ins:
         folder = task.into / STUDENTS / hand_in.id
         if isinstance(found, Recordings):
@@ -146,14 +146,14 @@ def _names(task: Task, exercise: Exercise | None = None, copy: Path | None = Non
     if task.names is None:
         return Names({})
     own, others = dict(task.own_names), pseudonyms.read(task.names)
+    known = known_words(exercise)
     if task.stands_for and exercise and copy and task.path:
-        known = known_words(exercise)
         told = {
             **forms(called_in(copy, task.path.name, known), f"{task.stands_for}z", known),
             **forms(said_in(copy, clones.identities(task.path)), f"{task.stands_for}y", known),
         }
         own = {**{name: others.stands_for(name) or at for name, at in told.items()}, **own}
-    return Names({}, own, others)
+    return Names({}, own, others, known)
 
 
 def _without_names(found: Recordings | Message | None, names: Names) -> Recordings | Message | None:

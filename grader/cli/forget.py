@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from grader.batch.forget.whom import Whom
     from grader.result.visible import View
 
+#: So many words that will be replaced are shown.
+_MOST_WORDS = 20
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
@@ -65,6 +68,7 @@ def main(args: argparse.Namespace) -> int:
     from grader.batch.names.people import known_words
     from grader.batch.store import Store
     from grader.exercise.loading import load_exercise, load_recorded
+    from grader.submission.folder import listed
 
     console = Console(highlight=False)
     described = ClassFile.read(args.out)
@@ -95,6 +99,14 @@ def main(args: argparse.Namespace) -> int:
                 msg(
                     "Others have these parts of the name, too, so that they stay in texts: {parts}",
                     parts=", ".join(found.shared),
+                ),
+            )
+        if plan.words:
+            say(
+                console,
+                msg(
+                    "In what others keep, the name is replaced in: {words}",
+                    words=listed(plan.words, _MOST_WORDS),
                 ),
             )
         if not args.yes and not _agreed(console):

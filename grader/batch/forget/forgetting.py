@@ -37,6 +37,7 @@ class Plan:
         groups: with what they are without the student.
         runs: that nobody else has, by key.
         others: hand-ins of others with the student's names in them, by run.
+        words: of what others keep, with the names in them.
         counts: what goes, and what changes.
     """
 
@@ -47,6 +48,7 @@ class Plan:
     groups: tuple[tuple[Kept, HandIn], ...]
     runs: tuple[str, ...]
     others: tuple[tuple[Kept, ...], ...]
+    words: tuple[str, ...]
     counts: Counter[str] = field(default_factory=Counter)
 
     @property
@@ -65,12 +67,16 @@ def plan(store: Store, kept: Sequence[Kept], whom: Whom) -> Plan:
     used = {each.entry.key for each in others if not each.is_older}
     keys = {each.entry.key for each in own if not each.is_older} - used
     runs = sorted(key for key in keys if store.has(key))
+    words = set[str]()
     shared = [
         tuple(sharing)
         for sharing in rewriting.by_run(each for each in others if not each.is_older)
-        if rewriting.mentions(sharing, store, whom)
+        if rewriting.mentions(sharing, store, whom, words)
     ]
-    made = Plan(store.out, whom, tuple(kept), tuple(own), tuple(groups), tuple(runs), tuple(shared))
+    made = Plan(
+        *(store.out, whom, tuple(kept), tuple(own), tuple(groups), tuple(runs), tuple(shared)),
+        tuple(sorted(words)),
+    )
     made.counts.update(_counts(made))
     return made
 

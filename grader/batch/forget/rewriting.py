@@ -29,23 +29,30 @@ from grader.result.error import ErrorResult
 from grader.result.result import PAGE, RESULT, Result, put_artifacts
 
 
-def mentions(sharing: Sequence[Kept], store: Store, whom: Whom) -> bool:
-    """Whether hand-ins of one run, or that run, have the names of who is forgotten."""
-    names = whom.names_for(sharing[0].entry.key)
-    if any(names.are_in(_text(each.entry)) for each in sharing):
-        return True
+def mentions(sharing: Sequence[Kept], store: Store, whom: Whom, words: set[str]) -> bool:
+    """Whether hand-ins of one run, or that run, have the names of who is forgotten.
+
+    Args:
+        words: gets those with a name in them.
+    """
+    noted = set[str]()
+    names = whom.names_for(sharing[0].entry.key).noting(noted)
+    for each in sharing:
+        names(_text(each.entry))
     base = _base(sharing, store)
+    is_lost = False
     if (base / ERROR).is_file():
-        return names.are_in((base / ERROR).read_text("utf-8", "replace"))
-    if any(names.are_in(f"{each.name}\n{_decoded(each.data)}") for each in kept(base / SOURCE)):
-        return True
-    if not (base / RECORDING).is_dir():
-        return False
-    try:
-        found = judging.load_recordings(base / RECORDING)
-    except RecordingError:
-        return True  # then it is left out
-    return without_names(found, names) is not found
+        names((base / ERROR).read_text("utf-8", "replace"))
+    else:
+        for file in kept(base / SOURCE):
+            names(f"{file.name}\n{_decoded(file.data)}")
+        if (base / RECORDING).is_dir():
+            try:
+                without_names(judging.load_recordings(base / RECORDING), names)
+            except (RecordingError, ValueError, LookupError, TypeError):
+                is_lost = True  # it is left out
+    words |= noted
+    return is_lost or bool(noted)
 
 
 def rewrite(sharing: Sequence[Kept], store: Store, whom: Whom) -> bool:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person
 from grader.batch.names.people import forms, names_of, of_all, said_in
-from grader.batch.names.spelling import Names, folded
+from grader.batch.names.spelling import LITERAL, Names, folded
 from grader.batch.similar.sources import SOURCE
 from grader.batch.store import ASIDE, BEFORE
 from grader.errors import UsageError
@@ -192,8 +192,8 @@ def _whom(
     told = {name: stands for name, stands in told.items() if name not in others}
     return Whom(
         people[id],
-        Names({}, names),
-        Names({}, told | names),
+        Names({}, names, known=known),
+        Names({}, told | names, known=known),
         frozenset(keys - {""}),
-        tuple(sorted(own.keys() & others.keys())),
+        tuple(sorted(name.removeprefix(LITERAL) for name in own.keys() & others.keys())),
     )

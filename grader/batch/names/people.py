@@ -1,7 +1,9 @@
 """The names of a person in the forms that people and programs give them, and what else tells who.
 
 A part of a name counts by itself where it has three letters, and is no word that the grader, its
-exercise or Python use: `Green` of `Mark Green` is a colour. The whole name always counts.
+exercise, ROS or Python use: `Green` of `Mark Green` is a colour. The whole name counts in all
+forms, unless it is made of nothing but such words and numbers: `Mark Green` and `Turtle 1` count as
+they stand there, with the blank, since a program may have a topic `/turtle1` or `mark_green`.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.batch.entry import Person
-from grader.batch.names.spelling import STRONG, folded, is_unspaced, words_of
+from grader.batch.names.spelling import STRONG, folded, is_unspaced, literal, words_of
 from grader.exercise.exercise import Exercise
 from grader.recording.subject import CAST_SCENE, load_subject
 from grader.submission.folder import MAX_ENTRIES
@@ -45,7 +47,9 @@ _USUAL: Final = (
     "www http https your name none gmail outlook github gitlab noreply users home university "
     "description license apache bsd mit copyright resource launch test tests src build install "
     "urdf meshes rviz config params setup package init pep257 flake8 xacro mesh solution exercise "
-    "homework final version"
+    "homework final version subscriber subscription minimum lifecycle component composition "
+    "executable namespace remap remapping reliability durability history transform broadcaster "
+    "buffer listener talker sender receiver controller"
 )
 #: Modules whose words are values in a recording.
 _RECORDED: Final = (
@@ -93,8 +97,13 @@ def forms(texts: Iterable[str], instead: str, known: frozenset[str]) -> dict[str
     """
     whole: dict[str, str] = {}
     parts: dict[str, str] = {}
+    literals: dict[str, str] = {}
     for text in texts:
         address = _EMAIL.fullmatch(text.strip())
+        if _is_usual(address[1] if address else text, known):
+            if address or len(text.split()) > 1:
+                literals[literal(text)] = instead
+            continue
         for words in _spellings(address[1] if address else text):
             for order in _orders(words):
                 whole.setdefault(" ".join(order), instead)
@@ -103,7 +112,23 @@ def forms(texts: Iterable[str], instead: str, known: frozenset[str]) -> dict[str
             for number, word in enumerate(words):
                 parts.setdefault(word, f"{instead}x{number + 2}")
     made = {name: stands for name, stands in whole.items() if " " in name or _counts(name, known)}
-    return {name: at for name, at in parts.items() if _counts(name, known)} | made
+    return {name: at for name, at in parts.items() if _counts(name, known)} | made | literals
+
+
+def _is_usual(text: str, known: frozenset[str]) -> bool:
+    """Whether a name is made of nothing but known words and short numbers, as `Turtle 1`.
+
+    Short words count in a login: `s17` and `kb4712` are names, if nothing else is called so.
+    """
+    is_login = len(_plain_words(text)) == 1
+    if is_login and not _counts(_plain_words(text)[0], known):
+        return True
+    return all(
+        len(word) < LEAST_DIGITS
+        if word.isdigit()
+        else word in known and (not is_login or len(word) >= LEAST)
+        for word in words_of(text)
+    )
 
 
 def _counts(word: str, known: frozenset[str]) -> bool:

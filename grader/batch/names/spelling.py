@@ -2,11 +2,13 @@ r"""Find names in a text, however they are written there, and replace them.
 
 Letters count without their accents and without case: `Zoë` in one character or two, `ZOE`, `zoe`.
 So do letters in an escape of JSON, Python, HTML, an address or git: `Zo\u00eb`, `Zo&euml;`,
-`Zo%C3%AB`. A name may stand in a longer word: `zoe_node`, `ZoeNode`, `zoe2`.
+`Zo%C3%AB`. A name may stand in a longer word: `zoe_node`, `ZoeNode`, `zoe2`; but not in one that is
+known to belong to the task: `Nimal` in `minimal_publisher`.
 """
 
 from __future__ import annotations
 
+import copy
 import html
 import re
 import unicodedata
@@ -30,16 +32,20 @@ _FEW: Final = 100
 _MOST_CLEAN: Final = 50_000
 #: So many words at most make a name.
 _MOST_WORDS: Final = 6
-#: One escaped character; the bytes are those of UTF-8.
+#: A name that counts only letter by letter, with its blanks, begins with this.
+LITERAL: Final = "="
+#: One escaped character; the bytes are those of UTF-8, or one of Latin-1.
 _ESCAPE: Final = re.compile(
     r"\\{1,8}u[0-9a-fA-F]{4}"
     r"|&(?:[a-zA-Z]{2,8}\d{0,2}|#\d{1,6}|#[xX][0-9a-fA-F]{1,6});"
-    r"|%[2-7][0-9a-fA-F]|%[c-fC-F][0-9a-fA-F](?:%[89abAB][0-9a-fA-F]){1,3}"
-    r"|\\x[c-fC-F][0-9a-fA-F](?:\\x[89abAB][0-9a-fA-F]){1,3}"
+    r"|%[2-7][0-9a-fA-F]|%[c-fC-F][0-9a-fA-F](?:%[89abAB][0-9a-fA-F]){1,3}|%[c-fC-F][0-9a-fA-F]"
+    r"|\\{1,8}x[c-fC-F][0-9a-fA-F](?:\\{1,8}x[89abAB][0-9a-fA-F]){1,3}"
+    r"|\\{1,8}x[c-fC-F][0-9a-fA-F]"
     r"|\\3[0-7]{2}(?:\\2[0-7]{2}){1,3}"
 )
 _WORD: Final = re.compile(r"[^\W_]+")
 _WORD_BEFORE: Final = re.compile(r"[^\W_]+\Z")
+_IDENTIFIER: Final = re.compile(r"\w+")
 _PIECE: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\Wa-zA-Z\d_]+")
 #: What may stand between two words of one name.
 _GAP: Final = re.compile(r"[\W_]{0,4}")
@@ -58,6 +64,11 @@ class Span(NamedTuple):
 def folded(text: str) -> str:
     """Return a text without accents and case."""
     return _plain(text).casefold()
+
+
+def literal(text: str) -> str:
+    """Return a name in the form in which it counts only letter by letter, with its blanks."""
+    return LITERAL + " ".join(_plain(text).split())
 
 
 def words_of(text: str) -> list[str]:
@@ -80,6 +91,7 @@ class Names:
         strong: the same, which come first; those of one word are also found within longer words,
             if they are long enough.
         others: more names, which come last.
+        known: words in which no name stands, nor in a part of them.
     """
 
     def __init__(
@@ -87,16 +99,26 @@ class Names:
         instead: Mapping[str, str],
         strong: Mapping[str, str] | None = None,
         others: Names | None = None,
+        known: frozenset[str] = frozenset(),
     ) -> None:
         self._own = {**instead, **(strong or {})}
         self._others = others
-        self._firsts = {name.split(" ", 1)[0] for name in self._own if " " in name}
-        words = [name for name in self._own if " " not in name and not name.isdigit()]
+        self._known = known
+        #: The words of a literal name -> the names with these.
+        self._literal: dict[str, list[str]] = {}
+        for name in self._own:
+            if name.startswith(LITERAL):
+                self._literal.setdefault(" ".join(_WORD.findall(folded(name))), []).append(name)
+        names = [*(name for name in self._own if not name.startswith(LITERAL)), *self._literal]
+        self._firsts = {name.split(" ", 1)[0] for name in names if " " in name}
+        words = [name for name in names if " " not in name and not name.isdigit()]
         found = {name for name in words if is_unspaced(name)}
         found |= {name for name in words if name in (strong or {}) and len(name) >= STRONG}
         found |= {*others.strong} if others else set()
         self.strong: list[str] = sorted(found, key=lambda name: (-len(name), name))
-        begins = {name.split(" ", 1)[0] for name in self._own}
+        begins = {name.split(" ", 1)[0] for name in names}
+        #: The words with names in them that were found; see `noting`.
+        self._noted: set[str] | None = None
         #: Words without a name in them: most texts repeat theirs.
         self._clean: set[str] = set()
         is_few = len(begins) <= _FEW and not others
@@ -106,9 +128,23 @@ class Names:
         """Whether there are names at all."""
         return bool(self._own or self._others)
 
+    def noting(self, into: set[str]) -> Names:
+        """Return the same names, which note in which words, `zoe_node`, they are found."""
+        made = copy.copy(self)
+        made._noted = into
+        return made
+
     def stands_for(self, name: str) -> str:
         """Return what stands for a name; '' for what is none."""
         return self._own.get(name) or (self._others.stands_for(name) if self._others else "")
+
+    def _as_it_stands(self, words: str, text: str) -> str:
+        """Return what stands for a literal name; '' for what is none."""
+        wanted = " ".join(text.split())
+        for name in self._literal.get(words, ()):
+            if name == LITERAL + wanted:
+                return self._own[name]
+        return self._others._as_it_stands(words, text) if self._others else ""
 
     def _begins(self, word: str) -> bool:
         """Whether a name of several words may begin with a word."""
@@ -141,6 +177,8 @@ class Names:
             if is_clean and len(self._clean) < _MOST_CLEAN:
                 self._clean.add(word)
             for first, last, instead in found:
+                if self._noted is not None:
+                    self._noted.add(_identifier(plain, first, last))
                 if starts is None:
                     yield Span(first, last, instead)
                 else:
@@ -183,8 +221,10 @@ class Names:
                 words.append(following[0].casefold())
                 ends.append(following.end())
             for count in range(len(words), 1, -1):
-                if instead := self.stands_for(" ".join(words[:count])):
-                    return ends[count - 1], [Span(begin, ends[count - 1], instead)]
+                together, last = " ".join(words[:count]), ends[count - 1]
+                literally = self._as_it_stands(together, plain[begin:last])
+                if instead := literally or self.stands_for(together):
+                    return last, [Span(begin, last, instead)]
         if instead := self.stands_for(words[0]):
             return end, [Span(begin, end, instead)]
         return end, list(self._within(plain[begin:end], begin))
@@ -195,7 +235,7 @@ class Names:
             return
         pieces = [match.span() for match in _PIECE.finditer(word)]
         found = list(self._of_pieces(word, pieces)) if len(pieces) > 1 else []
-        found = found or list(self._of_letters(word.casefold(), len(word)))
+        found = found or list(self._of_letters(word.casefold(), len(word), pieces))
         for first, last, instead in found:
             yield Span(begin + first, begin + last, instead)
 
@@ -212,18 +252,37 @@ class Names:
                     break
             number += 1
 
-    def _of_letters(self, word: str, length: int) -> Iterator[Span]:
-        if len(word) != length:  # a letter whose small form is two
+    def _of_letters(self, word: str, length: int, pieces: list[tuple[int, int]]) -> Iterator[Span]:
+        if word in self._known or len(word) != length:  # a letter whose small form is two
             return
         taken: list[Span] = []
         for name in self.strong:
             at = word.find(name)
             while at >= 0:
                 end = at + len(name)
-                if all(end <= each.begin or at >= each.end for each in taken):
+                is_free = all(end <= each.begin or at >= each.end for each in taken)
+                if is_free and not self._cuts(word, at, end, pieces):
                     taken.append(Span(at, end, self.stands_for(name)))
                 at = word.find(name, end)
         yield from sorted(taken)
+
+    def _cuts(self, word: str, begin: int, end: int, pieces: list[tuple[int, int]]) -> bool:
+        """Whether letters are a part of a known word."""
+        return any(
+            first < end
+            and begin < last
+            and (first < begin or end < last)
+            and word[first:last] in self._known
+            for first, last in pieces
+        )
+
+
+def _identifier(text: str, begin: int, end: int) -> str:
+    """Return what stands at a place, with all letters, digits and _ before and behind."""
+    before = re.search(r"\w*\Z", text[max(0, begin - _LONGEST_WORD) : begin])
+    behind = _IDENTIFIER.match(text, end)
+    around = before[0] if before else "", behind[0] if behind else ""
+    return text[begin:end].join(around)
 
 
 def _as_written(text: str, begin: int, end: int, instead: str) -> str:
@@ -274,10 +333,11 @@ def _decoded(escape: str) -> str | None:
     if escape.startswith("&"):
         found = html.unescape(escape)
         return found if len(found) == 1 else None
-    base = 8 if escape[1] == "3" and escape[0] == "\\" else 16
-    digits = re.split(r"%|\\x|\\", escape)[1:]
+    is_octal = escape.startswith("\\3")
+    digits = re.findall(r"[0-9a-fA-F]{3}" if is_octal else r"[0-9a-fA-F]{2}", escape)
+    data = bytes(int(each, 8 if is_octal else 16) for each in digits)
     try:
-        return bytes(int(each, base) for each in digits).decode("utf-8")
+        return data.decode("utf-8" if len(data) > 1 or data < b"\x80" else "latin-1")
     except ValueError:
         return None
 

@@ -186,6 +186,8 @@ def test_nothing_changes_before_somebody_has_agreed(
     assert forget(regraded, ZOE) == 0
     said = capsys.readouterr().out
     assert "1 hand-in of the class goes" in said
+    assert "the name is replaced in: " in said.replace("\n", " ")
+    assert "zoe_square" in said
     assert "--yes" in said
     after = {p: p.stat().st_mtime_ns for p in (regraded / "class").rglob("*") if p.is_file()}
     assert after == before

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from grader.batch.entry import Person
 from grader.batch.names.people import called_in, forms, known_words, names_of, of_all, said_in
 from grader.batch.names.spelling import Names
+from grader.exercise.loading import load_exercise
 from tests.grader.batch.names.accented import ZOE, nick_of, package
 
 
@@ -52,3 +55,36 @@ def test_unusual_words_in_names_of_files_are_named_and_usual_ones_are_not(tmp_pa
     for name in ("setup.py", "turtle_controller.py", "nightowl_node.py", "launch/a.launch.py"):
         (tmp_path / name).touch()
     assert called_in(tmp_path, "package", known_words()) == ["nightowl"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Publishing: Hello", "minimal_publisher", "MinimalPublisher", "TIMER_PERIOD", "subscription"],
+)
+@pytest.mark.parametrize("name", ["Ka-Shing Li", "Nimal Perera", "blishin", "minim", "Imer Ripti"])
+def test_a_name_within_a_word_of_the_task_is_none(name: str, text: str) -> None:
+    known = known_words(load_exercise("talker"))
+    names = Names({}, forms([name], "studentab12", known), known=known)
+    assert names(text) == text
+    own = name.split()[0].lower()
+    assert names(f"a {own}_node by {name}") != f"a {own}_node by {name}"
+
+
+@pytest.mark.parametrize("name", ["Turtle 1", "Mark Green", "Team Turtle"])
+def test_a_name_of_words_of_the_task_counts_only_as_it_is_written(name: str) -> None:
+    known = known_words(load_exercise("talker")) | {"team"}
+    names = Names({}, forms([name], "studentab12", known), known=known)
+    first, second = name.lower().split()
+    for other in (f"/{first}{second}/cmd_vel", f"{first}_{second}", f"{first} {second}", name[:-1]):
+        assert names(other) == other
+    assert names(f"by {name}, {name} 2") == "by studentab12, studentab12 2"
+
+
+def test_a_login_of_words_of_the_task_is_no_name_and_its_address_is_one() -> None:
+    known = known_words(load_exercise("talker"))
+    for login in ("turtle1", "talker12", "/turtle"):
+        assert forms([login], "studentab12", known) == {}
+    names = Names({}, forms(["turtle1@uni.example"], "studentab12", known), known=known)
+    assert names("turtle1 turtle1@uni.example") == "turtle1 studentab12"
+    for login in ("s17", "kb4712", "s1234567"):
+        assert Names({}, forms([login], "studentab12", known))(login) == "studentab12"

@@ -34,6 +34,11 @@ NAMES = Names({}, forms([ZOE, "zm4711", "zoe.mueller@uni.example"], "studentab12
         "Zo&euml; M&uuml;ller",
         "Zo&#235; M&#xfc;ller",
         r"Zo\303\253 M\303\274ller",
+        ascii(ZOE)[1:-1],
+        json.dumps(ascii(ZOE))[2:-2],
+        json.dumps(repr(ZOE.encode()))[3:-2],
+        ZOE.encode("ascii", "backslashreplace").decode(),
+        quote(ZOE.encode("latin-1")),
     ],
 )
 def test_a_whole_name_is_one_pseudonym_however_it_is_written(text: str) -> None:
