@@ -136,6 +136,8 @@ def _advice(differences: Mapping[str, Message], store: Store) -> Message:
         )
     if differences.keys() <= MACHINE:
         return msg("Give another --out, or have everything graded by this one: --again all.")
+    if "pseudonyms" in differences:
+        return msg("Give the key that it was begun with: --pseudonyms KEY.")
     return msg("Give another --out.")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -122,7 +123,7 @@ def main(args: argparse.Namespace) -> int:
     messages = Console(stderr=True, highlight=False)
     exercise = load_exercise(args.exercise) if args.exercise else None  # refused at once
     secret = options.secret_of(args)
-    pseudonyms = _pseudonyms(args)
+    pseudonyms = _pseudonyms(args, messages)
     with _found(args, messages, pseudonyms) as (found, named):
         if exercise is None:
             args.named = _named(found, messages)
@@ -181,7 +182,7 @@ def _named(found: Found, messages: Console) -> str:
     return next(iter(named), DEFAULT)
 
 
-def _pseudonyms(args: argparse.Namespace) -> Pseudonyms | None:
+def _pseudonyms(args: argparse.Namespace, messages: Console) -> Pseudonyms | None:
     """Return who gives the students their pseudonyms; None where they keep their names.
 
     Raises:
@@ -195,13 +196,30 @@ def _pseudonyms(args: argparse.Namespace) -> Pseudonyms | None:
     if args.names:
         what = msg("what has names")
         pseudonyms.check_outside(args.names, (args.out, args.submissions), what)
+        names = args.names.resolve()
+        is_above = args.out.resolve().is_relative_to(names)
+        if is_above or any((at / CLASS).is_file() for at in (names, *names.parents)):
+            raise UsageError(
+                "a class lies in {folder} or above it: give --names a folder of its own. "
+                "Nothing was changed.",
+                folder=str(args.names),
+            )
     is_new = not (args.out / CLASS).is_file()
     if not is_new and not ClassFile.read(args.out).pseudonyms:
         raise UsageError(
             "{out} was begun with names. Give another --out. Nothing was changed.", out=args.out
         )
     folders = (args.out, args.submissions)
-    return pseudonyms.Pseudonyms(pseudonyms.read_key(args.pseudonyms, folders, may_make=is_new))
+    was_there = os.path.lexists(args.pseudonyms)
+    key = pseudonyms.read_key(args.pseudonyms, folders, may_make=is_new)
+    if not was_there:
+        made = msg(
+            "Made the key {path}. Keep it: without it nobody can go on with this class, nor tell "
+            "who is who.",
+            path=str(args.pseudonyms),
+        )
+        say(messages, made)
+    return pseudonyms.Pseudonyms(key)
 
 
 @contextmanager
@@ -220,11 +238,18 @@ def _names(order: Order) -> Iterator[Order]:
 def _write_names(
     args: argparse.Namespace, entries: Sequence[Entry], exercise: Exercise, view: View
 ) -> list[Message]:
-    """Write the gradebook and the imports of a class under pseudonyms with names; return notes."""
+    """Write the gradebook and the imports of a class under pseudonyms with names; return notes.
+
+    What is made is readable for its owner alone.
+    """
     from grader.batch.gradebook import write
 
-    notes = write.write(args.names, entries, exercise.title, view, args.assignment)
-    write.write_pseudonyms(args.names, entries)
+    before = os.umask(0o077)
+    try:
+        notes = write.write(args.names, entries, exercise.title, view, args.assignment)
+        write.write_pseudonyms(args.names, entries)
+    finally:
+        os.umask(before)
     return [*notes, msg("Gradebook and imports with names: {folder}", folder=args.names)]
 
 

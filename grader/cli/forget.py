@@ -88,7 +88,8 @@ def main(args: argparse.Namespace) -> int:
     with Store.opened(args.out) as store:
         kept = whom.all_kept(args.out)
         also = [*args.also, args.student] if args.pseudonyms else args.also
-        found = whom.find(_asked(args, described), kept, known_words(exercise), also)
+        typed = args.student if args.pseudonyms else ""
+        found = whom.find(_asked(args, described), kept, known_words(exercise), also, typed)
         plan = forgetting.plan(store, kept, found)
         say(console, _who(found), "bold")
         for line in receipt.described(plan.counts):
@@ -107,6 +108,14 @@ def main(args: argparse.Namespace) -> int:
                 msg(
                     "In what others keep, the name is replaced in: {words}",
                     words=listed(plan.words, _MOST_WORDS),
+                ),
+            )
+        if described.pseudonyms and not args.also:
+            say(
+                console,
+                msg(
+                    "The sources of others may have the name itself, which this class does not "
+                    "know: --also NAME replaces it, too."
                 ),
             )
         if not args.yes and not _agreed(console):

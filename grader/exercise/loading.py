@@ -60,6 +60,12 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
     try:
         return _load(name_or_path)
     except OSError as error:
+        if error.strerror is None:
+            raise ExerciseError(
+                "cannot read the exercise {name_or_path}: {why}",
+                name_or_path=repr(str(name_or_path)),
+                why=str(error) or type(error).__name__,
+            ) from None
         raise ExerciseError(
             "cannot read the exercise {name_or_path}: {strerror}: {filename}",
             name_or_path=repr(str(name_or_path)),

@@ -104,13 +104,18 @@ def _kept(out: Path) -> Iterator[Kept]:
 
 
 def find(
-    student: str, kept: Sequence[Kept], known: frozenset[str], also: Sequence[str] = ()
+    student: str,
+    kept: Sequence[Kept],
+    known: frozenset[str],
+    also: Sequence[str] = (),
+    typed: str = "",
 ) -> Whom:
     """Find a student by id, name, address, or the id of a hand-in of theirs alone.
 
     Args:
         known: words that do not count by themselves; see `grader.batch.names.people.known_words`.
         also: other names of the student.
+        typed: what `student` was computed from, if it was.
 
     Raises:
         UsageError: there is no such student, or there are several.
@@ -124,12 +129,14 @@ def find(
             texts.update(names_of(person))
             if len(entry.hand_in.people) == 1:
                 texts.add(entry.id)
-    id = _chosen(student, people, called)
+    id = _chosen(student, people, called, typed)
     called[id].update(also)
     return _whom(id, people, called, kept, known)
 
 
-def _chosen(student: str, people: dict[str, Person], called: dict[str, set[str]]) -> str:
+def _chosen(
+    student: str, people: dict[str, Person], called: dict[str, set[str]], typed: str
+) -> str:
     wanted = _composed(student)
     by_id = [id for id in people if _composed(id) == wanted]
     exactly = [id for id, texts in called.items() if wanted in map(_composed, texts)]
@@ -143,9 +150,11 @@ def _chosen(student: str, people: dict[str, Person], called: dict[str, set[str]]
             student=student,
             who=_listed(people, found),
         )
-    near = _near(student, called)
+    near = [] if typed else _near(student, called)
     if not near:
-        raise UsageError("{student} is nobody in this class. Nothing was changed.", student=student)
+        raise UsageError(
+            "{student} is nobody in this class. Nothing was changed.", student=typed or student
+        )
     raise UsageError(
         "{student} is nobody in this class; similar are: {who}. Nothing was changed.",
         student=student,

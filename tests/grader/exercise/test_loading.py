@@ -6,6 +6,7 @@ import pytest
 import yaml
 
 from grader.errors import ExerciseError
+from grader.exercise import loading
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import installed, names
 from tests.grader.testing import exercises
@@ -17,6 +18,15 @@ def edited(tmp_path, **changes):
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({"exercise": NAME, **changes}))
     return str(path)
+
+
+def test_why_an_exercise_cannot_be_read_is_told_without_an_error_of_the_system(monkeypatch):
+    def no_source(_):
+        raise OSError("source code not available")
+
+    monkeypatch.setattr(loading, "_load", no_source)
+    with pytest.raises(ExerciseError, match=r"'talker': source code not available$"):
+        load_exercise("talker")
 
 
 def test_every_installed_exercise_loads():

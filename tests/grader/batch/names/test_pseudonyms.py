@@ -73,6 +73,7 @@ def graded(
 def test_a_name_is_nowhere_but_in_the_sources(with_names: Class, graded: tuple[Path, str]) -> None:
     folder, said = graded
     assert not [form for form in ALL if form in said.encode().lower()]
+    assert "Made the key" in said
     found = found_in(folder / "class", ALL)
     assert {name: found[name] for name in without_sources(found)} == {}
     assert [name for name in found if "/source/" in name]  # the search does find
@@ -104,6 +105,9 @@ def test_points_are_the_same_and_come_back_to_the_course_system(
     assert named == {row["id"]: row["final"] for row in table(plain / "gradebook.csv")}
     assert (folder / "named" / "export" / "moodle-grading-worksheet.csv").is_file()
     assert (folder / "keys" / "key").stat().st_mode & 0o777 == 0o600
+    with_names_in = [folder / "named", *(folder / "named").rglob("*")]
+    assert len(with_names_in) > 5
+    assert not [path for path in with_names_in if path.stat().st_mode & 0o077]
 
 
 def test_the_same_call_again_runs_nothing_and_another_key_is_refused(
@@ -116,7 +120,10 @@ def test_the_same_call_again_runs_nothing_and_another_key_is_refused(
     assert (tmp_path / "class" / "gradebook.csv").read_bytes() == before
     (tmp_path / "keys" / "key").write_text(KEY)
     assert main(words_of(with_names, tmp_path)) == 2
-    assert "the key of the pseudonyms" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "the key of the pseudonyms" in said
+    assert "Give the key that it was begun with" in said.replace("\n", " ")
+    assert "another --out" not in said
     (tmp_path / "keys" / "key").unlink()
     assert main(words_of(with_names, tmp_path)) == 2
     assert "was begun with one" in capsys.readouterr().err
@@ -131,6 +138,10 @@ def test_a_student_is_forgotten_by_the_id_and_the_key_in_the_sources_of_others_t
     assert main(["forget", ZOE_ID, *common]) == 2
     assert "is under pseudonyms" in capsys.readouterr().err
     key = ["--pseudonyms", str(tmp_path / "keys" / "key")]
+    assert main(["forget", "nobody17", *common, *key]) == 2
+    assert "nobody17 is nobody" in capsys.readouterr().err
+    assert main(["forget", ZOE_ID, *common, *key]) == 0
+    assert "--also NAME" in capsys.readouterr().out
     assert main(["forget", ZOE_ID, *common, *key, "--also", ZOE, "--yes"]) == 0
     pseudonym = Pseudonyms((tmp_path / "keys" / "key").read_bytes().strip()).of(ZOE_ID)
     of_zoe = [pseudonym.encode(), *forms_of(ZOE, ZOE_ID, nick_of(ZOE))]
@@ -164,6 +175,20 @@ def test_a_key_behind_a_link_out_of_the_class_is_refused_too(tmp_path: Path) -> 
     (tmp_path / "class" / "key").symlink_to(tmp_path / "key")
     words = ["batch", str(tmp_path / "handed_in"), "--out", str(tmp_path / "class")]
     assert main([*words, "--pseudonyms", str(tmp_path / "class" / "key")]) == 2
+
+
+@pytest.mark.parametrize("where", ["", "other", "other/below"])
+def test_names_are_not_written_into_a_class_nor_around_it(
+    where: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "handed_in").mkdir()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "class.json").write_text("{}")
+    words = ["batch", str(tmp_path / "handed_in"), "--out", str(tmp_path / "class")]
+    words += ["--pseudonyms", str(tmp_path / "key"), "--names", str(tmp_path / where)]
+    assert main(words) == 2
+    assert "a folder of its own" in capsys.readouterr().err.replace("\n", " ")
+    assert not (tmp_path / "key").exists()
 
 
 @pytest.mark.parametrize(("text", "mode"), [("short", 0o600), (KEY, 0o644)])
