@@ -85,7 +85,7 @@ def test_the_project_goes_in_after_what_it_needs_and_then_byte_code_is_made(
     install: Install,
 ) -> None:
     calls = install.calls()
-    assert packages(calls) == ["pip needs", JAZZY, "pip ."]
+    assert packages(calls) == ["pip needs", "pip .", JAZZY]
     assert all("--no-compile" in call for call in calls if " install " in call)
     compiled = [call.startswith("-m compileall") for call in calls]
     assert compiled == [False, False, True, False, True]
@@ -102,7 +102,7 @@ def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install: I
 def test_another_release_of_ros_is_chosen_by_its_name(install: Install) -> None:
     (install.folder / ".venv").rename(install.folder / ".venv-kilted")
     install.env["ROS"] = "kilted"
-    assert packages(install.calls()) == ["pip needs", "pip ./interfaces/kilted", "pip ."]
+    assert packages(install.calls()) == ["pip needs", "pip .", "pip ./interfaces/kilted"]
 
 
 @pytest.mark.parametrize("target", ["install", "tools"])
@@ -131,7 +131,7 @@ def test_a_file_that_is_not_as_it_was_is_noticed(install: Install, change: str) 
 def test_what_failed_is_tried_again(install: Install) -> None:
     install.complaint("ERROR: no space left")
     (install.folder / "says").unlink()
-    assert packages(install.calls()) == ["pip needs", JAZZY, "pip ."]
+    assert packages(install.calls()) == ["pip needs", "pip .", JAZZY]
 
 
 def test_only_tests_and_linters_get_what_they_need_besides(install: Install) -> None:
@@ -157,13 +157,13 @@ def test_what_the_tests_need_holds_all_that_the_project_needs() -> None:
 
 def test_uv_is_used_where_it_is(install: Install) -> None:
     install.commands.add("uv", UV)
-    assert packages(install.calls()) == ["uv needs", JAZZY.replace("pip", "uv"), "uv ."]
+    assert packages(install.calls()) == ["uv needs", "uv .", JAZZY.replace("pip", "uv")]
 
 
 def test_who_wants_pip_beside_uv_gets_it(install: Install) -> None:
     install.commands.add("uv", UV)
     install.env["UV"] = ""
-    assert packages(install.calls()) == ["pip needs", JAZZY, "pip ."]
+    assert packages(install.calls()) == ["pip needs", "pip .", JAZZY]
 
 
 def test_beside_a_sourced_ros_uv_is_not_used(install: Install) -> None:
