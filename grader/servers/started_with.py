@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import os
 import re
+import stat
 import sys
+import zlib
 from collections.abc import Iterable, Iterator, Mapping
 
 import grader
@@ -19,7 +21,7 @@ READ_AT_START = re.compile(
     r"(PYTHON|LD_|DYLD_|LC_|ROS_|RMW_|RCUTILS_|AMENT_|COLCON_|CONDA_|FASTRTPS_|FASTDDS_|CYCLONEDDS_"
     r"|MALLOC_)\w*|XDG_\w+_(DIR|HOME)|PATH|TERM|HOME|USER|TMPDIR|TMP|TEMP|TZ|LANG|VIRTUAL_ENV"
 )
-#: A file's inode, size and time of change [ns].
+#: A file's inode, size and time of change [ns]; of a folder: inode, and what `_of_folder` counts.
 State = tuple[int, int, int]
 
 
@@ -77,6 +79,23 @@ def _below(folder: str) -> Iterator[str]:
 def _state(path: str) -> State:
     try:
         found = os.stat(path)  # noqa: PTH116  thousands of them for each call
+        if stat.S_ISDIR(found.st_mode):
+            return (found.st_ino, *_of_folder(path))
     except OSError:
         return (0, 0, 0)
     return (found.st_ino, found.st_size, found.st_mtime_ns)
+
+
+def _of_folder(path: str) -> tuple[int, int]:
+    """Return how many names in a folder Python could import, or pip has installed, and their sum.
+
+    Its time would also tell of all else: results that are written into a folder on the path.
+    """
+    with os.scandir(path) as found:
+        names = sorted(
+            each.name
+            for each in found
+            if each.name.endswith((".py", ".so", ".pth", ".dist-info"))
+            or os.path.lexists(f"{each.path}/__init__.py")
+        )
+    return len(names), zlib.crc32("\0".join(names).encode(errors="surrogateescape"))

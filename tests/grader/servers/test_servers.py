@@ -274,6 +274,10 @@ def test_a_change_of_what_they_have_loaded_ends_them(tmp_path):
     library.mkdir()
     with started(tmp_path, PYTHONPATH=f"{ROOT}:{library}") as user:
         assert not user.graded(QUICK).is_cold
+        for name in (".cache", "graded"):  # nothing that Python would import
+            (library / name).mkdir()
+        (library / "notes.txt").touch()
+        assert not user.graded(QUICK).is_cold
         (library / "new.py").touch()
         assert f"{library} has changed" in user("servers", "status").stdout
         assert user.graded(QUICK).is_cold
