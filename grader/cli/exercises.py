@@ -13,7 +13,7 @@ from rich.console import Console
 from grader import content, extensions, system
 from grader.added import pins
 from grader.added.pins import FILES, Origin, Pin
-from grader.cli import ELSEWHERE, options, say
+from grader.cli import ELSEWHERE, agreed, options, say
 from grader.cli.batch import processes
 from grader.errors import ExerciseError, UsageError
 from grader.exercise.building import NAME
@@ -264,7 +264,7 @@ def _is_wanted(args: argparse.Namespace, console: Console) -> bool:
             "reach neither your files nor the network. check-exercise tries them now."
         ),
     )
-    return input(tr("Go on? [y/N] ")).strip().lower() in ("y", "yes", *tr("y yes").split())
+    return agreed(tr("Go on? [y/N] "))
 
 
 def _is_fine(args: argparse.Namespace, console: Console, place: Path) -> bool:

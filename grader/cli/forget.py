@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from grader.cli import JUDGED, options, say
+from grader.cli import JUDGED, agreed, options, say
 from grader.errors import UsageError
 from grader.message import msg, msg_many
 from grader.translations import tr, translate
@@ -118,7 +118,7 @@ def main(args: argparse.Namespace) -> int:
                     "know: --also NAME replaces it, too."
                 ),
             )
-        if not args.yes and not _agreed(console):
+        if not args.yes and not _is_wanted(console):
             return JUDGED
         view: View = "after_due" if args.after_due else "student"
         done, left = forgetting.carry_out(plan, store, exercise, view, args.assignment)
@@ -152,10 +152,9 @@ def _who(found: Whom) -> str:
     return f"{person.id}, {person.name}" if person.name else person.id
 
 
-def _agreed(console: Console) -> bool:
+def _is_wanted(console: Console) -> bool:
     if sys.stdin.isatty():
-        answer = console.input(tr("Forget this student, for ever? [yes/no] "), markup=False)
-        if answer.strip().casefold() in ("y", "yes", tr("yes").casefold()):
+        if agreed(tr("Forget this student, for ever? [yes/no] ")):
             return True
         say(console, msg("Nothing was changed."))
         return False

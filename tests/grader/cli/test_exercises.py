@@ -96,10 +96,11 @@ def test_nothing_is_added_without_a_yes(call, repository, monkeypatch, tried):
     assert code == 2
     assert "checks.py (" in out
     assert "call again with --yes" in err
-    answering(monkeypatch, "\n")
-    code, out, _ = call("add", repository)
-    assert (code, tried, pins.names()) == (1, [], [])
-    assert out.endswith("Nothing was added.\n")
+    for no in ("\n", ""):  # the latter is Ctrl-D
+        answering(monkeypatch, no)
+        code, out, _ = call("add", repository)
+        assert (code, tried, pins.names()) == (1, [], [])
+        assert out.endswith("Nothing was added.\n")
 
 
 def test_nothing_is_added_in_which_there_is_something_to_fix(call, repository, monkeypatch):

@@ -193,7 +193,9 @@ def test_nothing_changes_before_somebody_has_agreed(
     assert after == before
 
 
-@pytest.mark.parametrize(("answer", "goes"), [("yes", True), ("no", False), ("", False)])
+@pytest.mark.parametrize(
+    ("answer", "goes"), [("yes\n", True), ("no\n", False), ("\n", False), ("", False)]
+)
 def test_in_a_terminal_somebody_is_asked(
     answer: str,
     goes: bool,
@@ -208,7 +210,7 @@ def test_in_a_terminal_somebody_is_asked(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(forgetting, "carry_out", carry_out)
-    monkeypatch.setattr(sys, "stdin", io.StringIO(f"{answer}\n"))
+    monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
     monkeypatch.setattr(sys.stdin, "isatty", lambda: True)
     assert forget(regraded, ZOE) == (130 if goes else 0)
     assert bool(done) == goes
