@@ -26,7 +26,7 @@ from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR
 from grader.batch.names import pseudonyms
 from grader.batch.names.people import called_in, forms, known_words, said_in
 from grader.batch.names.recorded import without_hash, without_names
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
 from grader.batch.page.thumb import THUMB, thumb
 from grader.batch.pool import Answer, Ending, Task
 from grader.batch.similar import features, sources

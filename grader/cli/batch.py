@@ -264,7 +264,7 @@ def _found(
     from grader.batch.class_file import CLASS
     from grader.batch.find.finding import find
     from grader.batch.names.people import known_words
-    from grader.batch.names.spelling import Names
+    from grader.batch.names.replacing import Names
 
     is_same = args.submissions.resolve() == args.out.resolve()
     if is_same or (args.submissions / CLASS).is_file():

@@ -11,7 +11,6 @@ import os
 import re
 import shutil
 import stat
-import unicodedata
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -22,7 +21,7 @@ from grader.batch import store
 from grader.batch.entry import MAX_ID, HandIn, Person, id_of
 from grader.batch.find.attempt import Attempt, Piece, add_note, moment, short
 from grader.batch.find.joining import is_of_roster
-from grader.batch.names.spelling import SPELLED
+from grader.batch.names.spelling import unaccented
 from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk, shown
 
@@ -216,8 +215,7 @@ def safe_ids(wanted: Sequence[str]) -> list[str]:
 
 def safe_id(text: str) -> str:
     """Return an id of letters, digits and `._@+-` alone, and none that a system reserves."""
-    plain = unicodedata.normalize("NFKD", text.translate(SPELLED))
-    letters = "".join(sign for sign in plain if not unicodedata.combining(sign))
+    letters = unaccented(text)
     id = _OTHERS.sub("-", letters).lstrip(".-").rstrip(".-")
     unwritten = sum(not sign.isascii() and sign.isalnum() for sign in letters)
     if len(id) > MAX_ID or unwritten:  # without them two names may be one

@@ -15,7 +15,7 @@ from grader import files, judging, strict_json
 from grader.batch.entry import ENTRY, Entry, HandIn
 from grader.batch.forget.whom import Kept, Whom
 from grader.batch.names.recorded import result_without_names, without_hash, without_names
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
 from grader.batch.page.thumb import THUMB
 from grader.batch.similar import features
 from grader.batch.similar.sources import SOURCE, kept
@@ -39,7 +39,7 @@ def mentions(sharing: Sequence[Kept], store: Store, whom: Whom, words: set[str])
     names = whom.names_for(sharing[0].entry.key).noting(noted)
     for each in sharing:
         names(_text(each.entry))
-    base = _base(sharing, store)
+    base = _base(sharing[0].entry, store)
     is_lost = False
     if (base / ERROR).is_file():
         names((base / ERROR).read_text("utf-8", "replace"))
@@ -58,7 +58,7 @@ def mentions(sharing: Sequence[Kept], store: Store, whom: Whom, words: set[str])
 def rewrite(sharing: Sequence[Kept], store: Store, whom: Whom) -> bool:
     """Write hand-ins that share a run anew; return whether their recording could be kept."""
     key = sharing[0].entry.key
-    names, base, place = whom.names_for(key), _base(sharing, store), store.new_place()
+    names, base, place = whom.names_for(key), _base(sharing[0].entry, store), store.new_place()
     recordings: Recordings | None = None
     is_judged = any(each.entry.result is not None for each in sharing)
     if key:
@@ -106,9 +106,8 @@ def of_hand_in(result: Result, hand_in: HandIn) -> Result:
 
 def loaded(entry: Entry, store: Store) -> Recordings | None:
     """Return the recordings of a hand-in; None where there are none, or they cannot be read."""
-    base = store.run(entry.key) if store.has(entry.key) else entry.folder
     try:
-        return judging.load_recordings(base / RECORDING)
+        return judging.load_recordings(_base(entry, store) / RECORDING)
     except RecordingError:
         return None
 
@@ -127,8 +126,8 @@ def rewrite_older(each: Kept, hand_in: HandIn, names: Names) -> bool:
     return True
 
 
-def _base(sharing: Sequence[Kept], store: Store) -> Path:
-    entry = sharing[0].entry
+def _base(entry: Entry, store: Store) -> Path:
+    """Return the folder with the run of a hand-in."""
     return store.run(entry.key) if store.has(entry.key) else entry.folder
 
 

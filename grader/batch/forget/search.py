@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
 from grader.recording import bag
 
 #: Pictures have no texts.

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import difflib
-import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person
 from grader.batch.names.people import forms, names_of, of_all, said_in
-from grader.batch.names.spelling import LITERAL, Names, folded
+from grader.batch.names.replacing import LITERAL, Names
+from grader.batch.names.spelling import composed, folded
 from grader.batch.similar.sources import SOURCE
 from grader.batch.store import ASIDE, BEFORE
 from grader.errors import UsageError
@@ -137,9 +137,9 @@ def find(
 def _chosen(
     student: str, people: dict[str, Person], called: dict[str, set[str]], typed: str
 ) -> str:
-    wanted = _composed(student)
-    by_id = [id for id in people if _composed(id) == wanted]
-    exactly = [id for id, texts in called.items() if wanted in map(_composed, texts)]
+    wanted = composed(student)
+    by_id = [id for id in people if composed(id) == wanted]
+    exactly = [id for id, texts in called.items() if wanted in map(composed, texts)]
     loosely = [id for id, texts in called.items() if folded(student) in map(folded, texts)]
     found = next(filter(None, (by_id, exactly, loosely)), [])
     if len(found) == 1:
@@ -176,10 +176,6 @@ def _listed(people: dict[str, Person], ids: Sequence[str]) -> Message:
     for person in (people[id] for id in ids[:_MOST_SHOWN]):
         shown.append(f"{person.id} ({person.name})" if person.name else person.id)
     return joined([*shown, "…"] if len(ids) > _MOST_SHOWN else shown, ", ")
-
-
-def _composed(text: str) -> str:
-    return unicodedata.normalize("NFC", text).strip().casefold()
 
 
 def _whom(

@@ -21,7 +21,8 @@ from pathlib import Path
 from typing import Final
 
 from grader.batch.entry import Person
-from grader.batch.names.spelling import STRONG, folded, is_unspaced, literal, words_of
+from grader.batch.names.replacing import STRONG, literal
+from grader.batch.names.spelling import folded, is_unspaced, words_of
 from grader.exercise.exercise import Exercise
 from grader.recording.subject import CAST_SCENE, load_subject
 from grader.submission.folder import MAX_ENTRIES

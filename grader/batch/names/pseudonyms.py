@@ -12,7 +12,6 @@ import hmac
 import json
 import os
 import secrets
-import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -22,7 +21,8 @@ from typing import Final
 from grader import files
 from grader.batch.entry import Entry, HandIn, Person, id_of
 from grader.batch.names.people import forms, names_of, of_all
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
+from grader.batch.names.spelling import composed
 from grader.errors import UsageError
 from grader.message import msg
 
@@ -68,8 +68,7 @@ class Pseudonyms:
 
     def of(self, id: str) -> str:
         """Return the pseudonym of the student with this id."""
-        same = unicodedata.normalize("NFC", id).strip().casefold()
-        return f"{STUDENT}{self._digest(f'student {same}')[:_DIGITS]}"
+        return f"{STUDENT}{self._digest(f'student {composed(id)}')[:_DIGITS]}"
 
     def of_hand_ins(self, found: Sequence[HandIn]) -> dict[str, HandIn]:
         """Return the hand-ins under pseudonyms, sorted; new id -> the hand-in as it was.
@@ -120,7 +119,7 @@ class Pseudonyms:
     def _check_different(self, found: Sequence[HandIn]) -> None:
         whose: dict[str, str] = {}
         for person in (person for hand_in in found for person in hand_in.people):
-            same = unicodedata.normalize("NFC", person.id).strip().casefold()
+            same = composed(person.id)
             if whose.setdefault(self.of(person.id), same) != same:
                 raise UsageError(
                     msg("two students have the same pseudonym by this key: take another one")

@@ -14,7 +14,7 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from grader import strict_json
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
 from grader.recording.beside import apart, together
 from grader.recording.channel import divided
 from grader.recording.observations import STRANGERS, Observations

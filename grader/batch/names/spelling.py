@@ -1,39 +1,23 @@
-r"""Find names in a text, however they are written there, and replace them.
+r"""How names are spelled: letters without accents and escapes, and the words of a text.
 
-Letters count without their accents and without case: `Zoë` in one character or two, `ZOE`, `zoe`.
-So do letters in an escape of JSON, Python, HTML, an address or git: `Zo\u00eb`, `Zo&euml;`,
-`Zo%C3%AB`. A name may stand in a longer word: `zoe_node`, `ZoeNode`, `zoe2`; but not in one that is
-known to belong to the task: `Nimal` in `minimal_publisher`.
+`Zoë` is the same in one character or two; so are letters in an escape of JSON, Python, HTML, an
+address or git: `Zo\u00eb`, `Zo&euml;`, `Zo%C3%AB`.
 """
 
 from __future__ import annotations
 
-import copy
 import html
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import lru_cache
-from typing import Final, NamedTuple
+from typing import Final
 
 #: Letters that people spell otherwise than by leaving out the accent.
-SPELLED: Final = str.maketrans(
+_SPELLED: Final = str.maketrans(
     {"ß": "ss", "æ": "ae", "ø": "o", "ł": "l", "đ": "d", "œ": "oe", "ı": "i"}
     | {"ẞ": "SS", "Æ": "AE", "Ø": "O", "Ł": "L", "Đ": "D", "Œ": "OE"}
 )
-#: A part of a name with so many letters is also found within a longer word; a shorter one is not:
-#: `Jan` in `January`.
-STRONG: Final = 5
-#: A longer word is no word but data: a picture in base64.
-_LONGEST_WORD: Final = 120
-#: With so few names, most texts are seen to have none at one glance.
-_FEW: Final = 100
-#: So many words without a name are remembered.
-_MOST_CLEAN: Final = 50_000
-#: So many words at most make a name.
-_MOST_WORDS: Final = 6
-#: A name that counts only letter by letter, with its blanks, begins with this.
-LITERAL: Final = "="
 #: One escaped character; the bytes are those of UTF-8, or one of Latin-1.
 _ESCAPE: Final = re.compile(
     r"\\{1,8}u[0-9a-fA-F]{4}"
@@ -43,38 +27,31 @@ _ESCAPE: Final = re.compile(
     r"|\\{1,8}x[c-fC-F][0-9a-fA-F]"
     r"|\\3[0-7]{2}(?:\\2[0-7]{2}){1,3}"
 )
-_WORD: Final = re.compile(r"[^\W_]+")
-_WORD_BEFORE: Final = re.compile(r"[^\W_]+\Z")
-_IDENTIFIER: Final = re.compile(r"\w+")
-_PIECE: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\Wa-zA-Z\d_]+")
-#: What may stand between two words of one name.
-_GAP: Final = re.compile(r"[\W_]{0,4}")
+WORD: Final = re.compile(r"[^\W_]+")
+PIECE: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\Wa-zA-Z\d_]+")
 #: From here on scripts have no blanks between words.
 _FIRST_UNSPACED: Final = "\u2e80"
 
 
-class Span(NamedTuple):
-    """Where a name stands in a text, and what it is replaced by."""
-
-    begin: int
-    end: int
-    instead: str
-
-
 def folded(text: str) -> str:
     """Return a text without accents and case."""
-    return _plain(text).casefold()
+    return unaccented(text).casefold()
 
 
-def literal(text: str) -> str:
-    """Return a name in the form in which it counts only letter by letter, with its blanks."""
-    return LITERAL + " ".join(_plain(text).split())
+def composed(text: str) -> str:
+    """Return a text as ids are compared: one character a letter, without case and outer blanks."""
+    return unicodedata.normalize("NFC", text).strip().casefold()
+
+
+def unescaped(text: str) -> str:
+    """Return a text with the characters that its escapes stand for."""
+    return _ESCAPE.sub(lambda match: _decoded(match[0]) or match[0], text)
 
 
 def words_of(text: str) -> list[str]:
     """Return the words of a text, folded, in order; `ZoeNode2` is three."""
     return [
-        piece.casefold() for word in _WORD.findall(_plain(text)) for piece in _PIECE.findall(word)
+        piece.casefold() for word in WORD.findall(unaccented(text)) for piece in PIECE.findall(word)
     ]
 
 
@@ -83,247 +60,28 @@ def is_unspaced(word: str) -> bool:
     return any(sign >= _FIRST_UNSPACED for sign in word)
 
 
-class Names:
-    """Replaces names.
-
-    Args:
-        instead: a name, its folded words with blanks between them -> what stands for it.
-        strong: the same, which come first; those of one word are also found within longer words,
-            if they are long enough.
-        others: more names, which come last.
-        known: words in which no name stands, nor in a part of them.
-    """
-
-    def __init__(
-        self,
-        instead: Mapping[str, str],
-        strong: Mapping[str, str] | None = None,
-        others: Names | None = None,
-        known: frozenset[str] = frozenset(),
-    ) -> None:
-        self._own = {**instead, **(strong or {})}
-        self._others = others
-        self._known = known
-        #: The words of a literal name -> the names with these.
-        self._literal: dict[str, list[str]] = {}
-        for name in self._own:
-            if name.startswith(LITERAL):
-                self._literal.setdefault(" ".join(_WORD.findall(folded(name))), []).append(name)
-        names = [*(name for name in self._own if not name.startswith(LITERAL)), *self._literal]
-        self._firsts = {name.split(" ", 1)[0] for name in names if " " in name}
-        words = [name for name in names if " " not in name and not name.isdigit()]
-        found = {name for name in words if is_unspaced(name)}
-        found |= {name for name in words if name in (strong or {}) and len(name) >= STRONG}
-        found |= {*others.strong} if others else set()
-        self.strong: list[str] = sorted(found, key=lambda name: (-len(name), name))
-        begins = {name.split(" ", 1)[0] for name in names}
-        #: The words with names in them that were found; see `noting`.
-        self._noted: set[str] | None = None
-        #: Words without a name in them: most texts repeat theirs.
-        self._clean: set[str] = set()
-        is_few = len(begins) <= _FEW and not others
-        self._any = re.compile("|".join(map(re.escape, sorted(begins)))) if is_few else None
-
-    def __bool__(self) -> bool:
-        """Whether there are names at all."""
-        return bool(self._own or self._others)
-
-    def noting(self, into: set[str]) -> Names:
-        """Return the same names, which note in which words, `zoe_node`, they are found."""
-        made = copy.copy(self)
-        made._noted = into
-        return made
-
-    def stands_for(self, name: str) -> str:
-        """Return what stands for a name; '' for what is none."""
-        return self._own.get(name) or (self._others.stands_for(name) if self._others else "")
-
-    def _as_it_stands(self, words: str, text: str) -> str:
-        """Return what stands for a literal name; '' for what is none."""
-        wanted = " ".join(text.split())
-        for name in self._literal.get(words, ()):
-            if name == LITERAL + wanted:
-                return self._own[name]
-        return self._others._as_it_stands(words, text) if self._others else ""
-
-    def _begins(self, word: str) -> bool:
-        """Whether a name of several words may begin with a word."""
-        return word in self._firsts or (self._others is not None and self._others._begins(word))
-
-    def __call__(self, text: str) -> str:
-        """Return a text without the names."""
-        made, at = [], 0
-        for begin, end, instead in self.spans(text):
-            made += [text[at:begin], _as_written(text, begin, end, instead)]
-            at = end
-        return "".join([*made, text[at:]]) if made else text
-
-    def are_in(self, text: str) -> bool:
-        """Whether a text has one of the names."""
-        return next(self.spans(text), None) is not None
-
-    def spans(self, text: str) -> Iterator[Span]:
-        """Yield where names stand, in order."""
-        if not self or not self._may_be_in(text):
-            return
-        plain, starts = _without_accents(text)
-        done = 0
-        for begin, end in self._words(plain):
-            word = plain[begin:end]
-            if begin < done or word in self._clean:
-                continue
-            done, found = self._at(plain, begin, end)
-            is_clean = not found and not self._begins(word.casefold())
-            if is_clean and len(self._clean) < _MOST_CLEAN:
-                self._clean.add(word)
-            for first, last, instead in found:
-                if self._noted is not None:
-                    self._noted.add(_identifier(plain, first, last))
-                if starts is None:
-                    yield Span(first, last, instead)
-                else:
-                    yield Span(starts[first], starts[last], instead)
-
-    def _may_be_in(self, text: str) -> bool:
-        """Whether the beginning of a name is in a text, anywhere: most texts have none."""
-        if self._any is None:
-            return True
-        if _ESCAPE.search(text):
-            text = _ESCAPE.sub(lambda match: _decoded(match[0]) or match[0], text)
-        return self._any.search(folded(text)) is not None
-
-    def _words(self, plain: str) -> Iterator[tuple[int, int]]:
-        """Yield where words are in which a name may begin."""
-        small = plain.casefold()
-        if self._any is None or len(small) != len(plain):
-            yield from (match.span() for match in _WORD.finditer(plain))
-            return
-        end = 0
-        for found in self._any.finditer(small):
-            if found.start() < end:
-                continue
-            at = found.start()
-            before = _WORD_BEFORE.search(plain, max(0, at - _LONGEST_WORD), at)
-            begin = before.start() if before else at
-            word = _WORD.match(plain, begin)
-            assert word is not None
-            end = word.end()
-            yield begin, end
-
-    def _at(self, plain: str, begin: int, end: int) -> tuple[int, list[Span]]:
-        """Return up to where a text is done from this word on, and the names in that."""
-        words, ends = [plain[begin:end].casefold()], [end]
-        if self._begins(words[0]):
-            while len(words) < _MOST_WORDS and (gap := _GAP.match(plain, ends[-1])):
-                following = _WORD.match(plain, gap.end())
-                if following is None:
-                    break
-                words.append(following[0].casefold())
-                ends.append(following.end())
-            for count in range(len(words), 1, -1):
-                together, last = " ".join(words[:count]), ends[count - 1]
-                literally = self._as_it_stands(together, plain[begin:last])
-                if instead := literally or self.stands_for(together):
-                    return last, [Span(begin, last, instead)]
-        if instead := self.stands_for(words[0]):
-            return end, [Span(begin, end, instead)]
-        return end, list(self._within(plain[begin:end], begin))
-
-    def _within(self, word: str, begin: int) -> Iterator[Span]:
-        """Yield the names within a longer word."""
-        if len(word) > _LONGEST_WORD:
-            return
-        pieces = [match.span() for match in _PIECE.finditer(word)]
-        found = list(self._of_pieces(word, pieces)) if len(pieces) > 1 else []
-        found = found or list(self._of_letters(word.casefold(), len(word), pieces))
-        for first, last, instead in found:
-            yield Span(begin + first, begin + last, instead)
-
-    def _of_pieces(self, word: str, pieces: list[tuple[int, int]]) -> Iterator[Span]:
-        number = 0
-        while number < len(pieces):
-            for last in range(min(len(pieces), number + _MOST_WORDS), number, -1):
-                first, end = pieces[number][0], pieces[last - 1][1]
-                together = " ".join(word[a:b] for a, b in pieces[number:last]).casefold()
-                joined = together.replace(" ", "")
-                if instead := self.stands_for(joined) or self.stands_for(together):
-                    yield Span(first, end, instead)
-                    number = last - 1
-                    break
-            number += 1
-
-    def _of_letters(self, word: str, length: int, pieces: list[tuple[int, int]]) -> Iterator[Span]:
-        if word in self._known or len(word) != length:  # a letter whose small form is two
-            return
-        taken: list[Span] = []
-        for name in self.strong:
-            at = word.find(name)
-            while at >= 0:
-                end = at + len(name)
-                is_free = all(end <= each.begin or at >= each.end for each in taken)
-                if is_free and not self._cuts(word, at, end, pieces):
-                    taken.append(Span(at, end, self.stands_for(name)))
-                at = word.find(name, end)
-        yield from sorted(taken)
-
-    def _cuts(self, word: str, begin: int, end: int, pieces: list[tuple[int, int]]) -> bool:
-        """Whether letters are a part of a known word."""
-        return any(
-            first < end
-            and begin < last
-            and (first < begin or end < last)
-            and word[first:last] in self._known
-            for first, last in pieces
-        )
-
-
-def _identifier(text: str, begin: int, end: int) -> str:
-    """Return what stands at a place, with all letters, digits and _ before and behind."""
-    before = re.search(r"\w*\Z", text[max(0, begin - _LONGEST_WORD) : begin])
-    behind = _IDENTIFIER.match(text, end)
-    around = before[0] if before else "", behind[0] if behind else ""
-    return text[begin:end].join(around)
-
-
-def _as_written(text: str, begin: int, end: int, instead: str) -> str:
-    """Return what stands for a name, in the case of the identifier that it is a part of."""
-    around = text[begin - 1 : begin] + text[end : end + 1]
-    if not any(sign.isalnum() or sign == "_" for sign in around):
-        return instead
-    name = text[begin:end]
-    if name.isupper() and len(name) > 1:
-        return instead.upper()
-    return instead[:1].upper() + instead[1:] if name[:1].isupper() else instead
-
-
-def _without_accents(text: str) -> tuple[str, list[int] | None]:
+def with_places(text: str) -> tuple[str, list[int] | None]:
     """Return a text without accents and escapes, and where each of its characters was.
 
     The list has one number more, the length of the text; None where nothing has moved.
     """
     if text.isascii() and not _ESCAPE.search(text):
         return text, None
-    made, starts = list[str](), list[int]()
+    found = [(letter, start) for sign, start in _signs(text) for letter in _letters(sign)]
+    return "".join(letter for letter, _ in found), [*(start for _, start in found), len(text)]
 
-    def add(sign: str, start: int) -> None:
-        for letter in _letters(sign):
-            made.append(letter)
-            starts.append(start)
 
+def _signs(text: str) -> Iterator[tuple[str, int]]:
+    """Yield the characters of a text, an escape as what it stands for, and where each begins."""
     at = 0
     for match in _ESCAPE.finditer(text):
-        for start in range(at, match.start()):
-            add(text[start], start)
         decoded = _decoded(match[0])
         if decoded is None:  # no character: a word like any other
-            for start in range(*match.span()):
-                add(text[start], start)
-        else:
-            add(decoded, match.start())
+            continue
+        yield from zip(text[at : match.start()], range(at, match.start()), strict=True)
+        yield decoded, match.start()
         at = match.end()
-    for start in range(at, len(text)):
-        add(text[start], start)
-    return "".join(made), [*starts, len(text)]
+    yield from zip(text[at:], range(at, len(text)), strict=True)
 
 
 def _decoded(escape: str) -> str | None:
@@ -345,13 +103,13 @@ def _decoded(escape: str) -> str | None:
 @lru_cache(maxsize=4096)
 def _letters(sign: str) -> str:
     """Return a character without its accents; '' for an accent alone."""
-    return _plain(sign)
+    return unaccented(sign)
 
 
-def _plain(text: str) -> str:
+def unaccented(text: str) -> str:
     """Return a text without accents."""
     if text.isascii():
         return text
-    made = unicodedata.normalize("NFKD", text.translate(SPELLED))
+    made = unicodedata.normalize("NFKD", text.translate(_SPELLED))
     accents = {ord(sign): None for sign in set(made) if unicodedata.combining(sign)}
     return made.translate(accents) if accents else made

@@ -8,7 +8,7 @@ import pytest
 
 from grader.batch.entry import Person
 from grader.batch.names.people import called_in, forms, known_words, names_of, of_all, said_in
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
 from grader.exercise.loading import load_exercise
 from tests.grader.batch.names.accented import ZOE, nick_of, package
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from grader import judging
 from grader.batch.names.people import forms
 from grader.batch.names.recorded import without_hash, without_names
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
 from grader.cast.trace import CastTrace, SentMessage
 from grader.message import msg
 from grader.recording.observations import Observations, Raised, SourceLine

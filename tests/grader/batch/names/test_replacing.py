@@ -9,7 +9,7 @@ from urllib.parse import quote
 import pytest
 
 from grader.batch.names.people import forms
-from grader.batch.names.spelling import Names
+from grader.batch.names.replacing import Names
 
 ZOE = "Zoë Müller"
 NAMES = Names({}, forms([ZOE, "zm4711", "zoe.mueller@uni.example"], "studentab12", frozenset()))
