@@ -70,8 +70,7 @@ def _list(args: argparse.Namespace, console: Console) -> int:
     for name in added:
         folder = pins.home() / name / FILES
         try:
-            pin = pins.around(folder)
-            assert pin is not None
+            pin = _pin_of(folder)
             _show(console, pin, _state(pin, folder))
         except (ExerciseError, OSError) as error:
             why = error.message if isinstance(error, ExerciseError) else str(error)
@@ -106,7 +105,7 @@ def _add(args: argparse.Namespace, console: Console) -> int:
                 name=pin.name,
                 where=msg("installed with a package")
                 if folder is None
-                else _taken(_pin_of(pin.name), pin.origin),
+                else _taken(_pin_of(folder), pin.origin),
             )
         _show_what(console, pin)
         _show_origin(console, pin.origin)
@@ -147,7 +146,8 @@ def _update_one(asked: str, args: argparse.Namespace, console: Console) -> int:
     name, at, tag = asked.partition("@")
     if at:
         check_tag(tag, asked)
-    pin, folder = _pin_of(name), pins.home() / name / FILES
+    folder = _folder_of(name)
+    pin = _pin_of(folder)
     there = pin.origin
     tag = tag or there.tag
     fetched = fetch(Address(there.address, tag, there.folder))
@@ -181,18 +181,17 @@ def _update_one(asked: str, args: argparse.Namespace, console: Console) -> int:
 
 
 def _remove(args: argparse.Namespace, console: Console) -> int:
-    _pin_of(args.name, must_be_read=False)
+    _folder_of(args.name)  # whose pin may be damaged
     pins.drop(args.name)
     say(console, msg("Removed: {name}", name=args.name))
     return DONE
 
 
-def _pin_of(name: str, *, must_be_read: bool = True) -> Pin:
-    """Return the pin of an added exercise.
+def _folder_of(name: str) -> Path:
+    """Return the folder of an added exercise.
 
     Raises:
         UsageError: there is none of this name.
-        ExerciseError: its pin is damaged.
     """
     folder = pins.folder_of(name)
     if folder is None:
@@ -206,13 +205,18 @@ def _pin_of(name: str, *, must_be_read: bool = True) -> Pin:
             if added
             else msg("there is none"),
         )
-    try:
-        pin = pins.around(folder)
-    except ExerciseError:
-        if must_be_read:
-            raise
-        pin = None
-    return pin or Pin(name, Origin("", "", "", "", ""))
+    return folder
+
+
+def _pin_of(folder: Path) -> Pin:
+    """Return the pin of the added exercise in a folder.
+
+    Raises:
+        ExerciseError: it is damaged.
+    """
+    pin = pins.around(folder)
+    assert pin is not None
+    return pin
 
 
 def _laid_out(fetched: Fetched, place: Path) -> Pin:

@@ -60,17 +60,11 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
     try:
         return _load(name_or_path)
     except OSError as error:
-        if error.strerror is None:
-            raise ExerciseError(
-                "cannot read the exercise {name_or_path}: {why}",
-                name_or_path=repr(str(name_or_path)),
-                why=str(error) or type(error).__name__,
-            ) from None
+        of_system = f"{error.strerror}: {error.filename}" if error.strerror else str(error)
         raise ExerciseError(
-            "cannot read the exercise {name_or_path}: {strerror}: {filename}",
+            "cannot read the exercise {name_or_path}: {why}",
             name_or_path=repr(str(name_or_path)),
-            strerror=error.strerror,
-            filename=error.filename,
+            why=of_system or type(error).__name__,
         ) from None
 
 

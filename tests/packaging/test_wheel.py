@@ -40,6 +40,17 @@ def call_hook(checkout: Path, env: Environment, name: str, *arguments: Path) -> 
     return json.loads(call.stdout.splitlines()[-1])
 
 
+def refusal(folder: Path, env: Environment) -> str:
+    """The one line in which a build refuses to say what it needs."""
+    code = "from setuptools import build_meta; build_meta.get_requires_for_build_wheel()"
+    call = subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, env=env, capture_output=True, text=True
+    )
+    assert call.returncode != 0
+    (line,) = call.stderr.splitlines()
+    return line
+
+
 def requirements(checkout: Path, env: Environment) -> dict[str, list[str]]:
     """What a build asks for, and what the installed package asks for."""
     out = Path(tempfile.mkdtemp(dir=checkout))
@@ -101,16 +112,7 @@ def test_the_project_asks_for_nothing_of_ros_and_for_the_same_everywhere(
 def test_where_ros_is_sourced_a_second_one_is_refused_in_one_line(
     checkout: Path, ros_sourced: Environment
 ) -> None:
-    code = "from setuptools import build_meta; build_meta.get_requires_for_build_wheel()"
-    call = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=checkout / "interfaces" / "jazzy",
-        env=ros_sourced,
-        capture_output=True,
-        text=True,
-    )
-    assert call.returncode != 0
-    (line,) = call.stderr.splitlines()
+    line = refusal(checkout / "interfaces" / "jazzy", ros_sourced)
     assert line.startswith("Cannot install: ROS 2 jazzy is sourced")
 
 
@@ -209,16 +211,7 @@ def test_without_a_compiler_pip_shows_one_line(checkout: Path, no_compiler: Envi
 
 
 def test_without_a_compiler_nothing_is_downloaded(checkout: Path, no_compiler: Environment) -> None:
-    code = "from setuptools import build_meta; build_meta.get_requires_for_build_wheel()"
-    call = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=checkout / "interfaces" / "jazzy",
-        env=no_compiler,
-        capture_output=True,
-        text=True,
-    )
-    assert call.returncode != 0
-    (line,) = call.stderr.splitlines()
+    line = refusal(checkout / "interfaces" / "jazzy", no_compiler)
     assert line.startswith(MISSING)
 
 
