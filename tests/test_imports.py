@@ -232,13 +232,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "recording", "result", "reports")
     | below("grader.cli", "check", "options")
     | {"turtlesim_py.browser"},
-    "grader.cli.servers": GROUND | below("grader", "cli", "servers.client", "servers.place"),
-    # every call looks for servers before it imports anything else
-    "grader.servers": below(
-        "grader", "__init__", "message", "errors", "scratch", "system", "servers"
-    ),
-    "grader.cli.serving": GROUND | below("grader", "cli", "run", "exercise", "servers"),
-    "grader.__main__": below("grader", "cli", "servers.client"),
+    "grader.__main__": below("grader", "cli"),
 }
 
 #: An extension: robots, and what is asked of them; nothing in grader/ knows it, or needs it.

@@ -62,12 +62,9 @@ VERBS = {
     "exercises": msg(
         "List the exercises that are here; add others by their git address, update and remove them."
     ),
-    "servers": msg(
-        "Start servers that outlive a call, so that verdicts come sooner; or stop them."
-    ),
 }
 #: The verbs that run submissions; the others work anywhere.
-NEED_LINUX = ("run", "batch", "forget", "check-exercise", "servers")
+NEED_LINUX = ("run", "batch", "forget", "check-exercise")
 ELSEWHERE = msg(
     "submissions are run on Linux with /proc, which this is not. Take WSL 2, a devcontainer or "
     "Codespaces (docs/your-machine.md); grader check, view, report and new work here."
@@ -78,17 +75,13 @@ JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 _OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
 
 
-def main(argv: Sequence[str] | None = None, refused: Text = "") -> int:
-    """Run one verb, and return the exit code.
-
-    Args:
-        refused: why the user's servers do not do this call, where there are some.
-    """
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one verb, and return the exit code."""
     for stream in (sys.stdout, sys.stderr):  # a terminal may lack the letters of a language
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")
     try:
-        return _main(sys.argv[1:] if argv is None else argv, refused)
+        return _main(sys.argv[1:] if argv is None else argv)
     except KeyboardInterrupt:  # before a verb has started
         print(tr("{who}: interrupted", who="grader"), file=sys.stderr)
         return INTERRUPTED
@@ -106,23 +99,13 @@ def leave(code: int) -> NoReturn:
     os._exit(code)
 
 
-def lost(words: Sequence[str]) -> int:
-    """Tell that servers did not do a call to its end, and return the exit code."""
-    options.choose_language(words)
-    _print_error(FAILED, msg("the servers, or the process of this call, were ended; call again"))
-    return GRADER_FAILED
-
-
 def load(verb: str) -> Any:
     """Import and return the module of a verb."""
     return importlib.import_module(f"{__name__}.{verb.replace('-', '_')}")
 
 
-def _main(words: Sequence[str], refused: Text) -> int:
+def _main(words: Sequence[str]) -> int:
     options.choose_language(words)  # for help and errors of the call, too
-    if refused:
-        text = tr("The servers do not do this call: {why}", why=refused)
-        print(for_terminal(text), file=sys.stderr)
     if _asked(words) in NEED_LINUX and not system.runs_submissions():
         _print_error(_who(_asked(words)), ELSEWHERE)
         return UNUSABLE

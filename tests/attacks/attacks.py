@@ -96,7 +96,6 @@ ATTACKS = {
     "takes_descriptors": Attack(PROCESSES),
     "works_in_a_descriptor": Attack(PROCESSES, most=100, outcome="finished"),
     "replaces_the_recording": Attack(PROCESSES),
-    "reaches_servers": Attack(PROCESSES),
     "kills_all": Attack(PROCESSES),
     "kills_each": Attack(PROCESSES),
     "stops_all": Attack(PROCESSES),

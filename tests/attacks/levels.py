@@ -46,14 +46,12 @@ class Level:
         is_root: whether it is started as root.
         refused: system calls that are refused as docker's default profile does; empty: none.
         lacking: system calls that the kernel does not have.
-        is_served: whether the user's servers do the gradings.
     """
 
     grader: str
     is_root: bool
     refused: tuple[int, ...] = ()
     lacking: tuple[int, ...] = ()
-    is_served: bool = False
 
     @property
     def uid(self) -> int:
@@ -72,8 +70,6 @@ LEVELS = {
     "namespaces-user": Level("namespaces", is_root=False),
     "landlock-root": Level("landlock", True, REFUSED_BY_DOCKER),
     "landlock-user": Level("landlock", False, REFUSED_BY_DOCKER),
-    "namespaces-served": Level("namespaces", is_root=False, is_served=True),
-    "landlock-served": Level("landlock", False, REFUSED_BY_DOCKER, is_served=True),
     "limits-user": Level("limits", False, REFUSED_BY_DOCKER, LANDLOCK),
 }
 

@@ -28,8 +28,7 @@ from tests.attacks import levels
 PATIENCE_S, LINGERS_S = 100.0, 5.0
 #: Between two looks at what runs [s].
 EVERY_S = 0.05
-#: Reads a folder and the words of a call as JSON, a line each; answers with exit codes. With a
-#: fourth argument the user's servers do the calls: 99 where they do not.
+#: Reads a folder and the words of a call as JSON, a line each; answers with exit codes.
 SERVES = """
 import json, os, sys
 asked, answers = int(sys.argv[1]), int(sys.argv[2])
@@ -38,11 +37,6 @@ for fd in asked, answers:
 sys.path.insert(0, sys.argv[3])
 sys.argv[:] = ["grader", *sys.argv[1:]]
 from grader.cli import main
-import grader.cli
-if sys.argv[4:]:
-    main(["servers", "start"])
-    from grader.servers import client
-    main = lambda words: 99 if (code := client.called(words)) is None else code
 for line in os.fdopen(asked):
     folder, words = json.loads(line)
     os.chdir(folder)
@@ -52,8 +46,6 @@ for line in os.fdopen(asked):
         code = end.code
     sys.stdout.flush()
     os.write(answers, b"%d\\n" % (code or 0))
-if sys.argv[4:]:
-    grader.cli.main(["servers", "stop"])
 """
 
 
@@ -209,7 +201,6 @@ class Grader(Runner):
         asked, self._asks = os.pipe()
         self._answers, answers = os.pipe()
         words = ["-P", "-c", SERVES, str(asked), str(answers), str(tree)]
-        words += ["served"] * level.is_served
         self._process = self._start(words, folder, asked, answers)
         for fd in (asked, answers):
             os.close(fd)

@@ -41,19 +41,12 @@ EXAMPLES = int(os.environ.get("EXAMPLES") or 0)
 #: What no level changes is tried at one, which has all of them.
 EVERYWHERE_THE_SAME = {READING, RUBRIC, SIMULATOR, LINK}
 DIFFER = {name for name, each in ATTACKS.items() if each.about not in EVERYWHERE_THE_SAME}
-#: What may concern servers that outlive a grading.
-SERVED = {
-    *("reaches_servers", "kills_all", "process_vm", "takes_descriptors", "plants_locks"),
-    *("replaces_the_folder_of_locks", "daemons", "replaces_builtins", "stops_all"),
-}
 #: Where a level may matter most: tried first.
 TRIED = {
     "namespaces-user": ATTACKS.keys(),
     "namespaces-root": AS_ROOT,
     "landlock-user": DIFFER - TRIED_ELSEWHERE,
     "landlock-root": AS_ROOT_BY_LANDLOCK,
-    "namespaces-served": SERVED,
-    "landlock-served": SERVED,
     "limits-user": AT_LIMITS,
 }
 #: As the second of two programs: what concerns how that comes to its view and to its link.

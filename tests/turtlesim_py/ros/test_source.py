@@ -56,7 +56,6 @@ GRADER = "from grader.__main__ import main; main()"
         ("grader run", GRADER, ["run", "x.py"]),
         ("grader batch", GRADER, ["batch", "x", "--out", "y"]),
         ("grader check-exercise", GRADER, ["check-exercise", "talker"]),
-        ("grader servers", GRADER, ["servers", "start"]),
     ],
 )
 def test_without_ros_a_command_says_which_extra_brings_it(command, code, arguments, tmp_path):
