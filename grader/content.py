@@ -23,15 +23,6 @@ def of_folder(folder: Path) -> str:
     Raises:
         OSError: one of them cannot be read.
     """
-    return of_files(hashes_of(folder))
-
-
-def hashes_of(folder: Path) -> dict[str, str]:
-    """Return the hash of each file in a folder and below, by its relative name.
-
-    Raises:
-        OSError: one of them cannot be read.
-    """
     found: dict[str, str] = {}
     for at, folders, files in os.walk(folder):
         links = (name for name in folders if Path(at, name).is_symlink())
@@ -39,7 +30,7 @@ def hashes_of(folder: Path) -> dict[str, str]:
             is_link = path.is_symlink()
             digest = of_bytes(os.fsencode(path.readlink())) if is_link else of_file(path)
             found[path.relative_to(folder).as_posix()] = digest
-    return found
+    return of_files(found)
 
 
 def of_files(hashes: Mapping[str, str]) -> str:

@@ -105,7 +105,7 @@ def fitting(marks: Marks, recordings: Recordings | None) -> str:
     """
     types = () if recordings is None else {each.type for each in recordings.nominal.topics}
     files = () if marks.has_program or recordings is not None else marks.files
-    for name in places.installed_names() if types or files else ():
+    for name in places.names() if types or files else ():
         with suppress(ExerciseError):
             fits = load_exercise(name).fits
             likely = product(files, fits.get("files", ()))

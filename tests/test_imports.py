@@ -42,7 +42,7 @@ GROUND = below(
     *("linux", "requirements", "strict_json", "limited", "content", "extensions", "yaml_file"),
 )
 #: What the rooms above a run may import of those below it.
-RECORDED = below("grader", "recording", "exercise", "result", "added.pins")
+RECORDED = below("grader", "recording", "exercise", "result")
 
 #: What may import what of ours, besides itself. A name stands for all that is below it; of two
 #: names that fit a module the longer is its rule. The lowest come first.
@@ -136,12 +136,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "recording", "scenes", "run.lockstep", "run.processes", "run.handover")
     | below("grader", "run.limits", "run.simulator")
     | {"turtlesim_py.ros.program"},
-    # exercises that were added by address: where they lie, and how they come there
-    "grader.added": GROUND | {"grader.added"},
     "grader.exercise": GROUND
-    | below("grader", "recording", "scenes.scene", "rosidl.definitions", "cast", "added.pins")
-    # whose checks run in a process that is confined as a submission's
-    | {"grader.run.checking"},
+    | below("grader", "recording", "scenes.scene", "rosidl.definitions", "cast"),
     # columns with names, and nothing of turtles but how they move
     "grader.exercise.driven_path": GROUND
     | below("grader", "exercise", "recording", "scenes.scene")
@@ -151,12 +147,10 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "inspection.trace")
     | {"turtlesim_py.world"},
     "grader.diagnosis": GROUND | below("grader", "recording", "exercise.verdict"),
-    "grader.result": GROUND
-    | below("grader", "recording", "exercise", "added.pins")
-    | {"grader.diagnosis.diagnosis"},
+    "grader.result": GROUND | below("grader", "recording", "exercise", "diagnosis.diagnosis"),
     "grader.reports": GROUND
     | below("grader", "recording", "exercise.verdict", "result", "diagnosis.diagnosis")
-    | {"grader.scenes.scene", "grader.added.pins"},
+    | {"grader.scenes.scene"},
     "grader.judging": GROUND | RECORDED | {"grader.diagnosis"},
     "grader.grading": GROUND
     | RECORDED
@@ -206,7 +200,7 @@ MAY_IMPORT: dict[str, set[str]] = {
         GROUND
         | {"grader.batch"}
         | below("grader", "grading", "judging", "result", "run.opening", "recording.recording")
-        | below("grader", "exercise.exercise", "exercise.loading", "exercise.places", "added.pins")
+        | below("grader", "exercise.exercise", "exercise.loading", "exercise.places")
         | below("grader", "reports.__init__", "run.processes", "run.fork_servers", "submission"),
     ),
     # a page is shown as the simulator's is
@@ -222,11 +216,6 @@ MAY_IMPORT: dict[str, set[str]] = {
     | RECORDED
     | below("grader", "__init__", "grading", "judging", "testing", "batch", "course", "cli.live")
     | below("grader", "reports", "run", "submission"),
-    # what a teacher installs from has an address as well
-    "grader.cli.course": GROUND | below("grader", "added.address", "course", "exercise"),
-    "grader.cli.exercises": GROUND
-    | below("grader", "added", "exercise", "cli", "testing")
-    | {"grader.cli"},
     # ... and so is the page that plays
     "grader.cli.view": GROUND
     | below("grader", "recording", "result", "reports")

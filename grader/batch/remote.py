@@ -17,7 +17,6 @@ from pathlib import Path, PurePosixPath
 from typing import Literal, NamedTuple
 
 from grader import files, scratch
-from grader.added import pins
 from grader.batch import pool
 from grader.batch.pool import Answer, Task
 from grader.batch.store import RUN, STUDENTS, below, installed_versions
@@ -150,12 +149,10 @@ def packed(task: Task) -> Shipment:
     assert task.path is not None
     sent = replace(task, path=Path(SUBMISSION, task.path.name), into=Path(MADE))
     trees = {str(sent.path): task.path}
-    added = pins.folder_of(task.exercise)
-    if added is not None or not places.is_installed(task.exercise):
-        exercise = added or Path(task.exercise)
-        # an edited copy beside its original means that one; an added one has its pin beside it
-        is_around = added is not None or (exercise.parent / CHECKS).is_file()
-        base = exercise.parent if is_around else exercise
+    if not places.is_installed(task.exercise):
+        exercise = Path(task.exercise)
+        # an edited copy beside its original means that one
+        base = exercise.parent if (exercise.parent / CHECKS).is_file() else exercise
         trees[f"{EXERCISE}/{base.name}"] = base
         sent = replace(sent, exercise=str(EXERCISE / exercise.relative_to(base.parent)))
     if task.names is not None:

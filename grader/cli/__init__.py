@@ -59,9 +59,6 @@ VERBS = {
         "Try an exercise on its right solutions and mutants: what each check catches, and what "
         "to fix."
     ),
-    "exercises": msg(
-        "List the exercises that are here; add others by their git address, update and remove them."
-    ),
 }
 #: The verbs that run submissions; the others work anywhere.
 NEED_LINUX = ("run", "batch", "forget", "check-exercise")

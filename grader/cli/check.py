@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import shlex
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +14,7 @@ from grader.cli.run import points
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
-from grader.exercise.loading import load_exercise, load_recorded
+from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
 from grader.message import Message, msg
 from grader.recording.folder import WINDOW_PICTURE
@@ -119,28 +118,19 @@ def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) 
     """Load the exercise of the call, else the one that the recording was made for.
 
     Raises:
-        UsageError: that one is not installed, or another of its name was added.
+        UsageError: that one is not installed.
     """
     if asked is not None:
         return load_exercise(asked)
     origin = recordings.nominal.provenance
     name = (origin and origin.exercise) or (place.older and place.older.exercise) or DEFAULT
     if name not in names():
-        judged = place.older and place.older.provenance and place.older.provenance.judged
-        if judged and judged.exercise_from is not None:
-            address = str(replace(judged.exercise_from, tag=judged.exercise_from.commit))
-            raise UsageError(
-                "the recording was made for the exercise {name!r}, which was added, and is no "
-                "longer here: {command}",
-                name=name,
-                command=f"grader exercises add {shlex.quote(address)}",
-            )
         raise UsageError(
             "the recording was made for the exercise {name!r}, which is not "
             "installed here; give its folder: --exercise FOLDER",
             name=name,
         )
-    return load_recorded(name, "" if origin is None else origin.exercise_sha256)
+    return load_exercise(name)
 
 
 def _is_same(file: Path, place: RecordingPlace) -> bool:

@@ -14,7 +14,6 @@ from rich.table import Table
 from grader import files
 from grader.cli import say
 from grader.cli.batch import processes
-from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.requirements import require_ros
 from grader.testing.checking import Progress, check_exercise
@@ -43,25 +42,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Try an exercise; 1 if there is something to fix. See `grader.cli` for other exit codes."""
-    examination = tried(load_exercise(args.exercise), args.mutants, args.jobs)
+    exercise = load_exercise(args.exercise)
+    require_ros()
+    with _shown(Console(stderr=True, highlight=False), exercise.name) as show:
+        examination = check_exercise(exercise, mutants=args.mutants, jobs=args.jobs, progress=show)
     for path, text in (
         (args.json, json.dumps(examination.to_json(), indent=2, ensure_ascii=False) + "\n"),
         (args.markdown, examination.to_markdown()),
     ):
         if path is not None:
             files.write(path, text)
-    show(examination, Console(highlight=False))
+    _print(examination, Console(highlight=False))
     return int(not examination.is_fine)
 
 
-def tried(exercise: Exercise, mutants: Path | None = None, jobs: int | None = None) -> Examination:
-    """Try an exercise, and show the progress; raises what `check_exercise` raises."""
-    require_ros()
-    with _shown(Console(stderr=True, highlight=False), exercise.name) as progress:
-        return check_exercise(exercise, mutants=mutants, jobs=jobs, progress=progress)
-
-
-def show(examination: Examination, console: Console) -> None:
+def _print(examination: Examination, console: Console) -> None:
     """Print what was found."""
     table = Table(
         tr("check"),

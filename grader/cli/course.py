@@ -9,14 +9,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from grader import files, system, text
-from grader.added.address import has_secret
 from grader.course import repository
 from grader.course.kinds import HAVE_A_CHECK, HAVE_AN_IMAGE, KINDS
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.exercise.places import installed, installed_names
+from grader.exercise.places import installed, names
 from grader.message import msg
 from grader.translations import tr
 
@@ -31,6 +30,8 @@ ADDRESS = re.compile(
     re.ASCII,
 )
 RELEASE = re.compile(r"([\w.-]+)(\[[\w,-]+\])?( *[=~<>!].+)", re.ASCII)
+#: What stands before a host: over https a token may pose as the user.
+SECRET = re.compile(r"https?://[^/@]*@|\w+://[^/@]*:[^/@]*@")
 #: The name of an image, as docker takes it.
 IMAGE = re.compile(r"[a-z0-9][\w.:/-]*", re.ASCII)
 DEFAULT_IMAGE = "turtlesim-grader"
@@ -42,7 +43,7 @@ EXPLAINED = msg(
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.epilog = tr(EXPLAINED.key, names=", ".join(installed_names()))
+    parser.epilog = tr(EXPLAINED.key, names=", ".join(names()))
     parser.add_argument("what", choices=("new",), help=tr("what to do"))
     parser.add_argument("folder", type=Path, metavar="DIR", help=tr("a new or empty folder"))
     parser.add_argument(
@@ -101,13 +102,6 @@ def main(args: argparse.Namespace) -> int:
             names=" ".join(args.exercises),
         )
     exercises = [load_exercise(installed(name).name) for name in dict.fromkeys(args.exercises)]
-    if added := next((each for each in exercises if each.origin is not None), None):
-        raise UsageError(
-            "the exercise {name!r} was added from {origin}; where a course is graded there are the "
-            "installed ones alone",
-            name=added.name,
-            origin=str(added.origin),
-        )
     _check_points(args.kind, args.pass_points, exercises)
     source = _source(args.source, args.ros)
     how = repository.Settings(source, args.pass_points, _image(args.kind, args.image), args.ros)
@@ -166,7 +160,7 @@ def _source(source: str | None, ros: str) -> str:
                 "the version of this grader is not known; say with --source what to install"
             )
         return f"turtlesim_py[{ros}]=={version}"
-    if has_secret(source):
+    if SECRET.search(source):
         raise UsageError(
             "a password or token in --source would be in files that students may read: leave it "
             "out. The whole address goes into the CI's secret GRADER_SOURCE ({kinds}), elsewhere "

@@ -67,16 +67,12 @@ def main(args: argparse.Namespace) -> int:
     from grader.batch.forget import forgetting, receipt, whom
     from grader.batch.names.people import known_words
     from grader.batch.store import Store
-    from grader.exercise.loading import load_exercise, load_recorded
+    from grader.exercise.loading import load_exercise
     from grader.submission.folder import listed
 
     console = Console(highlight=False)
     described = ClassFile.read(args.out)
-    exercise = (
-        load_exercise(args.exercise)
-        if args.exercise
-        else load_recorded(described.exercise, described.exercise_sha256)
-    )
+    exercise = load_exercise(args.exercise or described.exercise)
     if exercise.name != described.exercise:
         raise UsageError(
             "{out} was graded for the exercise {then!r}, and this is {now!r}: name that one with "

@@ -10,6 +10,7 @@ from grader import files
 from grader.course import starter
 from grader.exercise import DEFAULT
 from grader.exercise.loading import load_exercise
+from grader.exercise.places import names
 from grader.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
@@ -18,6 +19,7 @@ RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
+    parser.epilog = tr("Exercises that are installed: {names}.", names=", ".join(names()))
     parser.add_argument("folder", type=Path, metavar="DIR", help=tr("a new or empty folder"))
     parser.add_argument(
         "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help=tr("which one (the challenge)")

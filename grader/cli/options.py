@@ -89,13 +89,12 @@ def choose_language(words: Sequence[str]) -> None:
     return use(of_environment())
 
 
-def add_arguments(parser: argparse.ArgumentParser, default: str | None = None) -> None:
-    """Declare the options; `default` is theirs where they are left out."""
-    _add_error_file(parser, default)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    _add_error_file(parser)
     parser.add_argument(
         LANG,
         choices=tuple(LANGUAGES),
-        default=default,
         help=tr(
             "the language of what people read (that of your locale: LANG); result files are the "
             "same in all"
@@ -103,11 +102,10 @@ def add_arguments(parser: argparse.ArgumentParser, default: str | None = None) -
     )
 
 
-def _add_error_file(parser: argparse.ArgumentParser, default: str | None = None) -> None:
+def _add_error_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--error-json",
         type=Path,
-        default=default,
         metavar="FILE",
         help=tr("where to write what went wrong, if it does"),
     )

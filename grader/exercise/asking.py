@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import json
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -75,18 +74,6 @@ class Answers:
                 raise NoFinding(answer["text"], was_raised=answer["say"] == "raised")
         raise self.not_reached
 
-    def lets(self, name: str, after: Mapping[str, Sequence[str]]) -> bool:
-        """Whether a check is to be run: each that it depends on has passed, or is not asked."""
-        return all(each not in after or self._has_passed(each) for each in after[name])
-
-    def lacking(self, after: Mapping[str, Sequence[str]]) -> str:
-        """Return the first check that should have an answer and has none; '' for none."""
-        return next((n for n in after if n not in self.answers and self.lets(n, after)), "")
-
-    def _has_passed(self, name: str) -> bool:
-        found = self.answers.get(name, {}).get("finding")
-        return bool(found and found.get("judged", True) and found["share"] >= 1)
-
 
 def ask(
     functions: Mapping[str, CheckFunction],
@@ -96,56 +83,40 @@ def ask(
     describe: DescribeError | None = None,
     rounds: int = 1,
 ) -> list[Answers]:
-    """Run checks in a copy of this process; return the findings of each round. See `answers`."""
-    work = partial(answers, functions, after, recordings, tolerances, describe, rounds)
-    return collected(limited.stream(work, LIMITS), rounds)
-
-
-def answers(
-    functions: Mapping[str, CheckFunction],
-    after: Mapping[str, Sequence[str]],
-    recordings: Recordings,
-    tolerances: Mapping[str, Any],
-    describe: DescribeError | None,
-    rounds: int,
-) -> Iterator[bytes]:
     """Run checks in their order; one that depends on one that fails is not run.
-
-    Yields:
-        For each check a line that it begins, and one with its answer.
 
     Args:
         after: of each check those that have to pass before.
         describe: an exception of a check for people; else `where_it_failed`.
         rounds: how often all of them are run, in the same process.
+
+    Returns:
+        The findings of each round.
     """
-    for number in range(rounds):
-        made = Answers()
-        for name, function in functions.items():
-            if made.lets(name, after):
-                yield _line(number, name, None)
-                answer = _run(function, recordings, tolerances, describe or where_it_failed)
-                yield _line(number, name, answer)
-                made.answers[name] = answer
 
+    def work() -> Iterator[bytes]:
+        for number in range(rounds):
+            has_passed: dict[str, bool] = {}
+            for name, function in functions.items():
+                has_passed[name] = False
+                if all(has_passed.get(each, True) for each in after[name]):
+                    yield json.dumps([number, name, None]).encode()
+                    answer = _run(function, recordings, tolerances, describe or where_it_failed)
+                    yield json.dumps([number, name, answer]).encode()
+                    found = answer.get("finding")
+                    has_passed[name] = bool(found and found["judged"] and found["share"] >= 1)
 
-def collected(lines: Iterable[bytes], rounds: int) -> list[Answers]:
-    """Return the findings of each round from the lines of `answers`."""
     by_round = [Answers() for _ in range(rounds)]
     running = ""
     try:
-        for line in lines:
-            number, running, found = strict_json.loads(line.decode())
-            if found is not None:
-                by_round[number].answers[running] = found
+        for line in limited.stream(work, LIMITS):
+            number, running, answer = strict_json.loads(line.decode())
+            if answer is not None:
+                by_round[number].answers[running] = answer
     except LimitHit as hit:
         for each in by_round:
             each.not_reached = NotReached(hit.why, running)
     return by_round
-
-
-def _line(number: int, name: str, answer: dict[str, Any] | None) -> bytes:
-    return json.dumps([number, name, answer]).encode() + b"\n"
 
 
 def _run(

@@ -64,7 +64,7 @@ NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
 def build(data: dict[str, Any], place: Place) -> Exercise:
     """Build an exercise from the values of its exercise.yaml and the checks beside it."""
-    scene, subject = _subject(data.get("scene", DEFAULT_SCENE), place)
+    scene, subject = _subject(data.get("scene", DEFAULT_SCENE))
     setting = _setting(data.get("setting"), subject, place)
     interfaces = _interfaces(data.get(INTERFACES), place)
     limits = _limits(data) if isinstance(subject, Scene) else _without_clock(data, scene)
@@ -99,7 +99,6 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         programs=_programs(data),
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
-        origin=place.pin.origin if place.pin else None,
         sha256=_sha256(data, {SETTING: setting, **interfaces}, place.folder),
         visible=policies.visible(data.get("visible"), checks, points),
         late=policies.late(data.get("late"), round(sum(points.values()), 2)),
@@ -113,18 +112,10 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     )
 
 
-def _subject(name: object, place: Place) -> tuple[str, Subject]:
+def _subject(name: object) -> tuple[str, Subject]:
     """Load the scene that an exercise names."""
     names = extensions.points(SCENES)
     if not isinstance(name, str) or name not in names:
-        if place.pin is not None:
-            raise Mistake(
-                ("scene",),
-                "expected one of {scenes}, found {scene}. Scenes, reports and inspections come "
-                "through pip only",
-                scenes=", ".join(names),
-                scene=repr(name),
-            )
         raise Mistake(
             ("scene",),
             "expected one of {scenes}, found {scene}",
@@ -179,7 +170,7 @@ def _setting(where: Any, subject: Subject, place: Place) -> str:
     setting = ""
     if where is not None:
         try:
-            setting = _own(place, where).read_text(encoding="utf-8")
+            setting = (place.folder / where).read_text(encoding="utf-8")
         except (OSError, ValueError) as error:
             raise Mistake(
                 (SETTING,), "cannot read {where}: {error}", where=where, error=str(error)
@@ -202,7 +193,7 @@ def _interfaces(where: Any, place: Place) -> dict[str, str]:
         return {}
     from grader.rosidl.definitions import Definitions  # here: most exercises have none
 
-    files = sorted(_own(place, str(where)).glob("*/*/*"))
+    files = sorted((place.folder / str(where)).glob("*/*/*"))
     texts = {
         f"{each.parts[-3]}/{each.parts[-2]}/{each.stem}": each.read_text("utf-8", "replace")
         for each in files
@@ -230,33 +221,13 @@ def _checks(
 ) -> tuple[Checks, set[str]]:
     """Return the checks of checks.py and those of what is expected, and the topics of these."""
     if EXPECT not in data:
-        return _own_checks(data, place), set()
+        return places.import_checks(place), set()
     from grader.exercise.expect.checks import add_checks  # here: most exercises have no such part
     from grader.exercise.known_types import KnownTypes
 
-    checks = _own_checks(data, place).with_words({}, {})
+    has_own = (place.folder / places.CHECKS).is_file()
+    checks = places.import_checks(place).with_words({}, {}) if has_own else Checks()
     return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s)
-
-
-def _own_checks(data: Mapping[str, Any], place: Place) -> Checks:
-    """Return the checks of checks.py, which an exercise needs if nothing is expected."""
-    if place.pin is not None:
-        from grader.exercise.confined import checks_of  # here: few exercises are added
-
-        return checks_of(place.folder, place.pin, data)
-    if EXPECT in data and not (place.folder / places.CHECKS).is_file():
-        return Checks()
-    return places.import_checks(place)
-
-
-def _own(place: Place, where: str) -> Path:
-    """Return the path of a file that an exercise names; of an added one it is below its folder."""
-    if place.pin is None:
-        return place.folder / where
-    try:
-        return places.locate(place.folder, where)
-    except ExerciseError as error:
-        raise Mistake((), error.message) from None
 
 
 def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
@@ -397,7 +368,7 @@ def _starter(where: object, place: Place) -> Path | None:
     real = folder.resolve()
     package = str(where).partition("/")[0]
     roots = [place.folder]
-    if place.pin is None and package.isidentifier() and find_spec(package) is not None:
+    if package.isidentifier() and find_spec(package) is not None:
         roots.append(Path(str(files(package))))
     if not any(root.resolve() in (real, *real.parents) for root in roots) or real == roots[0]:
         raise Mistake(

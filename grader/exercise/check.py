@@ -8,7 +8,7 @@ that depends on a failed check is not judged, and names that one.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,6 @@ class Check:
         title: the first line of its docstring.
         rubric: the rest of it: what is measured and how partial credit is computed, for students;
             `{name}` stands for a tolerance, `{name%}` for one in percent.
-        file: the name of the file of the function.
     """
 
     name: str
@@ -43,12 +42,8 @@ class Check:
     function: CheckFunction
     depends_on: tuple[str, ...]
     rubric: Message = NOTHING
-    file: str = ""
 
 
-#: Runs checks in another process: of these runs, the checks that are asked with those that have to
-#: pass before, so many rounds; and whether exceptions are described for the exercise's author.
-Elsewhere = Callable[[Recordings, Mapping[str, Sequence[str]], int, bool], list[Answers]]
 #: Returns the finding of a check by its name; see `grader.exercise.asking.Answers`.
 Ask = Callable[[str], Finding]
 
@@ -58,12 +53,9 @@ class Checks:
 
     Args:
         parts: whose checks come first.
-        elsewhere: runs them where they may not run in a copy of this process; see
-            `grader.exercise.confined`.
     """
 
-    def __init__(self, *parts: Checks, elsewhere: Elsewhere | None = None) -> None:
-        self.elsewhere = elsewhere
+    def __init__(self, *parts: Checks) -> None:
         self._checks: list[Check] = [check for part in parts for check in part]
         self._validators: dict[str, Validator] = {}
 
@@ -72,7 +64,7 @@ class Checks:
 
     def with_words(self, titles: Words, rubrics: Words) -> Checks:
         """Return the checks with titles and rubrics in other languages, by the check's name."""
-        made = Checks(elsewhere=self.elsewhere)
+        made = Checks()
         made._validators = self._validators
         made._checks = [
             replace(
@@ -92,24 +84,6 @@ class Checks:
         """
         self._validators[validate.__name__] = validate
         return validate
-
-    def refuse(self, tolerance: str, why: Message) -> None:
-        """Refuse the value of a tolerance, which was tried elsewhere."""
-
-        def refused(_: object) -> None:
-            raise ValueError(why)
-
-        self._validators[tolerance] = refused
-
-    def add(self, check: Check) -> None:
-        """Add a check after the others.
-
-        Raises:
-            ValueError: its name is taken.
-        """
-        if check.name in {each.name for each in self._checks}:
-            raise ValueError(f"two checks are named {check.name!r}")
-        self._checks.append(check)
 
     def wrong_tolerance(self, tolerances: Tolerances) -> tuple[str, Message] | None:
         """Return the name of the first invalid tolerance, and why; None: all are valid."""
@@ -140,7 +114,9 @@ class Checks:
 
         def register(function: CheckFunction) -> CheckFunction:
             title, _, rubric = (inspect.getdoc(function) or function.__name__).partition("\n")
-            name, file = function.__name__, Path(function.__code__.co_filename).name
+            name = function.__name__
+            if name in {check.name for check in self._checks}:
+                raise ValueError(f"two checks are named {name!r}")
             found = inspect.signature(function)
             try:
                 found.bind(None, None)
@@ -148,7 +124,7 @@ class Checks:
                 what = f"{name}: expected (recordings, tolerances), found {found}"
                 raise TypeError(what) from None
             heading, rest = authored(title.strip().rstrip(".")), authored(rubric.strip())
-            self.add(Check(name, heading, function, tuple(after), rest, file))
+            self._checks.append(Check(name, heading, function, tuple(after), rest))
             return function
 
         return register
@@ -192,8 +168,6 @@ def answers(
     asked = [check for check in checks if check.name in points]
     functions = {check.name: check.function for check in asked}
     after = {check.name: check.depends_on for check in asked}
-    if checks.elsewhere is not None:
-        return checks.elsewhere(recordings, after, rounds, describe is not None)
     return asking.ask(functions, after, recordings, tolerances, describe, rounds)
 
 
@@ -274,7 +248,7 @@ def _failure(check: Check, error: NoFinding) -> Message:
     return msg(
         "the check {check!r} returned what it should not, so nothing was judged: {file}: {error}",
         check=check.name,
-        file=check.file,
+        file=Path(check.function.__code__.co_filename).name,
         error=str(error),
     )
 

@@ -15,15 +15,12 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict
 
-from grader import limited
-from grader.added.pins import Origin
 from grader.errors import ExerciseError
 from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
-from grader.limited import LimitHit, WorkLimits
-from grader.message import NOTHING, Message, msg
+from grader.message import NOTHING, Message
 from grader.recording.subject import Endpoint, Start, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
 
@@ -119,7 +116,6 @@ class Exercise:
         folder: where its files are.
         starter: the folder that `grader new` copies, or a program around which it makes a package;
             None where there is none.
-        origin: where it was added from; None for one that is installed, or of a folder.
         sha256: of all that a verdict depends on: the values of exercise.yaml that are in force,
             the setting, and the Python files beside it.
     """
@@ -139,7 +135,6 @@ class Exercise:
     programs: tuple[str, ...] = ()
     folder: Path = Path()
     starter: Path | None = None
-    origin: Origin | None = None
     sha256: str = ""
     task: Message = NOTHING
     visible: Mapping[str, Visible] = field(default_factory=dict)
@@ -216,7 +211,8 @@ class Exercise:
         else:
             program = self.starter.read_text(encoding="utf-8")
             texts = _texts_below(_AROUND)
-            texts["package.xml"] = texts["package.xml"].replace(_RCLPY, self._depends(program))
+            depends = _depends(program, self.starter)
+            texts["package.xml"] = texts["package.xml"].replace(_RCLPY, depends)
             texts[f"{_PACKAGE}/{_PROGRAM}.py"] = program
             names = {_PROGRAM: self.starter.stem, _EXERCISE: self.name}
         if package and (found := _NAME.search(texts.get("package.xml", ""))):
@@ -225,16 +221,6 @@ class Exercise:
             word = re.compile(rf"\b{re.escape(before)}\b")
             texts = {word.sub(name, path): word.sub(name, text) for path, text in texts.items()}
         return {path: text.encode("utf-8", "surrogateescape") for path, text in texts.items()}
-
-    def _depends(self, program: str) -> str:
-        """Return the elements of a package.xml that name what a starter imports."""
-        try:  # an added exercise's author may be anybody
-            names = limited.call(lambda: _imported(program).encode(), WorkLimits()).decode()
-        except LimitHit as hit:
-            raise ExerciseError(
-                "{starter} cannot be used: reading it {why}", starter=str(self.starter), why=hit.why
-            ) from None
-        return "".join(_RCLPY.replace("rclpy", name) for name in names.split())
 
     @property
     def starter_package(self) -> str:
@@ -290,20 +276,19 @@ def _texts_below(folder: Path) -> dict[str, str]:
     return texts
 
 
-def _imported(program: str) -> str:
-    """Return the names of the packages that a program imports.
-
-    Raises:
-        LimitHit: it does not parse.
-    """
+def _depends(program: str, path: Path) -> str:
+    """Return the elements of a package.xml that name what a program imports."""
     found = {"rclpy"}
     try:
         tree = ast.parse(program)
     except (SyntaxError, ValueError) as error:
-        raise LimitHit(msg("finds a mistake: {why}", why=str(error))) from None
+        raise ExerciseError(
+            "{starter} does not parse: {why}", starter=str(path), why=str(error)
+        ) from None
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             found.update(alias.name.partition(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
             found.add(node.module.partition(".")[0])
-    return " ".join(sorted(found - sys.stdlib_module_names))
+    names = sorted(found - sys.stdlib_module_names)
+    return "".join(_RCLPY.replace("rclpy", name) for name in names)

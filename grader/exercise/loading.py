@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from grader.errors import CheckFailed, ExerciseError, UsageError
+from grader.errors import ExerciseError
 from grader.exercise import cases, places, translated
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
@@ -49,10 +49,10 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
     """Load an exercise.
 
     Args:
-        name_or_path: the name of an installed or added one; else a folder with exercise.yaml and
-            checks.py; or a file *.yaml: an edited copy of the exercise.yaml that it names, which is
-            the one of its own folder or an installed one. What an edited copy leaves out of
-            `limits` and `tolerances` stays as it is in the original.
+        name_or_path: the name of an installed one; else a folder with exercise.yaml and checks.py;
+            or a file *.yaml: an edited copy of the exercise.yaml that it names, which is the one
+            of its own folder or an installed one. What an edited copy leaves out of `limits` and
+            `tolerances` stays as it is in the original.
 
     Raises:
         ExerciseError: there is no such exercise, or something in it is wrong; with file and line.
@@ -66,28 +66,6 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
             name_or_path=repr(str(name_or_path)),
             why=of_system or type(error).__name__,
         ) from None
-
-
-def load_recorded(name: str, sha256: str) -> Exercise:
-    """Load the installed or added exercise that a recording or a class names.
-
-    Args:
-        sha256: of the exercise that it was made for; '' where that is not recorded.
-
-    Raises:
-        UsageError: an added one of this name is another exercise, as it may be of one's own folder.
-        ExerciseError: as `load_exercise`.
-    """
-    exercise = load_exercise(name)
-    if exercise.origin is not None and sha256 not in ("", exercise.sha256):
-        raise UsageError(
-            "the recordings were made for another exercise {name!r} than the one added from "
-            "{origin}: an older or edited one, or one in a folder. Say which one you mean: "
-            "--exercise FOLDER, or --exercise {name}",
-            name=name,
-            origin=str(exercise.origin),
-        )
-    return exercise
 
 
 def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
@@ -110,7 +88,7 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
 
 
 def _from_place(place: Place) -> Exercise:
-    with _naming(place.shown):
+    with _naming(place.folder):
         file = _read(place.description)
         with _placing(file):
             return build(_described(file, place), place)
@@ -119,7 +97,7 @@ def _from_place(place: Place) -> Exercise:
 def _from_file(path: Path) -> Exercise:
     if path.name == DESCRIPTION and places.is_exercise(path.parent):
         return _from_place(places.in_folder(path.parent))
-    with _naming(str(path)):
+    with _naming(path):
         edited = _read(path)
         with _placing(edited):
             _check_keys(edited.data)
@@ -128,15 +106,13 @@ def _from_file(path: Path) -> Exercise:
 
 
 @contextmanager
-def _naming(path: str) -> Iterator[None]:
-    """Name the folder, the address or the file of an exercise in an error of it."""
+def _naming(path: Path) -> Iterator[None]:
+    """Name the folder or the file of an exercise in an error of it."""
     try:
         yield
-    except CheckFailed:  # of an added exercise, and told as such
-        raise
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            "{path} is not an exercise: {why}", path=path, why=reason(error)
+            "{path} is not an exercise: {why}", path=str(path), why=reason(error)
         ) from error
 
 
@@ -189,8 +165,7 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
             name=repr(place.name),
             own_name=repr(name),
         )
-    # an added one may have it too: a name alone means that one, a path this one
-    if not place.name and name in places.installed_names():
+    if not place.name and name in names():
         raise Mistake(
             ("exercise",),
             "{name} is the name of an installed exercise; give yours another",

@@ -2,7 +2,7 @@
 
 An exercise is a folder with exercise.yaml and checks.py. It lies in an installed package (entry
 points of the group `grader.exercises`, whose values name a package or a module in the exercise's
-folder), or was added by address (`grader.added`), or lies anywhere: then it is given as a path.
+folder), or anywhere: then it is given as a path.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import re
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
 from importlib.machinery import SourceFileLoader
@@ -25,8 +25,6 @@ from pathlib import Path
 from types import ModuleType
 
 from grader import extensions
-from grader.added import pins
-from grader.added.pins import Pin
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
 from grader.extensions import EXERCISES, described
@@ -46,59 +44,43 @@ class Place:
     Attributes:
         folder: with its files.
         package: by which the folder is imported; "" for a folder that is in no package.
-        name: under which it is installed, or was added; "" for a folder.
-        pin: of one that was added by address, whose code runs confined alone; None for others.
+        name: under which it is installed; "" for a folder.
     """
 
     folder: Path
     package: str = ""
     name: str = ""
-    pin: Pin | None = None
 
     @property
     def description(self) -> Path:
         """Its exercise.yaml."""
         return self.folder / DESCRIPTION
 
-    @property
-    def shown(self) -> str:
-        """What its user knows it by: its folder, or the address that it was added from."""
-        return str(self.folder if self.pin is None else self.pin.origin)
-
 
 def names() -> list[str]:
-    """Return the names of the installed exercises, and of the added ones."""
-    return list(dict.fromkeys([*installed_names(), *pins.names()]))
-
-
-def installed_names() -> list[str]:
-    """Return the names of those that came with a package."""
+    """Return the names of the installed exercises."""
     return list(extensions.points(EXERCISES))
 
 
 def is_installed(name: str) -> bool:
-    """Whether there is an installed exercise, or an added one, of this name."""
-    return extensions.is_there(EXERCISES, name) or pins.folder_of(name) is not None
+    """Whether there is an installed exercise of this name."""
+    return extensions.is_there(EXERCISES, name)
 
 
 def installed(name: str) -> Place:
-    """Return the installed exercise, or the added one, of this name.
+    """Return the installed exercise of this name.
 
     Raises:
-        ExerciseError: there is none, or there are two; or it is no longer what was added.
+        ExerciseError: there is none, or there are two.
     """
     found = extensions.points(EXERCISES).get(name, [])
-    folder = pins.folder_of(name)
-    those = [*map(described, found), *([] if folder is None else [str(folder)])]
-    if len(those) > 1:
+    if len(found) > 1:
         raise ExerciseError(
             "several exercises are installed as {name}: {found}. Remove one, or "
             "give the path of its folder.",
             name=repr(name),
-            found=", ".join(those),
+            found=", ".join(map(described, found)),
         )
-    if folder is not None:
-        return in_folder(folder)
     if found:
         return _of_entry_point(found[0])
     raise ExerciseError(
@@ -110,17 +92,11 @@ def in_folder(folder: Path) -> Place:
     """Return the exercise in a folder.
 
     Raises:
-        ExerciseError: one of its two files is missing; or it was added, and was changed since.
+        ExerciseError: one of its two files is missing.
     """
-    pin = pins.around(folder)
-    if pin is not None:
-        pin.check(folder)
     if why := _wrong_with(folder):
-        where = Place(folder, pin=pin).shown
-        raise ExerciseError("{path} is not an exercise: {why}", path=where, why=why)
+        raise ExerciseError("{path} is not an exercise: {why}", path=str(folder), why=why)
     folder = folder.resolve()
-    if pin is not None:
-        return Place(folder, name=pin.name, pin=pin)
     for name, points in extensions.points(EXERCISES).items():
         with suppress(ExerciseError):
             if any(_of_entry_point(each).folder.resolve() == folder for each in points):
@@ -158,7 +134,6 @@ def import_checks(place: Place) -> Checks:
     Raises:
         ExerciseError: there are none, or importing them fails; with file and line.
     """
-    assert place.pin is None, "the code of an added exercise is never imported here"
     module: ModuleType
     if place.package:
         name = f"{place.package}.checks"
@@ -193,16 +168,8 @@ def locate(folder: Path, where: str) -> Path:
     """Find a file that an exercise names: below a folder, or as PACKAGE/PATH in a package.
 
     Raises:
-        ExerciseError: there is nothing; or an added exercise names what is not its own.
+        ExerciseError: there is nothing.
     """
-    if pins.around(folder) is not None:
-        path = folder / where
-        if path.resolve().is_relative_to(folder.resolve()) and path.exists():
-            return path
-        raise ExerciseError(
-            "there is no {where} in it, and an added exercise names its own files alone",
-            where=repr(where),
-        )
     if (folder / where).exists():
         return folder / where
     package, _, rest = where.partition("/")
@@ -319,11 +286,6 @@ def describe(error: BaseException, folder: Path, file: str = "") -> Message:
         line=str(inside[-1].lineno),
         what=text,
     )
-
-
-def describer(folder: Path) -> Callable[[object, BaseException], str]:
-    """Return what describes an exception of a check in the files of a folder; see `describe`."""
-    return lambda _, error: str(describe(error, folder))
 
 
 def _absent(error: ImportError, folder: Path) -> str:

@@ -6,7 +6,6 @@ import re
 from typing import Final
 
 from grader import text
-from grader.added.pins import Origin
 from grader.exercise.verdict import Evidence, Verdict
 from grader.message import in_context, msg
 from grader.recording.recording import Run
@@ -240,22 +239,9 @@ def provenance(origin: ResultProvenance) -> list[str]:
         found.append(tr("SHA-256 of the submission {sha256}", sha256=sha256))
     sha256 = _short(judged.exercise_sha256)
     found.append(tr("SHA-256 of the exercise {sha256}", sha256=sha256))
-    if (added := judged.exercise_from) is not None:
-        found.append(exercise_from(added))
     if recorded is not None and recorded.seed is not None:
         found.append(tr("Seed {seed}", seed=str(recorded.seed)))
     return [text.one_line(sentence) for sentence in found]
-
-
-def exercise_from(origin: Origin) -> str:
-    """Say where an exercise was added from."""
-    said = tr(
-        "The exercise is from {origin}, commit {commit}, SHA-256 of its files {sha256}",
-        origin=str(origin),
-        commit=_short(origin.commit),
-        sha256=_short(origin.sha256),
-    )
-    return text.one_line(said)
 
 
 def _when(date: str) -> str:

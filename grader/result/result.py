@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any, Self
 
 from grader import files, system
-from grader.added.pins import Origin
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.exercise import Exercise
 from grader.exercise.policies import Late, LatePolicy
@@ -100,13 +99,11 @@ class Judging:
         date: as `grader.recording.recording.now` writes it.
         grader: its version.
         exercise_sha256: see `grader.exercise.exercise.Exercise`.
-        exercise_from: where the exercise was added from; None for any other.
     """
 
     date: str
     grader: str
     exercise_sha256: str
-    exercise_from: Origin | None = field(default=None, metadata=SPARSE)
 
 
 @dataclass(frozen=True)
@@ -263,7 +260,7 @@ def build(
     verdicts = [replace(each, visible=seen.get(each.check, "now")) for each in verdicts]
     # where students do not see all, no remark that they read may reveal that all passed
     all_passed = all(v.passed and v.visible in ("now", "points_only") for v in verdicts)
-    judged = Judging(now(), system.grader_version(), exercise.sha256, exercise.origin)
+    judged = Judging(now(), system.grader_version(), exercise.sha256)
     return Result(
         exercise.name,
         submission,

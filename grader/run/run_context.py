@@ -60,7 +60,6 @@ class RunContext:
         *,
         more: Sequence[Path] = (),
         beside: SubmissionProcess | None = None,
-        has_sockets: bool = True,
     ) -> tuple[Submission, SubmissionProcess]:
         """Start the submission's process; return it after the submission's copy for this run.
 
@@ -71,7 +70,6 @@ class RunContext:
             server: the server that it is forked from, if possible; None for a cold start.
             more: folders that it may read besides.
             beside: another of the submission's, with which it shares the limits.
-            has_sockets: whether it may make sockets.
         """
         meeting = self.meeting[0 if beside is None else 1]
         confinement = levels.prepare(
@@ -82,7 +80,6 @@ class RunContext:
             more=more,
             meeting=meeting.fileno(),
             others=MOST_PROGRAMS - 1 if beside is None else 0,
-            has_sockets=has_sockets,
         )
         submission = submission.moved(confinement.copy)
         env = {**self.env, **env, **confinement.env}

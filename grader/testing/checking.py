@@ -12,7 +12,7 @@ from grader.exercise.asking import Answers, NoFinding, NotReached
 from grader.exercise.check import answers, judge_by
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.exercise.places import describer
+from grader.exercise.places import describe
 from grader.exercise.verdict import Evidence, Finding, Verdict
 from grader.grading import gather, run_all, runner
 from grader.judging import AnyPath
@@ -262,9 +262,12 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
 
         return judge_by(watched, exercise.checks, exercise.points)
 
+    def described(_: object, error: BaseException) -> str:
+        return str(describe(error, exercise.folder))
+
     # both times in the same process, which may keep state that it should not
     judging = (exercise.checks, exercise.points, exercise.tolerances)
-    first, second = map(judged, answers(recordings, *judging, describer(exercise.folder), rounds=2))
+    first, second = map(judged, answers(recordings, *judging, described, rounds=2))
     for once, again in zip(first, second, strict=True):
         if is_whole and repr(once) != repr(again):  # repr: NaN is not equal to itself
             text = msg("finds something else when it is asked again about the same recordings")

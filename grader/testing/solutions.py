@@ -41,7 +41,7 @@ from typing import Any, Literal
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
-from grader.message import msg, reason
+from grader.message import reason
 from grader.yaml_file import Keys, Mistake, read_yaml
 
 FILE_NAME = "mutants.yaml"
@@ -154,10 +154,7 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
     Raises:
         ExerciseError: there is none, or it is not valid.
     """
-    # an added exercise lies where its user does not look, and `exercises add` takes no other file
-    is_added = path is None and exercise.origin is not None
     path = path or exercise.folder / FILE_NAME
-    shown = path.name if is_added else str(path)
     try:
         file = read_yaml(path)
         try:
@@ -168,18 +165,17 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
             solution.texts()
     except OSError as error:
         raise ExerciseError(
-            "cannot read the solutions of {name!r}, {path}: {why}. {expected}.",
+            "cannot read the solutions of {name!r}, {path}: {why}. Expected a "
+            "{file} in the exercise's folder, or --mutants FILE.",
             name=exercise.name,
-            path=shown,
+            path=str(path),
             why=str(error.strerror),
-            expected=msg("Expected a {file} in the exercise's folder", file=FILE_NAME)
-            if is_added
-            else msg(
-                "Expected a {file} in the exercise's folder, or --mutants FILE", file=FILE_NAME
-            ),
+            file=FILE_NAME,
         ) from None
     except (ExerciseError, ValueError) as error:
-        raise ExerciseError("{path} cannot be used: {why}", path=shown, why=reason(error)) from None
+        raise ExerciseError(
+            "{path} cannot be used: {why}", path=str(path), why=reason(error)
+        ) from None
     return found
 
 
@@ -235,9 +231,6 @@ class _Made:
             )
         except (TypeError, KeyError, AttributeError):
             raise Mistake((*keys, "replace"), "expected a list of old and new") from None
-        outside = [e.file for e in changes if {*Path(e.file).parts} & {"/", ".."}]
-        if outside:
-            raise Mistake(keys, "expected a file of the solution, found {file!r}", file=outside[0])
         is_folder = self.of.is_dir()
         if not changes or any(bool(each.file) != is_folder for each in changes):
             raise Mistake(keys, "there is nothing to replace in {path}", path=str(self.of))
@@ -248,22 +241,14 @@ def _right(name: str, words: Any, made: _Made) -> Solution:
     if not isinstance(words, dict):
         return Solution(name, places.locate(made.folder, str(words)), is_right=True)
     keys: Keys = ("right", name)
-    _check_name(name, keys)
     unknown = words.keys() - MADE
     if unknown:
         raise Mistake(keys, "unknown {key!r}", key=min(map(str, unknown)))
     return Solution(name, made.of, is_right=True, changes=made.changes(words, keys))
 
 
-def _check_name(name: str, keys: Keys) -> None:
-    """Refuse a name that is no name of a folder: its solution is laid out there."""
-    if Path(name).name != name:
-        raise Mistake(keys, "expected a name without a path")
-
-
 def _mutant(name: str, words: Any, made: _Made, exercise: Exercise) -> Solution:
     keys: Keys = ("mutants", name)
-    _check_name(name, keys)
     if not isinstance(words, dict) or ("file" in words) != MADE.isdisjoint(words):
         raise Mistake(keys, "expected either `replace` or `file`")
     unknown = words.keys() - {"file", "leaves", "says", *MADE}

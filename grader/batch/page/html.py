@@ -24,7 +24,6 @@ from grader.batch.page.thumb import EDGE_PX, UNITS, Thumb
 from grader.exercise.exercise import Exercise
 from grader.recording.subject import load_subject
 from grader.reports.page import templating
-from grader.reports.wording import exercise_from
 from grader.translations import tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -58,7 +57,6 @@ def render_all(
     render_page = partial(
         _environment().get_template("class.html").render,
         exercise=exercise,
-        added=exercise.origin and exercise_from(exercise.origin),
         thing=translate(load_subject(exercise.scene).thing),
         links=links or {},
         total=len(everybody),

@@ -131,7 +131,6 @@ def prepare(
     more: Sequence[Path] = (),
     meeting: int = -1,
     others: int = 0,
-    has_sockets: bool = True,
 ) -> Confinement:
     """Prepare a submission's confinement in a run, with the copy that this run may write into.
 
@@ -145,7 +144,6 @@ def prepare(
         more: folders that this process may read besides.
         meeting: of the socket by which its programs share their view of the files; -1: it is alone.
         others: so many may come to the view of this one, the first; 0: it comes to that itself.
-        has_sockets: whether it may make sockets: at `landlock` it may share the machine's network.
     """
     uid = random.Random(folder.name).choice(USERS)  # one for all programs of a run
     user, copy, written, is_to_copy = level.user, submission, "/tmp", False
@@ -161,7 +159,6 @@ def prepare(
     if not level.level:
         return Confinement(None, {}, copy)
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
-    order["has_sockets"] = has_sockets
     order["rlimits"] = rlimits(is_alone=user != SAME)
     if level.level == NAMESPACES:
         is_first = others > 0 or meeting < 0

@@ -13,7 +13,6 @@ An order is a dictionary that fits JSON, made by `grader.run.processes.levels`:
 | `others` | so many programs may get it |
 | `read`, `write`, `listed` | for `.landlock` |
 | `is_apart` | whether the run has a network of its own |
-| `has_sockets` | whether it may make sockets |
 
 It is not bubblewrap: that program stands between, so that another process's processor time would
 count, and it executes a program where a fork server's child just goes on.
@@ -73,8 +72,7 @@ def confine(order: Mapping[str, Any]) -> None:
     linux.control(linux.PR_SET_DUMPABLE, 1)
     linux.signal_at_parents_death(signal.SIGKILL)
     _limit(order)
-    is_apart = order["is_apart"] and order["level"] == NAMESPACES
-    seccomp.install(is_apart=is_apart, has_sockets=order["has_sockets"])
+    seccomp.install(is_apart=order["is_apart"] and order["level"] == NAMESPACES)
 
 
 def _limit(order: Mapping[str, Any]) -> None:

@@ -207,7 +207,7 @@ def is_there() -> bool:
     return True
 
 
-def install(*, is_apart: bool = True, has_sockets: bool = True) -> None:
+def install(*, is_apart: bool = True) -> None:
     """Install the filter in the calling process, all its threads, and all that it starts.
 
     With it comes `no_new_privs`: no program that it starts has more rights than it has.
@@ -216,7 +216,6 @@ def install(*, is_apart: bool = True, has_sockets: bool = True) -> None:
         is_apart: it has a network and a file system of its own, so that sockets lead nowhere
             else. If not, it gets none by which it could reach other programs' (TCP, or Unix's by
             path) beside the UDP that DDS needs.
-        has_sockets: whether it may make sockets at all.
 
     Raises:
         OSError: the system does not allow it, or is none that this knows.
@@ -224,7 +223,7 @@ def install(*, is_apart: bool = True, has_sockets: bool = True) -> None:
     if not is_there():
         raise OSError(errno.ENOSYS, f"no system call filters on this {os.uname().machine}")
     place, _ = MACHINES[os.uname().machine]
-    instructions = program(os.uname().machine, is_apart=is_apart, has_sockets=has_sockets)
+    instructions = program(os.uname().machine, is_apart=is_apart)
     code = b"".join(struct.pack("=HBBI", *each) for each in instructions)
     memory = ctypes.create_string_buffer(code, len(code))
     pointer = struct.pack("@HP", len(instructions), ctypes.addressof(memory))
@@ -245,8 +244,8 @@ def _seccomp(place: int, *words: int | bytes) -> int:
     return linux.system_call(number, *words, of="system call filter")
 
 
-def program(machine: str, *, is_apart: bool = True, has_sockets: bool = True) -> list[Instruction]:
-    """The filter for a machine of `MACHINES`; without sockets there are pairs of them alone."""
+def program(machine: str, *, is_apart: bool = True) -> list[Instruction]:
+    """The filter for a machine of `MACHINES`."""
     place, arch = MACHINES[machine]
     lines = [
         (LOAD, 0, 0, ARCH_AT),
@@ -261,8 +260,6 @@ def program(machine: str, *, is_apart: bool = True, has_sockets: bool = True) ->
     if not is_apart:
         lines += _each(OF_FILES, place, [_refuse(errno.EPERM)])
     lines += _each(UNKNOWN, place, [_refuse(errno.ENOSYS)])
-    if not has_sockets:
-        lines += _call(SOCKET[place], [_refuse(errno.EAFNOSUPPORT)])
     return [*lines, *_by_arguments(place, is_apart=is_apart), (RETURN, 0, 0, ALLOW)]
 
 

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from grader.added import pins
 from grader.batch import remote
 from grader.batch.entry import HandIn, Person
 from grader.batch.pool import Answer, Task
@@ -20,7 +19,6 @@ from grader.batch.remote import Returned, Shipped, Unfit
 from grader.errors import UsageError
 from grader.message import msg
 from tests.files import lay_too_deep
-from tests.grader.testing import exercises
 
 DONE = Answer("done")
 
@@ -96,29 +94,6 @@ def test_an_edited_exercise_travels_with_the_folder_that_it_lies_in(
     there = Path(done[0].exercise)
     assert there.parts[-3:] == ("exercise", "own_square", "quick.yaml")
     assert there != small_class.exercise
-
-
-def test_an_added_exercise_travels_with_its_pin(
-    task: Task, done: list[Task], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-    pin = pins.Pin("mine", pins.Origin("https://example.org/x", "", "", "1" * 40, "2" * 64))
-    with pins.unfinished() as place:
-        exercises.write(place / pins.FILES)
-        pins.write(place, pin)
-        pins.put(place, "mine")
-    seen = []
-    there = remote._here
-    monkeypatch.setattr(
-        remote,
-        "_here",
-        lambda task, folder: (
-            seen.append(pins.around(folder / task.exercise)) or there(task, folder)
-        ),
-    )
-    remote.graded(remote.packed(replace(task, exercise="mine")))
-    assert seen == [pin]
-    assert Path(done[0].exercise).parts[-3:] == ("exercise", "mine", "exercise")
 
 
 def test_a_run_that_was_made_before_travels_too(

@@ -11,7 +11,6 @@ import yaml
 
 from grader import grading
 from grader.cli import main
-from tests.grader.added.repositories import added, commit
 from tests.grader.driving import Spiral, drive
 from tests.grader.testing import exercises
 
@@ -143,37 +142,6 @@ def test_the_exercise_is_the_one_that_it_was_made_for(graded, tmp_path, capsys):
     assert main(["check", str(graded)]) == 2
     assert "not installed here; give its folder" in capsys.readouterr().err
     assert main(["check", str(graded), "--exercise", str(folder)]) == 0
-
-
-def test_a_folder_s_recording_is_not_judged_by_an_added_exercise_of_its_name(
-    graded, tmp_path, monkeypatch, capsys
-):
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-    theirs = exercises.write(tmp_path / "theirs")
-    commit(theirs)
-    added(theirs, "ahead")
-    mine = exercises.write(tmp_path / "mine", points={"commands": 1})
-    assert main(["run", "alice.py", "--exercise", str(mine)]) == 0
-    assert result(graded)["max_score"] == 1
-    assert main(["check", str(graded)]) == 2
-    assert "Say which one you mean: --exercise FOLDER" in " ".join(capsys.readouterr().err.split())
-    assert main(["check", str(graded), "--exercise", str(mine)]) == 0
-
-
-def test_an_added_exercise_that_was_removed_is_told_by_its_address(
-    graded, tmp_path, monkeypatch, capsys
-):
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-    theirs = exercises.write(tmp_path / "theirs")
-    head = commit(theirs)
-    added(theirs, "ahead")
-    assert main(["run", "alice.py", "--exercise", "ahead"]) == 0
-    assert result(graded)["provenance"]["judged"]["exercise_from"]["address"] == theirs.as_uri()
-    assert main(["check", str(graded)]) == 0
-    assert main(["exercises", "remove", "ahead"]) == 0
-    assert main(["check", str(graded)]) == 2
-    told = "".join(capsys.readouterr().err.split())
-    assert f"graderexercisesadd{theirs.as_uri()}@{head}" in told
 
 
 def test_what_students_are_not_to_see_is_in_the_result_alone(graded, tmp_path, capsys):

@@ -11,8 +11,6 @@ from grader import system
 from grader.cli import main
 from grader.course.kinds import KINDS
 from grader.exercise.places import names
-from tests.grader.added.repositories import added, commit
-from tests.grader.testing import exercises
 
 
 def new(folder: Path, *words: str, kind: str = "github") -> int:
@@ -77,18 +75,10 @@ def test_an_unknown_exercise_is_told_with_those_that_there_are(tmp_path, capsys)
     assert not (tmp_path / "course").exists()
 
 
-def test_an_added_exercise_is_not_there_where_a_course_is_graded(tmp_path, capsys, monkeypatch):
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-    commit(exercises.write(tmp_path / "repository"))
-    added(tmp_path / "repository", "ahead")
-    assert new(tmp_path / "course", "--exercises", "ahead") == 2
-    assert "the exercise 'ahead' was added from file:" in capsys.readouterr().err
-    assert not (tmp_path / "course").exists()
-
-
-def test_the_help_lists_the_exercises(capsys):
+@pytest.mark.parametrize("verb", ["course", "new"])
+def test_the_help_lists_the_exercises(capsys, verb):
     with pytest.raises(SystemExit):
-        main(["course", "--help"])
+        main([verb, "--help"])
     said = " ".join(capsys.readouterr().out.split())
     assert all(name in said for name in names())
 

@@ -162,14 +162,6 @@ def test_an_alias_is_read_as_yaml_says(tmp_path):
     assert load_exercise(path).points == {"moves": 3}
 
 
-def test_aliases_of_aliases_do_not_fill_the_memory(tmp_path):
-    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x, x]"]
-    for number in range(1, 12):
-        lines.append(f"a{number}: &a{number} [{', '.join(10 * [f'*a{number - 1}'])}]")
-    assert "more than 200,000 values" in message_of(tmp_path, "\n".join(lines))
-    assert "more than 200,000 values" in message_of(tmp_path, "a: &a [*a]")
-
-
 def test_a_copy_of_an_exercise_in_a_folder_must_lie_there(tmp_path):
     assert "must lie in that exercise's own folder" in message_of(tmp_path, "exercise: corner\n")
 

@@ -10,13 +10,12 @@ import pytest
 import yaml
 
 from grader import extensions
-from grader.errors import ExerciseError, UsageError
+from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.check import judge
-from grader.exercise.loading import load_exercise, load_recorded
+from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
 from grader.testing import drive
-from tests.grader.added.repositories import added, commit
 
 SCENES = ", ".join(extensions.points(extensions.SCENES))
 DESCRIPTION = {
@@ -141,23 +140,6 @@ def test_a_mistake_in_its_description_is_named(tmp_path, changes, words):
     with pytest.raises(ExerciseError) as error:
         load_exercise(write(tmp_path, {**DESCRIPTION, **changes}))
     assert words in str(error.value)
-
-
-def test_a_folder_may_have_the_name_of_an_added_exercise(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-    theirs = write(tmp_path / "theirs")
-    commit(theirs)
-    added(theirs, "corner")
-    write(tmp_path / "corner", shape="WORDS = 'mine'\n")
-    (tmp_path / "corner" / "hard.yaml").write_text("exercise: corner\npoints: {moves: 1}\n")
-    monkeypatch.chdir(tmp_path)
-    assert rationale(load_exercise("./corner")) == "mine"
-    assert load_exercise("corner/hard.yaml").origin is None
-    exercise = load_exercise("corner")
-    assert exercise.origin.address == theirs.as_uri()
-    assert load_recorded("corner", exercise.sha256).sha256 == exercise.sha256
-    with pytest.raises(UsageError, match="another exercise 'corner'"):
-        load_recorded("corner", load_exercise("./corner").sha256)
 
 
 @pytest.mark.parametrize("missing", ["exercise.yaml", "checks.py"])

@@ -5,12 +5,10 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
 
-from grader.added.pins import Origin
 from grader.batch.page import html
 from grader.batch.page.thumb import THUMB, thumb
 from grader.exercise.loading import load_exercise
@@ -95,13 +93,6 @@ def test_scores_are_of_those_who_handed_in(page):
 
 def test_it_depends_on_nothing_but_the_entries(some, page):
     assert first_page(list(reversed(some)), EXERCISE, {"Gradebook": "gradebook.csv"}) == page
-
-
-def test_it_says_where_an_added_exercise_is_from(some, page):
-    origin = Origin("https://example.org/x", "v1", "<a>", "1" * 40, "2" * 64)
-    said = "The exercise is from https://example.org/x@v1#&lt;a&gt;, commit 111"
-    assert said in first_page(some, replace(EXERCISE, origin=origin))
-    assert "The exercise is from" not in page
 
 
 def test_a_path_is_drawn_and_a_picture_shown_for_who_has_one(page):

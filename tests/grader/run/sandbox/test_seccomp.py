@@ -60,12 +60,7 @@ def interpret(program: list[seccomp.Instruction], words: dict[int, int]) -> int:
 
 
 def answer(
-    machine: str,
-    number: int | None,
-    *arguments: int,
-    apart: bool = True,
-    arch: int = 0,
-    sockets: bool = True,
+    machine: str, number: int | None, *arguments: int, apart: bool = True, arch: int = 0
 ) -> int:
     """The error that a call ends with; 0 where it is allowed."""
     assert number is not None
@@ -73,7 +68,7 @@ def answer(
     for place, argument in enumerate(arguments):
         words[seccomp.ARGUMENTS_AT + 8 * place] = argument & LOW
         words[seccomp.ARGUMENTS_AT + 8 * place + 4] = argument >> 32
-    found = interpret(seccomp.program(machine, is_apart=apart, has_sockets=sockets), words)
+    found = interpret(seccomp.program(machine, is_apart=apart), words)
     if found == seccomp.ALLOW:
         return 0
     assert found & ~0xFFFF == seccomp.ERRNO
@@ -129,17 +124,6 @@ def test_whose_files_are_in_sight_are_not_opened_to_others(machine: str) -> None
         if numbers[place] is not None:
             assert answer(machine, numbers[place], apart=False) == EPERM
             assert answer(machine, numbers[place], apart=True) == 0
-
-
-@pytest.mark.parametrize("machine", MACHINES)
-def test_what_may_make_no_sockets_has_pairs_of_its_own_alone(machine: str) -> None:
-    place = seccomp.MACHINES[machine][0]
-    for family in range(50):
-        for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM, socket.SOCK_RAW):
-            words = (machine, seccomp.SOCKET[place], family, kind)
-            assert answer(*words, sockets=False) == errno.EAFNOSUPPORT
-    pair = (seccomp.SOCKETPAIR[place], socket.AF_UNIX, socket.SOCK_STREAM)
-    assert answer(machine, *pair, sockets=False) == 0
 
 
 @pytest.mark.parametrize("machine", MACHINES)

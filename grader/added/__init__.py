@@ -1,1 +1,0 @@
-"""Exercises that were added by address: pinned to a commit and a hash, and judged confined."""
