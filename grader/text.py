@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+import unicodedata
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
 from difflib import SequenceMatcher
 from functools import cache
@@ -27,6 +28,11 @@ _REPLACEMENT = "\ufffd"
 #: a narrow terminal any word may come to the start of a line.
 _COMMANDS = re.compile(r"^([^\S\n]*)::|##(?=\[|vso\[)", re.MULTILINE | re.IGNORECASE)
 _COMMANDS_WRAPPED = re.compile(r"::(?=[a-z-]+[ :])|##(?=\[|vso\[)", re.IGNORECASE)
+#: Letters that people spell otherwise than by leaving out the accent.
+_SPELLED = str.maketrans(
+    {"ß": "ss", "æ": "ae", "ø": "o", "ł": "l", "đ": "d", "œ": "oe", "ı": "i"}
+    | {"ẞ": "SS", "Æ": "AE", "Ø": "O", "Ł": "L", "Đ": "D", "Œ": "OE"}
+)
 #: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
 _ALIKE = 0.85
 #: Words of a name that are shorter are no misspellings of each other: last_x, last_y.
@@ -67,24 +73,28 @@ def plain_all(value: Any, limit: int = 1_000_000) -> Any:
     Args:
         limit: texts are cut to this many characters first.
     """
-    return map_all(value, lambda text: plain(clip(text, limit)))
-
-
-def map_all(value: Any, change: Callable[[str], str]) -> Any:
-    """Change each text of a value, which is JSON or a dataclass; in a message, of its values."""
     if isinstance(value, str):
-        return change(value)
+        return plain(clip(value, limit))
     if isinstance(value, Message):
-        return value.map_texts(change)
+        return value.map_texts(lambda text: plain(clip(text, limit)))
     if isinstance(value, Mapping):
-        return {change(key): map_all(item, change) for key, item in value.items()}
+        return {plain(clip(key, limit)): plain_all(item, limit) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        made = [map_all(item, change) for item in value]
-        return type(value)(*made) if hasattr(value, "_fields") else type(value)(made)
+        return type(value)(plain_all(item, limit) for item in value)
     if is_dataclass(value) and not isinstance(value, type):
-        texts = {field.name: map_all(getattr(value, field.name), change) for field in fields(value)}
+        texts = {
+            field.name: plain_all(getattr(value, field.name), limit) for field in fields(value)
+        }
         return replace(value, **texts)
     return value
+
+
+def unaccented(text: str) -> str:
+    """Return a text with its letters without accents, in their case: `Zoe` for `Zoë`."""
+    if text.isascii():
+        return text
+    made = unicodedata.normalize("NFKD", text.translate(_SPELLED))
+    return "".join(sign for sign in made if not unicodedata.combining(sign))
 
 
 def one_line(text: str) -> str:

@@ -171,15 +171,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.batch.find": GROUND
     | {"grader.batch"}
     | below("grader.submission", "folder", "unpacking", "archive", "safe_members"),
-    # names are replaced in all that is recorded
-    "grader.batch.names": GROUND
-    | {"grader.batch", "grader.recording", "grader.result.result", "grader.rosidl.bag_types"}
-    | below("grader", "exercise.exercise", "submission.folder"),
-    # what is kept of a student is taken out, and that of others written anew
+    # hand-ins are renamed, and their pages made anew
     "grader.batch.forget": GROUND
-    | {"grader.batch", "grader.judging", "grader.result"}
-    | below("grader", "exercise.exercise", "recording.recording", "recording.bag")
-    | below("grader", "reports.__init__", "reports.beside", "reports.csv"),
+    | {"grader.batch", "grader.result"}
+    | below("grader", "exercise.exercise", "submission.folder")
+    | below("grader", "reports.__init__", "reports.beside"),
     "grader.batch.store": GROUND
     | {"grader.batch"}
     | below("grader", "exercise.exercise", "recording.recording", "submission.folder"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader import content, files, system
@@ -12,7 +12,6 @@ from grader.batch.class_file import CLASS, MACHINE, ClassFile
 from grader.batch.entry import Entry, HandIn
 from grader.batch.gradebook.write import CSV
 from grader.batch.gradebook.write import write as write_gradebook
-from grader.batch.names.pseudonyms import Known
 from grader.batch.page import html
 from grader.batch.pool import Done, Task
 from grader.batch.similar import page, sources
@@ -42,9 +41,6 @@ class Order:
         secret: gives each hand-in a seed of its own; '' for none.
         hides_seed: whether recordings leave out the seeds.
         pseudonyms: shows which key gave the students their pseudonyms; '' where they have names.
-        run_secret: of the keys of runs, which depend on names of files; '' for none.
-        known: the names that are replaced by pseudonyms.
-        names: the file with those of the class, for workers; None where names stay.
     """
 
     exercise: Exercise
@@ -56,9 +52,6 @@ class Order:
     secret: str = ""
     hides_seed: bool = False
     pseudonyms: str = ""
-    run_secret: str = ""
-    known: Known = field(default_factory=Known)
-    names: Path | None = None
 
     def seed_of(self, hand_in: HandIn) -> int | None:
         """Return the seed of the varied runs of a hand-in; None: the exercise's own."""
@@ -222,7 +215,7 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
             yield replace(hand_in, problem=why, path=None), ""
             continue
         seed = order.seed_of(hand_in)
-        yield hand_in, of_run(content, order.exercise, order.time, seed, order.run_secret)
+        yield hand_in, of_run(content, order.exercise, order.time, seed)
 
 
 def _existing(folder: Path) -> Entry | None:
@@ -259,9 +252,6 @@ def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> 
         store.run(run) if store.has(run) and not is_again else None,
         Path(),
         hides_seed=order.hides_seed,
-        stands_for=first.people[0].id if order.pseudonyms else "",
-        names=order.names,
-        own_names={k: v for each in everybody for k, v in order.known.own.get(each.id, {}).items()},
     )
 
 

@@ -9,6 +9,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
@@ -51,7 +52,8 @@ class HandIn:
         people: the student, or the members of a group: they get the points.
         path: the file or the folder that is graded; None where nothing can be. It is a path on one
             machine, and in no file.
-        filename: its original name, before the export renamed it.
+        filename: the name that it is graded by: its original one, before the export renamed it; ''
+            for that of `path`.
         attempt: counts from 1.
         at: when it was handed in, with its time zone; None where the export does not contain it.
         problem: why there is nothing to grade, as a sentence for teacher and student.
@@ -74,6 +76,11 @@ class HandIn:
     def known_as(self) -> str:
         """The ids of the people as they know them, in any script."""
         return ", ".join(person.id for person in self.people) or self.id
+
+
+def comparable(text: str) -> str:
+    """Return an id as ids are compared: one character a letter, without case and outer blanks."""
+    return unicodedata.normalize("NFC", text).strip().casefold()
 
 
 def id_of(ids: Sequence[str]) -> str:
@@ -189,10 +196,10 @@ class Entry:
         return entry
 
 
-def entries(out: Path) -> list[Entry]:
-    """Read all finished entries of a class's folder, sorted by id."""
+def entries(out: Path, part: str = SUBMISSIONS) -> list[Entry]:
+    """Read all finished entries in a part of a class's folder, sorted by id."""
     found = []
-    for folder in sorted((out / SUBMISSIONS).glob("*/")):
+    for folder in sorted((out / part).glob("*/")):
         try:
             found.append(Entry.read(folder))
         except UsageError:

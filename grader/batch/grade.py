@@ -21,12 +21,7 @@ from typing import IO
 
 from grader import files, grading, judging, scratch, strict_json
 from grader.batch.entry import Entry, HandIn, State
-from grader.batch.find import clones
 from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR
-from grader.batch.names import pseudonyms
-from grader.batch.names.people import called_in, forms, known_words, said_in
-from grader.batch.names.recorded import without_hash, without_names
-from grader.batch.names.replacing import Names
 from grader.batch.page.thumb import THUMB, thumb
 from grader.batch.pool import Answer, Ending, Task
 from grader.batch.similar import features, sources
@@ -94,14 +89,14 @@ def done(task: Task) -> Answer:
         make(task)
     except GraderError as error:
         state = next(state for kind, state in _STATES.items() if isinstance(error, kind))
-        return Answer(state, error.message.map_texts(plain).map_texts(_names(task)))
+        return Answer(state, error.message.map_texts(plain))
     except Exception as error:
         traceback.print_exc()
         what = "".join(traceback.format_exception_only(error)).strip()
         is_scarce = isinstance(error, OSError) and error.errno in SCARCE
         return Answer(
             "again" if is_scarce else "failed",
-            msg("unexpected: {what}", what=_names(task)(plain(what))),
+            msg("unexpected: {what}", what=plain(what)),
         )
     return Answer("done")
 
@@ -122,7 +117,7 @@ def make(task: Task) -> None:
         RecordingError: the task names a run that cannot be read.
     """
     exercise = _exercise(task.exercise)
-    found = _without_names(_loaded(task), _names(task, exercise)) or _run(task, exercise)
+    found = _loaded(task) or _run(task, exercise)
     for hand_in in task.hand_ins:
         folder = task.into / STUDENTS / hand_in.id
         if isinstance(found, Recordings):
@@ -135,31 +130,6 @@ def make(task: Task) -> None:
 def _exercise(name_or_path: str) -> Exercise:
     """Load an exercise, once for all tasks of a worker: it takes a third of the time of judging."""
     return load_exercise(name_or_path)
-
-
-def _names(task: Task, exercise: Exercise | None = None, copy: Path | None = None) -> Names:
-    """Return the names that pseudonyms stand for: those of the class, and what the files tell.
-
-    Args:
-        copy: the private copy of the submission, else itself; None: the names of the class alone.
-    """
-    if task.names is None:
-        return Names({})
-    own, others = dict(task.own_names), pseudonyms.read(task.names)
-    known = known_words(exercise)
-    if task.stands_for and exercise and copy and task.path:
-        told = {
-            **forms(called_in(copy, task.path.name, known), f"{task.stands_for}z", known),
-            **forms(said_in(copy, clones.identities(task.path)), f"{task.stands_for}y", known),
-        }
-        own = {**{name: others.stands_for(name) or at for name, at in told.items()}, **own}
-    return Names({}, own, others, known)
-
-
-def _without_names(found: Recordings | Message | None, names: Names) -> Recordings | Message | None:
-    if not names or found is None:
-        return found
-    return found.map_texts(names) if isinstance(found, Message) else without_names(found, names)
 
 
 def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
@@ -185,32 +155,28 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
                 name = task.filename or path.name
                 path = held.enter_context(scratch.make_folder()) / name
                 shutil.copyfile(submitted, path)
+            elif task.filename:  # and not by that of the export, which may be the student's
+                path = held.enter_context(scratch.make_folder()) / task.filename
+                path.symlink_to(submitted)
             opened = held.enter_context(open_submission(path, **exercise.opening))
             submission = _without_path(opened)
             runner = grading.runner(exercise, task.time)
             recordings = grading.run_all(
                 submission, exercise, runner, seed=task.seed, hides_seed=task.hides_seed
             )
-            copy = None if submission.copy is None else submission.copy.folder
-            if names := _names(task, exercise, copy):
-                recordings = without_hash(without_names(recordings, names))
-            _keep_for_pages(submission, recordings, place, names)
+            _keep_for_pages(submission, recordings, place)
     except (SubmissionError, UsageError) as error:
         result = ErrorResult.of(error, exercise.max_score)
-        names = _names(task, exercise, task.path)
-        result = replace(result, message=result.message.map_texts(names))
         files.put(place / ERROR, json_file.text(result.to_json()).encode())
         return result.message
     judging.save_recordings(recordings, place / RECORDING)
     return recordings
 
 
-def _keep_for_pages(
-    submission: Submission, recordings: Recordings, place: Path, names: Names
-) -> None:
+def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path) -> None:
     """Write what the pages of the whole class show of a run: they open no recording."""
     copy = submission.copy
-    left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE, names)
+    left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE)
     nominal = recordings.nominal
     files.put(place / THUMB, thumb(recordings))
     files.put(

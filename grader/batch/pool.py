@@ -13,7 +13,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -38,7 +38,7 @@ class Task:
         key: of the run; see `grader.batch.store`.
         hand_ins: those with this content; their paths are not serialised.
         path: the submission; None where its run is only judged again.
-        filename: its original name.
+        filename: the name that it is graded by; '' for that of `path`.
         exercise: its name or path.
         time: the clock of the submission.
         seed: chooses where the varied runs start; None: the exercise's own.
@@ -48,9 +48,6 @@ class Task:
         isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
         language: of the pages.
         hides_seed: whether recordings leave out the seed.
-        stands_for: the pseudonym of who has handed it in; '' where names stay.
-        names: a file with the names of the class: see `grader.batch.names.pseudonyms.put`.
-        own_names: of who has handed it in: a name's folded words -> its pseudonym.
     """
 
     key: str
@@ -66,9 +63,6 @@ class Task:
     isolation: str = ""
     language: str = field(default_factory=current)
     hides_seed: bool = False
-    stands_for: str = ""
-    names: Path | None = None
-    own_names: Mapping[str, str] = field(default_factory=dict)
 
 
 Ending = Literal["done", "failed", "exercise", "again", "unfit"]

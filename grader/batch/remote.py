@@ -31,8 +31,6 @@ from grader.submission.folder import UNREADABLE
 MOST_BYTES, MOST_ENTRIES = 250_000_000, 20_000
 #: The folders of a shipment on the worker, below a folder for the task.
 SUBMISSION, EXERCISE, STORED, MADE = map(Path, ("submission", "exercise", "stored", "made"))
-#: The file with the names of a class under pseudonyms.
-NAMES = Path("names.json")
 
 _of_thread = threading.local()
 
@@ -155,9 +153,6 @@ def packed(task: Task) -> Shipment:
         base = exercise.parent if (exercise.parent / CHECKS).is_file() else exercise
         trees[f"{EXERCISE}/{base.name}"] = base
         sent = replace(sent, exercise=str(EXERCISE / exercise.relative_to(base.parent)))
-    if task.names is not None:
-        sent = replace(sent, names=NAMES)
-        trees[str(NAMES)] = task.names
     if task.run is not None:
         sent = replace(sent, run=Path(STORED, RUN))
         trees[str(sent.run)] = task.run
@@ -220,7 +215,6 @@ def _here(task: Task, folder: Path) -> Task:
         path=folder / task.path,
         exercise=str(folder / task.exercise) if is_sent else task.exercise,
         run=None if task.run is None else folder / task.run,
-        names=None if task.names is None else folder / task.names,
         into=folder / MADE,
     )
 

@@ -5,7 +5,6 @@
     submissions/ID/     the result of one hand-in; see `grader.batch.entry`
     aside/ID/           what is no longer among the submissions
     before/N/           what a regrade has replaced; see `grader.batch.regrade.judging`
-    forgotten/          receipts of students who were forgotten; see `grader.batch.forget`
     .unfinished/        what is being made; what an interrupted call has left there is removed
 
 A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
@@ -142,11 +141,6 @@ class Store:
                 if key:
                     _link_all(self.run(key), made)
                 _replace(made, self.student(made.name), place)
-            for made in sorted((place / ASIDE).glob("*/")):
-                if key:
-                    _link_all(self.run(key), made)
-                remove(self.out / ASIDE / made.name)
-                made.rename(self.out / ASIDE / made.name)
         except OSError as error:
             raise files.cannot_write(self.out, str(error)) from None
         remove(place)
@@ -201,12 +195,13 @@ def _link_all(run: Path, student: Path) -> None:
         if (run / name).is_symlink():
             continue  # the grader makes no links
         if (run / name).is_dir():
-            shutil.copytree(run / name, student / name, symlinks=True, copy_function=_link)
+            shutil.copytree(run / name, student / name, symlinks=True, copy_function=link)
         elif (run / name).exists():
-            _link(str(run / name), str(student / name))
+            link(str(run / name), str(student / name))
 
 
-def _link(source: str, target: str) -> str:
+def link(source: str, target: str) -> str:
+    """Link a file, or copy it where the file system links none; as `shutil.copytree` asks."""
     try:
         os.link(source, target)
     except OSError:
@@ -224,15 +219,12 @@ def installed_versions() -> dict[str, str]:
     }
 
 
-def of_run(
-    submission: str, exercise: Exercise, time: Clock, seed: int | None, secret: str = ""
-) -> str:
+def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -> str:
     """Return the key of a run: a hash of everything that it depends on.
 
     Args:
         submission: the hash of the submission, from `of_hand_in`.
         seed: chooses where the varied runs start; None: the exercise's own.
-        secret: without it nobody can tell by a key what a file was called; '' for none.
     """
     depends_on = {
         "submission": submission,
@@ -244,8 +236,6 @@ def of_run(
     }
     if exercise.setting:
         depends_on["setting"] = content.of_bytes(exercise.setting.encode())
-    if secret:
-        depends_on["secret"] = secret
     return content.of_bytes(json.dumps(depends_on, sort_keys=True).encode())[:32]
 
 

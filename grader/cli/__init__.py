@@ -175,16 +175,6 @@ def say(console: Console, what: Text, style: str = "") -> None:
         console.print(text.Text(for_terminal(translate(what)), style), soft_wrap=True)
 
 
-def agreed(question: str) -> bool:
-    """Ask on the terminal, and return whether the answer is yes; none at all is no."""
-    try:
-        answer = input(question)
-    except EOFError:  # Ctrl-D
-        print()
-        return False
-    return answer.strip().casefold() in ("y", "yes", *tr("y yes").split())
-
-
 def _print_error(heading: Text, message: Text = "") -> None:
     from rich import text
     from rich.console import Console  # here: most calls print no error

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
     from grader.batch.entry import Entry, HandIn
     from grader.batch.find.finding import Found
-    from grader.batch.names.pseudonyms import Pseudonyms
+    from grader.batch.pseudonyms import Pseudonyms
     from grader.batch.store import Store
     from grader.exercise.exercise import Exercise
     from grader.result.visible import View
@@ -68,7 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--pseudonyms",
         type=Path,
         metavar="KEY",
-        help=tr("pseudonyms for all names, made of the key in this file outside of DIR"),
+        help=tr("show pseudonyms of the students, made of the key in this file outside of DIR"),
     )
     parser.add_argument(
         "--names",
@@ -114,8 +114,6 @@ def main(args: argparse.Namespace) -> int:
     from grader.batch.batch import Order, check_same_class
     from grader.batch.class_file import begun_at
     from grader.batch.entry import entries
-    from grader.batch.names.people import known_words
-    from grader.batch.names.pseudonyms import with_names
     from grader.batch.store import Store
     from grader.cli import class_progress
     from grader.exercise.loading import load_exercise
@@ -136,17 +134,14 @@ def main(args: argparse.Namespace) -> int:
             hides_seed=options.hides_seed(args),
             pseudonyms="" if pseudonyms is None else pseudonyms.mark,
         )
-        if pseudonyms is not None:
-            known = pseudonyms.known(named, known_words(exercise))
-            order = replace(order, known=known, run_secret=pseudonyms.run_secret)
-        with Store.opened(args.out) as store, _names(order) as order:
+        with Store.opened(args.out) as store:
             order = replace(order, isolation=begun_at(args.out, args.again, args.isolation or ""))
             check_same_class(store, order.class_file, order.again)
             _grade(args, order, found, store, messages)
             graded = entries(args.out)
             written = batch.write_outputs(args.out, graded, exercise, view, args.assignment)
             if args.names:
-                written = _write_names(args, with_names(graded, named), exercise, view)
+                written = _write_names(args, graded, named, exercise, view)
             elif pseudonyms is not None:
                 written = [msg("Gradebook and imports with names, for a course system: --names")]
             for note in written:
@@ -183,67 +178,42 @@ def _named(found: Found, messages: Console) -> str:
 
 
 def _pseudonyms(args: argparse.Namespace, messages: Console) -> Pseudonyms | None:
-    """Return who gives the students their pseudonyms; None where they keep their names.
+    """Return who gives the students their pseudonyms; None where they keep their names."""
+    from grader.batch import pseudonyms
 
-    Raises:
-        UsageError: the key cannot be used, or something would lie where names must not.
-    """
     if not args.pseudonyms:
         return None
-    from grader.batch.class_file import CLASS, ClassFile
-    from grader.batch.names import pseudonyms
-
-    if args.names:
-        what = msg("what has names")
-        pseudonyms.check_outside(args.names, (args.out, args.submissions), what)
-        names = args.names.resolve()
-        is_above = args.out.resolve().is_relative_to(names)
-        if is_above or any((at / CLASS).is_file() for at in (names, *names.parents)):
-            raise UsageError(
-                "a class lies in {folder} or above it: give --names a folder of its own. "
-                "Nothing was changed.",
-                folder=str(args.names),
-            )
-    is_new = not (args.out / CLASS).is_file()
-    if not is_new and not ClassFile.read(args.out).pseudonyms:
-        raise UsageError(
-            "{out} was begun with names. Give another --out. Nothing was changed.", out=args.out
-        )
-    folders = (args.out, args.submissions)
-    was_there = os.path.lexists(args.pseudonyms)
-    key = pseudonyms.read_key(args.pseudonyms, folders, may_make=is_new)
-    if not was_there:
-        made = msg(
+    is_new = not os.path.lexists(args.pseudonyms)
+    made = pseudonyms.of_class(args.pseudonyms, args.out, args.submissions, args.names)
+    if is_new:
+        note = msg(
             "Made the key {path}. Keep it: without it nobody can go on with this class, nor tell "
             "who is who.",
             path=str(args.pseudonyms),
         )
-        say(messages, made)
-    return pseudonyms.Pseudonyms(key)
-
-
-@contextmanager
-def _names(order: Order) -> Iterator[Order]:
-    """Yield the order with a file of the names of the class, if it is under pseudonyms."""
-    from grader import scratch
-    from grader.batch.names import pseudonyms
-
-    if not order.pseudonyms:
-        yield order
-        return
-    with scratch.make_folder() as folder:
-        yield replace(order, names=pseudonyms.put(order.known, folder))
+        say(messages, note)
+    return made
 
 
 def _write_names(
-    args: argparse.Namespace, entries: Sequence[Entry], exercise: Exercise, view: View
+    args: argparse.Namespace,
+    graded: Sequence[Entry],
+    named: Mapping[str, HandIn],
+    exercise: Exercise,
+    view: View,
 ) -> list[Message]:
     """Write the gradebook and the imports of a class under pseudonyms with names; return notes.
 
-    What is made is readable for its owner alone.
+    What is made is readable for its owner alone. Hand-ins that are not among the submissions any
+    more are left out: nothing tells whose they are.
     """
     from grader.batch.gradebook import write
 
+    entries = [
+        replace(each, hand_in=replace(named[each.id], path=None, problem=each.hand_in.problem))
+        for each in graded
+        if each.id in named
+    ]
     before = os.umask(0o077)
     try:
         notes = write.write(args.names, entries, exercise.title, view, args.assignment)
@@ -257,14 +227,12 @@ def _write_names(
 def _found(
     args: argparse.Namespace, messages: Console, pseudonyms: Pseudonyms | None
 ) -> Iterator[tuple[Found, dict[str, HandIn]]]:
-    """Find the hand-ins, and print the notes on them.
+    """Find the hand-ins, and print the notes on them, which call people as the export does.
 
-    Under pseudonyms nothing that is found or said has names; with it comes who has which.
+    Under pseudonyms the hand-ins come without names, and beside them who has which.
     """
     from grader.batch.class_file import CLASS
     from grader.batch.find.finding import find
-    from grader.batch.names.people import known_words
-    from grader.batch.names.replacing import Names
 
     is_same = args.submissions.resolve() == args.out.resolve()
     if is_same or (args.submissions / CLASS).is_file():
@@ -274,18 +242,15 @@ def _found(
             submissions=args.submissions,
         )
     with find(args.submissions, args.pattern, args.roster) as found:
-        named = {} if pseudonyms is None else pseudonyms.of_hand_ins(found.hand_ins)
-        notes = found.notes
-        if pseudonyms is not None:
-            names = Names(pseudonyms.known(named, known_words()).everybody)
-            notes = [note.map_texts(names) for note in notes]
-            again = (id for id, was in named.items() if was.id == args.again)
-            args.again = next(again, args.again)
-            made = (pseudonyms.hand_in(id, was, names) for id, was in named.items())
-            found = replace(found, hand_ins=list(made), notes=notes)
-        for note in notes:
+        for note in found.notes:
             say(messages, note)
-        yield found, named
+        if pseudonyms is None:
+            yield found, {}
+            return
+        hidden = pseudonyms.hide(found.hand_ins)
+        named = {id: with_names for id, (_, with_names) in hidden.items()}
+        args.again = next((id for id, was in named.items() if was.id == args.again), args.again)
+        yield replace(found, hand_ins=[without for without, _ in hidden.values()]), named
 
 
 def _grade(

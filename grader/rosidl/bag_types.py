@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from grader.rosidl.cdr import NUMBERS, CdrReader, CdrWriter, Number
+from grader.rosidl.cdr import NUMBERS, CdrReader, Number
 
 #: Basic type -> how it is stored; None for a string.
 _STORED: Final[dict[str, Number | None]] = {
@@ -120,34 +120,6 @@ class BagTypes:
             ValueError: it is none; no more work is done than there are bytes.
         """
         return self._reader(kind, 0)(CdrReader(data))
-
-    def cdr(self, values: Any, kind: str) -> bytes:
-        """Return a message in CDR, from what `values` returns."""
-        made = CdrWriter()
-        self._write(made, kind, values)
-        return made.message()
-
-    def has_texts(self, kind: str) -> bool:
-        """Whether a message of a type, or one within it, has a string."""
-        fields = (field for name in self._within(kind, {}) for field in self._parse(name)[1])
-        return any(field.base == "string" for field in fields)
-
-    def _write(self, made: CdrWriter, kind: str, values: Any) -> None:
-        for field in self._parse(kind)[1] or _NO_FIELDS:
-            value = values.get(field.name, 0)
-            if field.array and (not field.size or "<" in field.array):
-                made.number("I", len(value))
-            number = _STORED.get(field.base)
-            if field.array and number is not None:
-                made.array(value, number.dtype)
-                continue
-            for each in value if field.array else [value]:
-                if number is not None:
-                    made.number(number.code, each)
-                elif field.base == "string":
-                    made.text(each)
-                else:
-                    self._write(made, field.base, each)
 
     def _parse(self, kind: str) -> tuple[list[str], list[_Field]]:
         if kind not in self._parsed:

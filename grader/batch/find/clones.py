@@ -19,10 +19,9 @@ import re
 import shutil
 import stat
 import subprocess
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Sequence
 from datetime import datetime, timedelta
-from itertools import islice, takewhile
+from itertools import takewhile
 from pathlib import Path
 from typing import Final
 
@@ -36,9 +35,6 @@ _MARKS: Final = (".git", ".classroom50.yml")
 MAX_COMMIT_BYTES: Final = 1_000_000  # a commit is a message and a few names
 _MAX_FILE_BYTES: Final = 5_000_000  # packed-refs of a repository with 50,000 branches
 _MOST_OBJECTS: Final = 100_000
-#: Repositories are looked for in so many folders of a hand-in, and so many of them are read.
-_MOST_FOLDERS: Final = 2_000
-_MOST_REPOSITORIES: Final = 20
 _WAIT_S: Final = 20.0
 _NAME: Final = re.compile(r"[0-9a-f]{40}")
 _REF: Final = re.compile(r"ref: (?P<ref>refs/heads/[\w./+@-]+)")
@@ -173,29 +169,6 @@ class LastCommits:
             "GIT_NO_LAZY_FETCH": "1",
             "GIT_TERMINAL_PROMPT": "0",
         }
-
-
-def identities(hand_in: Path) -> list[str]:
-    """Return the texts of a hand-in's repositories that name people: config, log, last commit."""
-    found = []
-    for clone in islice(_clones(hand_in), _MOST_REPOSITORIES):
-        for name in ("config", "logs/HEAD"):
-            with suppress(OSError):
-                found.append(_read(clone / ".git" / name))
-        with make_folder() as scratch:
-            found.append((LastCommits(scratch).commit(clone) or b"").decode("utf-8", "replace"))
-    return found
-
-
-def _clones(hand_in: Path) -> Iterator[Path]:
-    """Yield the folders in and below a hand-in that have a .git folder."""
-    for at, folders, _ in islice(os.walk(hand_in), _MOST_FOLDERS):
-        if ".git" in folders:
-            folders.remove(".git")
-            with suppress(OSError):
-                if _is_folder(Path(at, ".git")):
-                    yield Path(at)
-        folders.sort()
 
 
 def _commit(theirs: Path) -> str | None:

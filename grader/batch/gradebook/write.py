@@ -92,7 +92,7 @@ def write_pseudonyms(out: Path, entries: Sequence[Entry]) -> None:
     """Write who has which pseudonym: that of a group is the group's.
 
     Args:
-        entries: of a class under pseudonyms, with names: see `grader.batch.names.pseudonyms`.
+        entries: of a class under pseudonyms, with names; see `grader.batch.pseudonyms`.
 
     Raises:
         UsageError: it cannot be written.

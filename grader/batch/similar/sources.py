@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -51,12 +51,11 @@ class File(NamedTuple):
     data: bytes
 
 
-def keep(copy: Path, into: Path, rename: Callable[[str], str] = str) -> int:
+def keep(copy: Path, into: Path) -> int:
     """Copy the sources of a submission into a folder, which is made anew.
 
     Args:
         copy: the private copy of the submission; links out of it are not followed.
-        rename: returns the name to keep of a file or folder.
 
     Returns:
         How many were left out.
@@ -74,7 +73,7 @@ def keep(copy: Path, into: Path, rename: Callable[[str], str] = str) -> int:
             left_out += 1
             continue
         size += len(data)
-        target = into / _free_name(path.relative_to(copy), names, rename)
+        target = into / _free_name(path.relative_to(copy), names)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(data)
     return left_out
@@ -110,9 +109,9 @@ def _sources(copy: Path) -> Iterator[Path]:
             yield path
 
 
-def _free_name(path: Path, names: set[str], rename: Callable[[str], str]) -> str:
+def _free_name(path: Path, names: set[str]) -> str:
     """Return an unused name for a file, also on systems that ignore case; add it to `names`."""
-    parts = [_STRANGE.sub("_", rename(part))[:80] for part in path.with_suffix("").parts]
+    parts = [_STRANGE.sub("_", part)[:80] for part in path.with_suffix("").parts]
     stem, number = "/".join(parts), 1
     name = f"{stem}.py"
     while name.lower() in names:

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import shutil
-from collections.abc import Iterable, Iterator
+from contextlib import redirect_stderr, redirect_stdout
 from functools import partial
 from pathlib import Path
 
 import pytest
 
-from grader import content, grading, judging
-from grader.batch import grade, pool
-from grader.batch.pool import Answer, Done, Task
 from grader.cli import main
-from grader.recording.recording import Recordings
-from grader.submission.start import Submission
 from tests import once
+from tests.grader.batch import named_class
 from tests.grader.batch.classes import ROOT, Class
-from tests.grader.batch.names import accented
 
 CONTROLLER = (ROOT / "tests" / "submissions" / "square_controller.py").read_text(encoding="utf-8")
 HANDED_IN = {
@@ -66,39 +62,22 @@ def graded(small_class: Class) -> Path:
     return once.folder(partial(_grade, small_class), "graded", HANDED_IN, QUICK) / "class"
 
 
-def _make_with_names(small: Class, folder: Path) -> None:
-    accented.hand_in(folder / "handed_in")
-    words = [str(folder / "handed_in"), "--out", str(folder / "class"), "--jobs", "1"]
-    assert main(["batch", *words, "--exercise", str(small.exercise)]) == 0
+def _make_named(small: Class, folder: Path) -> None:
+    named_class.hand_in(folder / "handed_in")
+    hidden = ["--pseudonyms", folder / "keys" / "key", "--names", folder / "named"]
+    said = io.StringIO()
+    for words in (["--out", folder / "class"], ["--out", folder / "hidden", *hidden]):
+        words += [folder / "handed_in", "--jobs", "1", "--exercise", small.exercise]
+        with redirect_stderr(said), redirect_stdout(said):
+            assert main(["batch", *map(str, words)]) == 0
+    (folder / "said.txt").write_text(said.getvalue(), "utf-8")
 
 
 @pytest.fixture(scope="session")
-def with_names(small_class: Class) -> Class:
-    """What was handed in, and the exercise; beside it `class`, graded. Nobody changes it."""
-    text = Path(accented.__file__).read_text("utf-8")
-    folder = once.folder(partial(_make_with_names, small_class), "a class with names", text)
-    return Class(folder / "handed_in", small_class.exercise)
+def named(small_class: Class) -> Path:
+    """A folder: `handed_in`; graded into `class`, and under pseudonyms into `hidden`, `named`.
 
-
-@pytest.fixture(scope="module")
-def as_recorded(with_names: Class) -> Iterator[None]:
-    """Whatever `grader batch` would run of this class is taken from its recordings, as they are."""
-    known: dict[str, Recordings] = {}
-    for folder in (with_names.handed_in.parent / "class" / "store").glob("*/*/recording"):
-        found = judging.load_recordings(folder)
-        assert found.nominal.provenance is not None
-        known[found.nominal.provenance.submission_sha256] = found
-
-    def run_all(submission: Submission, *_: object, **__: object) -> Recordings:
-        assert submission.copy is not None
-        return known[content.of_folder(submission.copy.folder)]
-
-    def work(tasks: Iterable[Task], *_: object, **__: object) -> Iterator[Done]:
-        for task in tasks:
-            grade.make(task)
-            yield task, Answer("done")
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(grading, "run_all", run_all)
-        patch.setattr(pool, "work", work)
-        yield
+    `said.txt` has what the calls have printed. Nobody changes it.
+    """
+    text = Path(named_class.__file__).read_text("utf-8")
+    return once.folder(partial(_make_named, small_class), "a class with names", text, QUICK)

@@ -107,18 +107,6 @@ def test_a_run_that_was_made_before_travels_too(
     assert done[0].run.name == "run"
 
 
-def test_the_names_that_pseudonyms_stand_for_travel_too(
-    task: Task, done: list[Task], tmp_path: Path
-) -> None:
-    (tmp_path / "names.json").write_text("{}")
-    named = replace(task, names=tmp_path / "names.json", stands_for="student1")
-    remote.graded(pickle.loads(pickle.dumps(remote.packed(named))))
-    (there,) = done
-    assert there.names is not None
-    assert there.names.name == "names.json"
-    assert there.names != named.names
-
-
 def test_a_worker_with_other_versions_does_not_begin(
     task: Task, done: list[Task], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -72,17 +72,6 @@ def test_messages_are_read_as_rosbags_reads_them(name: str) -> None:
     assert BagTypes(types.used).values(data, name) == INSTALLED.values(data, name) == plain(theirs)
 
 
-@pytest.mark.parametrize("name", MESSAGES)
-def test_messages_are_written_as_they_were_read(name: str) -> None:
-    data = serialise(make(Types({}).use(name), MESSAGES[name]))
-    assert INSTALLED.cdr(INSTALLED.values(data, name), name) == data
-
-
-def test_types_with_texts_are_told_from_those_without() -> None:
-    assert INSTALLED.has_texts("tf2_msgs/msg/TFMessage")
-    assert not INSTALLED.has_texts("geometry_msgs/msg/Twist")
-
-
 def test_the_language_is_read_without_its_comments_and_defaults() -> None:
     types = BagTypes(
         {

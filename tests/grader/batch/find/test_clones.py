@@ -139,14 +139,3 @@ def test_a_zip_of_clones_says_when_and_brings_no_configuration(
         "objects",
         "refs",
     }
-
-
-def test_repositories_within_a_hand_in_say_who_its_people_are(tmp_path: Path) -> None:
-    repository(tmp_path / "repo")
-    repository(tmp_path / "a" / "b" / "deep")
-    (tmp_path / "repo" / ".git" / "config").write_text("[user]\n\tname = Nightowl\n")
-    (tmp_path / "linked").symlink_to(tmp_path / "repo")
-    said = clones.identities(tmp_path)
-    assert sum("name = Nightowl" in text for text in said) == 1
-    assert sum(text.startswith("tree ") for text in said) == 2
-    assert clones.identities(tmp_path / "a" / "no_folder") == []

@@ -1,1 +1,0 @@
-"""Forget a student: remove what is kept of one from the folder of a class."""

@@ -1,0 +1,202 @@
+"""`grader forget`: what only the student has goes, and others keep theirs."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from grader.batch import batch, forget
+from grader.batch.entry import Entry, HandIn, Person, entries
+from grader.batch.store import Store
+from grader.cli import main
+from tests.grader.batch.classes import Class, told
+from tests.grader.batch.named_class import rows, with_text
+
+Call = Callable[..., int]
+
+
+@pytest.fixture
+def out(named: Path, tmp_path: Path) -> Path:
+    """The class, regraded once, with hand-ins that were set aside."""
+    out = tmp_path / "class"
+    shutil.copytree(named / "class", out)
+    (out / "before" / "1").mkdir(parents=True)
+    shutil.copy(out / "gradebook.csv", out / "before" / "1")
+    for id in ("zm4711", "dk4714+jg4715"):
+        shutil.copytree(out / "submissions" / id, out / "aside" / id)
+    return out
+
+
+@pytest.fixture
+def call(out: Path, small_class: Class) -> Call:
+    """Call `grader forget`."""
+    common = ["--from", str(out), "--exercise", str(small_class.exercise)]
+    return lambda student, *words: main(["forget", student, *common, *words])
+
+
+@pytest.mark.parametrize("student", ["zm4711", "ZM4711 ", "zoë müller", "zm4711@uni.example"])
+def test_a_student_goes_and_a_run_that_another_shares_stays(
+    student: str,
+    out: Path,
+    call: Call,
+    small_class: Class,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    before = rows(out / "gradebook.csv")
+    runs = sorted((out / "store").glob("*/*"))
+    assert call(student, "--yes") == 0
+    assert with_text(out, "zm4711") == []
+    del before["zm4711"]
+    assert rows(out / "gradebook.csv") == before
+    assert json.loads((out / "class.json").read_text())["hand_ins"] == len(entries(out)) == 3
+    assert sorted((out / "store").glob("*/*")) == runs
+    recording = out / "submissions" / "bs4712" / "recording"
+    assert main(["check", str(recording), "--exercise", str(small_class.exercise)]) == 0
+    assert "the next grader batch grades" in capsys.readouterr().out.replace("\n", " ")
+
+
+def test_a_run_goes_with_the_last_who_has_it(out: Path, call: Call) -> None:
+    key = Entry.read(out / "submissions" / "zm4711").key
+    assert call("zm4711", "--yes") == 0
+    assert Store(out).has(key)
+    assert call("bs4712", "--yes") == 0
+    assert not Store(out).has(key)
+
+
+def test_a_group_keeps_its_hand_in_without_this_member(out: Path, call: Call) -> None:
+    assert call("jg4715", "--yes") == 0
+    assert with_text(out, "jg4715", "Größe") == []
+    row = rows(out / "gradebook.csv")["dk4714"]
+    assert (row["hand_in"], row["group"], row["state"]) == ("dk4714", "", "judged")
+    for part in ("submissions", "aside"):
+        folder = out / part / "dk4714"
+        result = Entry.read(folder).result
+        assert result is not None and result.handed_in is not None
+        assert (result.submission, result.handed_in.id) == ("Dan Kowalski", "dk4714")
+        assert "Dan Kowalski" in (folder / "report.html").read_text("utf-8")
+        assert (folder / "recording").is_dir()
+
+
+def test_the_next_call_without_the_student_finds_all_graded(
+    named: Path, out: Path, call: Call, small_class: Class, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call("jg4715", "--yes") == 0
+    before = told(out)
+    handed_in = out.parent / "handed_in"
+    shutil.copytree(named / "handed_in", handed_in)
+    roster = (handed_in / "roster.csv").read_text("utf-8").splitlines(keepends=True)
+    left = "".join(line for line in roster if "jg4715" not in line)
+    (handed_in / "roster.csv").write_text(left, "utf-8")
+    words = [str(handed_in), "--out", str(out), "--exercise", str(small_class.exercise)]
+    assert main(["batch", *words]) == 0
+    assert "4 hand-ins of 4 graded before" in capsys.readouterr().err
+    assert told(out) == before
+
+
+@pytest.mark.parametrize("student", ["zm4711", "jg4715"])
+@pytest.mark.parametrize(
+    ("room", "name", "times"),
+    [
+        *((Store, "take_out", times) for times in range(3)),
+        (batch, "write_outputs", 0),
+        (forget, "remove", 0),
+        (forget, "render", 1),
+    ],
+)
+def test_a_call_that_was_cut_off_is_finished_by_the_next(
+    student: str,
+    room: object,
+    name: str,
+    times: int,
+    out: Path,
+    call: Call,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shutil.copytree(out, whole := out.parent / "whole")
+    real = getattr(room, name)
+    left = iter(range(times))
+
+    def cut_off(*args: object) -> object:
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        return real(*args)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(room, name, cut_off)
+        assert call(student, "--yes") in (0, 130)  # not all calls of this name are made for each
+    assert call(student, "--yes") in (0, 2)
+    assert with_text(out, student) == []
+    others = sorted(
+        path.name for path in (whole / "submissions").iterdir() if student not in path.name
+    )
+    assert {*others} <= {path.name for path in (out / "submissions").iterdir()}
+    assert not (out / "before").exists()
+
+
+def test_nothing_changes_without_yes(
+    out: Path, call: Call, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.is_file()}
+    assert call("zm4711") == 0
+    said = capsys.readouterr().out.replace("\n", "")
+    for path in ("submissions/zm4711", "aside/zm4711", "before"):
+        assert f"- goes: {out / path}" in said
+    assert "--yes" in said
+    assert {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.parametrize(
+    ("student", "said"),
+    [
+        ("Zoé Mueler", "one of these: zm4711 Zoë Müller."),
+        ("4714", "dk4714 Dan Kowalski"),
+        ("nobody at all", "is nobody in this class"),
+    ],
+)
+def test_an_unknown_student_is_refused_with_those_who_may_be_meant(
+    student: str, said: str, out: Path, call: Call, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(student, "--yes") == 2
+    assert said in capsys.readouterr().err.replace("\n", " ")
+
+
+def test_two_of_one_name_are_told_apart_by_their_ids(
+    out: Path, call: Call, capsys: pytest.CaptureFixture[str]
+) -> None:
+    nobody = Entry.read(out / "submissions" / "ef4716")
+    other = HandIn("x1", (Person("x1", "Eve Fontaine"),), problem=nobody.hand_in.problem)
+    (out / "submissions" / "x1").mkdir()
+    replace(nobody, hand_in=other, folder=out / "submissions" / "x1").put()
+    assert call("Eve Fontaine", "--yes") == 2
+    assert "x1 Eve Fontaine, ef4716 Eve Fontaine" in capsys.readouterr().err.replace("\n", " ")
+    assert call("x1", "--yes") == 0
+    assert "ef4716" in rows(out / "gradebook.csv")
+
+
+def test_a_group_s_new_folder_is_never_that_of_somebody_else(out: Path, call: Call) -> None:
+    nobody = Entry.read(out / "submissions" / "ef4716")
+    folder = out / "submissions" / "dk4714"
+    folder.mkdir()
+    stranger = HandIn("dk4714", (Person("dk4714"),), problem=nobody.hand_in.problem)
+    replace(nobody, hand_in=stranger, folder=folder).put()
+    assert call("jg4715", "--yes") == 0
+    assert Entry.read(folder).state == "nothing"
+    assert Entry.read(out / "submissions" / "dk4714-2").state == "judged"
+
+
+def test_under_pseudonyms_a_student_is_named_by_that(
+    named: Path, out: Path, call: Call, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.rmtree(out)
+    shutil.copytree(named / "hidden", out)
+    whose = {row["id"]: who for who, row in rows(named / "named" / "pseudonyms.csv").items()}
+    assert call("zm4711", "--yes") == 2
+    assert "under pseudonyms, give the student's" in capsys.readouterr().err.replace("\n", " ")
+    assert call(whose["zm4711"], "--yes") == 0
+    assert with_text(out, whose["zm4711"]) == []
+    assert len(rows(out / "gradebook.csv")) == 4
