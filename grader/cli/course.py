@@ -10,7 +10,7 @@ from pathlib import Path
 
 from grader import files, system, text
 from grader.course import repository
-from grader.course.kinds import HAVE_A_CHECK, HAVE_AN_IMAGE, KINDS
+from grader.course.kinds import HAVE_A_CHECK, KINDS
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
@@ -21,7 +21,7 @@ from grader.translations import tr
 
 #: The releases of ROS 2 that PyPI has, as extras of ours.
 RELEASES = ("jazzy", "kilted")
-#: What pip installs: in shells, YAML, JSON, Python and Dockerfiles, quoted, the same text.
+#: What pip installs: in shells, YAML and Python, quoted, the same text.
 SOURCE = re.compile(r"[\w.+:/@\[\]=~<>!,;#&%][\w.+:/@\[\]=~<>!,;#&% -]*", re.ASCII)
 #: An address, perhaps behind a name: of a git repository at a tag, or of an archive.
 ADDRESS = re.compile(
@@ -32,9 +32,6 @@ ADDRESS = re.compile(
 RELEASE = re.compile(r"([\w.-]+)(\[[\w,-]+\])?( *[=~<>!].+)", re.ASCII)
 #: What stands before a host: over https a token may pose as the user.
 SECRET = re.compile(r"https?://[^/@]*@|\w+://[^/@]*:[^/@]*@")
-#: The name of an image, as docker takes it.
-IMAGE = re.compile(r"[a-z0-9][\w.:/-]*", re.ASCII)
-DEFAULT_IMAGE = "turtlesim-grader"
 EXPLAINED = msg(
     "Exercises: {names}. The README.md that is written has the first week's steps; it, and the "
     "comments in the files, are in English. Nothing is put under git."
@@ -81,11 +78,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             kinds=", ".join(HAVE_A_CHECK),
         ),
     )
-    parser.add_argument(
-        "--image",
-        metavar="NAME",
-        help=tr("what the image is called ({kinds})", kinds=", ".join(HAVE_AN_IMAGE)),
-    )
 
 
 def main(args: argparse.Namespace) -> int:
@@ -104,7 +96,7 @@ def main(args: argparse.Namespace) -> int:
     exercises = [load_exercise(installed(name).name) for name in dict.fromkeys(args.exercises)]
     _check_points(args.kind, args.pass_points, exercises)
     source = _source(args.source, args.ros)
-    how = repository.Settings(source, args.pass_points, _image(args.kind, args.image), args.ros)
+    how = repository.Settings(source, args.pass_points, args.ros)
     with files.filling(args.folder) as copy:
         repository.write(copy, args.kind, kind, exercises, how)
     print(tr("The course is in {folder}.", folder=args.folder))
@@ -137,18 +129,6 @@ def _check_points(kind: str, points: float | None, exercises: Sequence[Exercise]
             most=text.number(least.max_score),
             exercise=least.name,
         )
-
-
-def _image(kind: str, image: str | None) -> str:
-    if image is not None and kind not in HAVE_AN_IMAGE:
-        raise UsageError(
-            "--image is for {kinds}; {kind} needs none", kinds=", ".join(HAVE_AN_IMAGE), kind=kind
-        )
-    if image is not None and not IMAGE.fullmatch(image):
-        raise UsageError(
-            "--image {image}: expected a name such as account/turtlesim-grader", image=repr(image)
-        )
-    return image or DEFAULT_IMAGE
 
 
 def _source(source: str | None, ros: str) -> str:

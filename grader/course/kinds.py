@@ -20,7 +20,7 @@ class Kind:
         title: what the system is called.
         starter: the folder of a starter.
         rubric: the exercise that is graded by, an edited copy.
-        scripts: the folder of `grade.sh` and `install.sh`; '' where they are not needed.
+        scripts: the folder of `grade.sh` and `install.sh`.
         unusable: what a submission gets that cannot be used, there.
         failed: what becomes of one where the grader fails.
         log: where the staff reads what the grader said.
@@ -31,9 +31,9 @@ class Kind:
     title: str
     starter: str
     rubric: str
-    scripts: str = ""
-    unusable: str = ""
-    failed: str = ""
+    scripts: str
+    unusable: str
+    failed: str
     log: str = "the system's log of the run"
     is_copied: bool = False
     slug: str = "_"
@@ -79,32 +79,6 @@ KINDS = {
         "`log.txt` of the artifacts",
         is_copied=True,
     ),
-    "moodle-vpl": Kind(
-        "Moodle VPL",
-        "starters/EXERCISE",
-        "activities/EXERCISE/rubric.yaml",
-        "jail",
-        "0, with the message",
-        "none; a comment",
-    ),
-    "prairielearn": Kind(
-        "PrairieLearn",
-        "starters/EXERCISE",
-        "questions/EXERCISE/tests/rubric.yaml",
-        "image",
-        "none; no attempt is lost",
-        "none; no attempt is lost",
-    ),
-    "autolab": Kind(
-        "Autolab",
-        "starters/EXERCISE",
-        "labs/EXERCISE/rubric.yaml",
-        "image",
-        "0, with the message",
-        "none; no scores",
-    ),
-    "jupyterhub": Kind("JupyterHub", "image/starters/EXERCISE", "rubrics/EXERCISE.yaml"),
 }
-#: Where PASS_POINTS makes a check green; and which build an image.
+#: Where PASS_POINTS makes a check green.
 HAVE_A_CHECK = ("github", "gitlab")
-HAVE_AN_IMAGE = ("prairielearn", "autolab", "jupyterhub")

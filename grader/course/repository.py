@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import string
-import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -21,8 +19,8 @@ ALL, SCRIPTS = "all", "scripts"
 #: Begins names that have a dot there in a course: among ours git would heed, or pip forget, some.
 DOT = "dot-"
 IGNORE = "dot-gitignore"
-#: A README is `README` with the kind's `STEPS`, in which `FAILURES` stands.
-README, STEPS, FAILURES = "README.md", "steps.md", "failures.md"
+#: A README is `README` with the kind's `STEPS`.
+README, STEPS = "README.md", "steps.md"
 OTHERS = "The commands below are for the first of them; do the same for each."
 #: The share of an exercise's points from which on a check is green, if nothing else is said.
 PASS_SHARE = 0.6
@@ -35,13 +33,11 @@ class Settings:
     Attributes:
         source: what pip installs.
         pass_points: from how many points on a check is green; None: `PASS_SHARE` of them.
-        image: the name of the image.
         ros: the ROS 2 release that starters are for.
     """
 
     source: str
     pass_points: float | None
-    image: str
     ros: str
 
 
@@ -67,15 +63,14 @@ def write(
         rubric.parent.mkdir(parents=True, exist_ok=True)
         rubric.write_bytes(installed(exercise.name).description.read_bytes())
     of_course = _of_course(kind, exercises, [slug for _, slug in slugs], how)
-    steps = _text(TEMPLATES / name / STEPS)
-    steps = steps.replace("@@failures\n", _text(TEMPLATES / ALL / FAILURES))
-    readme = _text(TEMPLATES / ALL / README).replace("@@steps\n", steps)
+    readme = _text(TEMPLATES / ALL / README).replace("@@steps\n", _text(TEMPLATES / name / STEPS))
     _fill(folder / README, readme, of_course)
     for path, template in _templates(name, kind):
         of_each = slugs if EXERCISE in str(path) else [(exercises[0], "")]
         for exercise, slug in of_each:
             target = folder / str(path).replace(EXERCISE, slug)
-            _fill(target, _text(template), of_course | _of_exercise(exercise, slug, how))
+            passed = PASS_SHARE * exercise.max_score if how.pass_points is None else how.pass_points
+            _fill(target, _text(template), of_course | {"pass_points": str(text.number(passed))})
 
 
 def _templates(name: str, kind: Kind) -> Iterator[tuple[PurePosixPath, Path]]:
@@ -83,10 +78,10 @@ def _templates(name: str, kind: Kind) -> Iterator[tuple[PurePosixPath, Path]]:
     for part in (ALL, name):
         for path in sorted(path for path in (TEMPLATES / part).rglob("*") if path.is_file()):
             place = PurePosixPath(path.relative_to(TEMPLATES / part))
-            if place.name in (README, STEPS, FAILURES) or "__pycache__" in place.parts:
+            if place.name in (README, STEPS) or "__pycache__" in place.parts:
                 continue
             yield _with_dots(place), path
-    scripts = {file: kind.scripts for file in (GRADE, INSTALL) if kind.scripts}
+    scripts = dict.fromkeys((GRADE, INSTALL), kind.scripts)
     if kind.is_copied:
         scripts[PUBLISH] = ""
         yield _with_dots(PurePosixPath(kind.starter, IGNORE)), TEMPLATES / SCRIPTS / IGNORE
@@ -108,7 +103,6 @@ def _of_course(
         "system": kind.title,
         "version": system.grader_version(),
         "source": how.source,
-        "image": how.image,
         "unusable": kind.unusable,
         "failed": kind.failed,
         "log": kind.log,
@@ -118,31 +112,11 @@ def _of_course(
         "others": f"\n{OTHERS}" if len(slugs) > 1 else "",
         "rubric": kind.rubric.replace(EXERCISE, slug),
         "table": "\n".join(map(_row, exercises, slugs)),
-        "questions": ",\n".join(
-            f'        {{ "id": "{each.name}", "autoPoints": {text.number(each.max_score)} }}'
-            for each in exercises
-        ),
     }
 
 
 def _row(exercise: Exercise, slug: str) -> str:
     return f"| `{slug}` | {exercise.title!s} | {text.number(exercise.max_score)} |"
-
-
-def _of_exercise(exercise: Exercise, slug: str, how: Settings) -> dict[str, str]:
-    """Return the values of a file for one exercise."""
-    passed = PASS_SHARE * exercise.max_score if how.pass_points is None else how.pass_points
-    return {
-        "exercise": slug,
-        "title_quoted": json.dumps(str(exercise.title)),  # for YAML as well
-        "pass_points": str(text.number(passed)),
-        "uuid": str(uuid.uuid4()),
-        "problems": "\n".join(
-            f"- name: {check}\n  description: ''\n  max_score: {text.number(points)}\n"
-            "  optional: false"
-            for check, points in exercise.points.items()
-        ),
-    }
 
 
 def _text(path: Path) -> str:

@@ -38,7 +38,7 @@ def course(kind: str) -> Path:
 
 def scripts() -> Path:
     """The folder of grade.sh and install.sh, which are the same in all."""
-    return course("moodle-vpl") / "jail"
+    return course("gradescope") / "autograders" / EXERCISES[0]
 
 
 VERDICTS: list[dict[str, Any]] = [
@@ -147,8 +147,7 @@ class Machine:
             # a user of its own could not go to the Python that the tests run with
             "GRADER_USER": "" if real else str(UID),
             "GRADER_LIMIT_S": "60",
-            "GRADER_SCRIPTS": str(scripts()),
-            "EXERCISE": str(course("moodle-vpl") / "activities" / EXERCISES[0] / "rubric.yaml"),
+            "EXERCISE": str(scripts() / "rubric.yaml"),
             "SECRET_TOKEN": "do-not-tell",
         }
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import compileall
 import csv
-import json
 import os
 import re
 import shlex
 import shutil
 import subprocess
 import sys
-import uuid
 from pathlib import Path
 from typing import Any
 
@@ -31,17 +29,6 @@ from tests.needs import needs
 each_kind = pytest.mark.parametrize("kind", KINDS)
 GITHUB = Path("templates", EXERCISES[1], ".github", "workflows", "grade.yml")
 GITLAB = Path("templates", EXERCISES[1], ".gitlab-ci.yml")
-#: What the systems' own documents know, at the versions that docs/course-ci.md names.
-OF_A_QUESTION = {
-    *("uuid", "title", "topic", "type", "singleVariant", "gradingMethod", "externalGradingOptions"),
-}
-OF_GRADING = {"image", "entrypoint", "timeout"}
-OF_AN_ASSESSMENT = {
-    *("name", "display_name", "description", "category_name", "handin_filename"),
-    *("handin_directory", "handout", "writeup", "max_size", "max_submissions", "max_grace_days"),
-    "disable_handins",
-}
-INSTRUCTIONS = {"FROM", "ARG", "RUN", "COPY", "USER"}
 
 
 def files(kind: str) -> list[Path]:
@@ -66,7 +53,7 @@ def commands(kind: str) -> list[str]:
 def test_every_value_is_filled_in(kind: str) -> None:
     assert [path for path in files(kind) if "@@" in path.read_text(encoding="utf-8")] == []
     # the README alone need not say what is installed
-    assert kind == "moodle-vpl" or any(
+    assert any(
         SOURCE in path.read_text(encoding="utf-8")
         for path in files(kind)
         if path.name != "README.md"
@@ -95,7 +82,7 @@ def test_the_roster_is_one_that_a_class_is_graded_with(kind: str) -> None:
 def test_what_the_readme_names_is_there(kind: str) -> None:
     text = (course(kind) / "README.md").read_text(encoding="utf-8")
     named = re.findall(r"`([\w.-]+/[\w./-]*)`", text.replace("NAME", EXERCISES[1]))
-    made = ("build/", "results/", "graded/", "ORG/", "ACCOUNT/", "clientFilesQuestion/")
+    made = ("build/", "results/", "graded/", "ORG/")
     there = [f"/{path.relative_to(course(kind))}" for path in course(kind).rglob("*")]
     named = [f"/{path.rstrip('/')}" for path in named if not path.startswith(made)]
     assert named
@@ -117,44 +104,23 @@ def test_the_grader_s_commands_on_the_readme_can_be_called(kind: str) -> None:
 @each_kind
 def test_the_commands_on_the_readme_are_shell(kind: str) -> None:
     for block in commands(kind):
-        if "c.DockerSpawner" not in block and "singleuser:" not in block:
-            subprocess.run(["bash", "-n", "-c", block], check=True)
+        subprocess.run(["bash", "-n", "-c", block], check=True)
 
 
 @needs("shellcheck")
 @each_kind
 def test_scripts_pass_shellcheck(kind: str) -> None:
-    scripts = [
-        path for path in files(kind) if path.read_bytes().startswith(b"#!/") and is_shell(path)
-    ]
-    assert all(path.stat().st_mode & 0o111 for path in scripts)
-    if scripts:
-        check = subprocess.run(["shellcheck", *scripts], capture_output=True, text=True)
-        assert check.returncode == 0, check.stdout
-
-
-def is_shell(path: Path) -> bool:
-    return b"sh" in path.read_bytes().split(b"\n")[0]
-
-
-@pytest.mark.parametrize("kind", ["prairielearn", "autolab", "jupyterhub"])
-def test_an_image_is_built_of_what_lies_beside_its_dockerfile(kind: str) -> None:
-    image = course(kind) / "image"
-    text = re.sub(r"(?m)^#.*\n", "", (image / "Dockerfile").read_text()).replace("\\\n", " ")
-    for name, _, words in (line.partition(" ") for line in text.splitlines() if line):
-        assert name in INSTRUCTIONS
-        if name == "RUN":
-            subprocess.run(["sh", "-n", "-c", words], check=True)
-        if name == "COPY":
-            assert all((image / source).exists() for source in words.split()[:-1])
-    assert f'ARG GRADER_SOURCE="{SOURCE}"' in text
+    scripts = [path for path in files(kind) if re.match(rb"#!/.*sh\n", path.read_bytes())]
+    assert scripts and all(path.stat().st_mode & 0o111 for path in scripts)
+    check = subprocess.run(["shellcheck", *scripts], capture_output=True, text=True)
+    assert check.returncode == 0, check.stdout
 
 
 def test_every_format_that_is_asked_for_exists() -> None:
     text = "".join(path.read_text(encoding="utf-8") for kind in KINDS for path in files(kind))
     asked = {*re.findall(r"--format ([\w-]+)", text), *re.findall(r'report\(work, "(\w+)"', text)}
     assert asked - set(FORMATS) == set()
-    assert len(asked) > 6
+    assert len(asked) > 3
 
 
 def test_what_pip_has_compiled_is_no_part_of_a_course(tmp_path: Path, monkeypatch) -> None:
@@ -216,13 +182,6 @@ def test_scripts_in_workflows_pass_shellcheck() -> None:
         shellcheck("#!/bin/bash\nset -e\n" + script)
 
 
-@needs("shellcheck")
-def test_the_script_that_vpl_is_to_run_passes_shellcheck(machine: Machine) -> None:
-    activity = machine.lay("moodle-vpl") / "activities" / EXERCISES[0]
-    assert machine.bash(activity / "vpl_evaluate.sh", cwd=activity).returncode == 0
-    shellcheck((activity / "vpl_execution").read_text())
-
-
 def shellcheck(script: str) -> None:
     check = subprocess.run(["shellcheck", "-"], input=script, capture_output=True, text=True)
     assert check.returncode == 0, check.stdout
@@ -244,48 +203,6 @@ def test_the_job_that_runs_students_code_has_no_token_to_write_with() -> None:
     steps = workflow["jobs"]["grade"]["steps"]
     assert steps[0]["with"]["persist-credentials"] is False
     assert [step["name"] for step in steps if "secrets." in str(step)] == ["Install the grader"]
-
-
-def test_prairielearn_s_files_have_its_keys() -> None:
-    root = course("prairielearn")
-    found = []
-    for name in EXERCISES:
-        info = json.loads((root / "questions" / name / "info.json").read_text())
-        assert set(info) == OF_A_QUESTION
-        assert set(info["externalGradingOptions"]) == OF_GRADING
-        found.append(info["uuid"])
-    instance = root / "courseInstances" / "first"
-    assessment = json.loads((instance / "assessments/exercises/infoAssessment.json").read_text())
-    assert assessment["zones"] == [
-        {"questions": [{"id": name, "autoPoints": 100} for name in EXERCISES]}
-    ]
-    found += [
-        assessment["uuid"],
-        json.loads((instance / "infoCourseInstance.json").read_text())["uuid"],
-    ]
-    assert len({uuid.UUID(each) for each in found}) == len(EXERCISES) + 2
-    topics = json.loads((root / "infoCourse.json").read_text())["topics"]
-    assert info["topic"] in [topic["name"] for topic in topics]
-
-
-def test_prairielearn_s_questions_have_the_starter_to_download(machine: Machine) -> None:
-    laid = machine.lay("prairielearn")
-    assert machine.bash("-c", "make", cwd=laid).returncode == 0
-    for name in EXERCISES:
-        question = laid / "questions" / name
-        named = re.findall(
-            r'pl-file-download file-name="(\S+)"', (question / "question.html").read_text()
-        )
-        assert [(question / "clientFilesQuestion" / file).is_file() for file in named] == [True]
-
-
-def test_an_assessment_of_autolab_has_a_problem_for_each_check() -> None:
-    for name in EXERCISES:
-        settings = loaded("autolab", Path("labs", name, f"{name}.yml"))
-        assert set(settings) == {"general", "problems", "autograder"}
-        assert set(settings["general"]) == OF_AN_ASSESSMENT
-        worth = {problem["name"]: problem["max_score"] for problem in settings["problems"]}
-        assert worth == load_exercise(name).points
 
 
 @needs("git")

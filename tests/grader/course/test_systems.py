@@ -10,7 +10,6 @@ import re
 import shutil
 import subprocess
 import sys
-import tarfile
 import tempfile
 import zipfile
 from collections.abc import Callable
@@ -175,76 +174,6 @@ def on_classroom50(machine: Machine, given: HandIn) -> Outcome:
     return result["score"], (student / "release-body.md").read_text()
 
 
-def on_prairielearn(machine: Machine, given: HandIn) -> Outcome:
-    """A tree like /grade, in the image: the student's zip, the question's tests."""
-    laid = machine.lay("prairielearn", given.rubric)
-    root = machine.folder / "grade"
-    shutil.copytree(laid / "questions" / given.exercise / "tests", root / "tests")
-    if (given.student / "does.sh").exists():  # the stub does not unpack
-        shutil.copytree(given.student, root / "student")
-    else:
-        (root / "student").mkdir()
-        shutil.make_archive(str(root / "student" / "solution"), "zip", given.student)
-    image = laid / "image"
-    run = machine.bash(
-        image / "prairielearn.sh", GRADE_ROOT=str(root), GRADER_SCRIPTS=str(image), EXERCISE=""
-    )
-    file = root / "results" / "results.json"
-    assert file.exists() == (run.returncode == 0)
-    if run.returncode != 0:
-        return None, run.stderr
-    result = json.loads(file.read_text())
-    if not result["gradable"]:
-        return 0, result["format_errors"]
-    return result["score"] * 100, result["message"]
-
-
-def on_autolab(machine: Machine, given: HandIn) -> Outcome:
-    """A folder with Makefile and tar file, out of the assessment's tarball, and a zip."""
-    laid = machine.lay("autolab", given.rubric)
-    script = laid / "labs" / given.exercise / "autograde.sh"
-    is_stub = (given.student / "does.sh").exists()
-    if is_stub:  # it does not unpack
-        script.write_text(script.read_text().replace("handed_in=handin.zip", "handed_in=handin"))
-    assert machine.bash("-c", "make", cwd=laid).returncode == 0
-    assessment = machine.folder / "imported"
-    with tarfile.open(laid / "build" / f"{given.exercise}.tar") as packed:
-        assert packed.next().name == given.exercise  # type: ignore[union-attr]
-        packed.extractall(assessment, filter="data")
-    settings = yaml.safe_load((assessment / given.exercise / f"{given.exercise}.yml").read_text())
-    assert (assessment / given.exercise / settings["general"]["handout"]).is_file()
-    place = machine.folder / "autolab"
-    place.mkdir()
-    shutil.copy(assessment / given.exercise / "autograde.tar", place)
-    shutil.copy(assessment / given.exercise / "autograde-Makefile", place / "Makefile")
-    if is_stub:
-        shutil.copytree(given.student, place / "handin")
-    else:
-        name = Path(settings["general"]["handin_filename"])
-        shutil.make_archive(str(place / name.stem), "zip", given.student)
-    run = machine.bash("-c", "make", cwd=place, GRADER_SCRIPTS=str(laid / "image"), EXERCISE="")
-    if run.returncode != 0:
-        assert "scores" not in run.stdout
-        return None, run.stderr
-    scores = json.loads(run.stdout.splitlines()[-1])["scores"]
-    return sum(scores.values()), run.stdout + run.stderr
-
-
-def on_vpl(machine: Machine, given: HandIn) -> Outcome:
-    """First the one script, among all files, then what that has written, without the activity's."""
-    laid = machine.lay("moodle-vpl", given.rubric)
-    place = machine.folder / "vpl"
-    shutil.copytree(given.student, place)
-    activity = laid / "activities" / given.exercise
-    shutil.copytree(activity, place, dirs_exist_ok=True)
-    assert machine.bash(place / "vpl_evaluate.sh", cwd=place).returncode == 0
-    for file in activity.iterdir():
-        (place / file.name).unlink()
-    run = machine.bash("vpl_execution", cwd=place, GRADER_SCRIPTS=str(laid / "jail"), EXERCISE="")
-    grades = re.findall(r"^Grade :=>> (.*)$", run.stdout, re.MULTILINE)
-    return float(grades[0]) if grades else None, run.stdout
-
-
 def junit_score(file: Path) -> float:
     suite = ElementTree.parse(file).getroot().find("testsuite")
     assert suite is not None
@@ -253,10 +182,7 @@ def junit_score(file: Path) -> float:
 
 
 System = Callable[[Machine, HandIn], Outcome]
-SYSTEMS: list[System] = [
-    *(on_github, on_gitlab, on_gradescope, on_classroom50),
-    *(on_prairielearn, on_autolab, on_vpl),
-]
+SYSTEMS: list[System] = [on_github, on_gitlab, on_gradescope, on_classroom50]
 
 
 def by_systems(*kept: System, reason: str) -> pytest.MarkDecorator:
@@ -310,8 +236,7 @@ def test_an_unusable_submission_has_no_points_and_says_why(
 
 @one_system
 def test_nobody_gets_points_from_a_failure(machine: Machine, system: System) -> None:
-    does = "echo 'Grade :=>> 100'; echo '{\"scores\": {\"moves\": 5}}'; echo 'Points: 100'; exit 3"
-    points, said = system(machine, HandIn(machine.submission(does)))
+    points, said = system(machine, HandIn(machine.submission("echo 'Points: 100'; exit 3")))
     assert points is None
     assert "not your fault" in said
 
