@@ -58,7 +58,6 @@ MAY_IMPORT: dict[str, set[str]] = {
     "robot_py.kinematics": {"robot_py.model"},
     "robot_py.robot_state": below("robot_py", "kinematics", "model", "urdf"),
     "robot_py.joint_states": set(),
-    "robot_py.drawing": below("robot_py", "kinematics", "model"),
     "turtlesim_py.__init__": set(),
     "turtlesim_py.world": set(),
     "turtlesim_py.browser": set(),

@@ -16,7 +16,7 @@ from grader.message import Message
 if TYPE_CHECKING:  # a confined process has none of the recording
     from grader.inspection.examining.examination import Examination
     from grader.recording.subject import Trace
-    from grader.recording.view import Part, Pixels
+    from grader.recording.view import Part
 
 
 class Inspector(ABC):
@@ -31,12 +31,8 @@ class Inspector(ABC):
         steps.step`.
         """
 
-    def window(self, trace: PackageTrace) -> Pixels | None:
-        """Return the picture of a report; None for no picture."""
-        return None
-
     def words(self, trace: PackageTrace) -> Sequence[Message]:
-        """Return what the picture shows, in words."""
+        """Return what there is to see, in words."""
         return ()
 
     def parts(self, trace: PackageTrace) -> Sequence[Part]:

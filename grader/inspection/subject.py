@@ -13,7 +13,7 @@ from grader.inspection.trace import PackageTrace, decode, encode
 from grader.message import Message, msg
 from grader.recording.channel import Channel
 from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
-from grader.recording.view import Part, Pictures, View
+from grader.recording.view import Part, View
 from grader.rosidl.cdr import string, string_of
 from grader.translations import tr
 
@@ -83,12 +83,6 @@ class PackageSubject(Subject):
     def decode(self, data: bytes) -> Trace:
         """The trace that bytes mean."""
         return decode(data)
-
-    def pictures(self, made: Trace) -> Pictures:
-        """Return the first picture that an inspector has."""
-        trace = PackageTrace.of(made)
-        shown = (each.window(trace) for each in inspector.installed())
-        return Pictures(next((window for window in shown if window is not None), None))
 
     def view(self, made: Trace) -> View:
         """Return what inspectors show, and the launch files; nothing over time."""

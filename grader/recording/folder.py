@@ -7,7 +7,7 @@
 | output.txt | what the submission printed | yes |
 | circumstances.json | duration, provenance, definitions of interfaces | if it is there |
 | observations.json | what the submission's process reported, if anything | if it is there |
-| path.png, plan.png, window.png | the bag's pictures, for people, as many as its scene makes | no |
+| path.png, window.png | the bag's pictures, for people, as many as its scene makes | no |
 | scenario.json | the inputs, for `python -m turtlesim_py.scenario` | no |
 
 Two saves of equal recordings differ in circumstances.json at most. metadata.yaml comes into the
@@ -29,7 +29,7 @@ BAG, METADATA, RUN, OUTPUT = f"{NAME}.mcap", "metadata.yaml", "run.json", "outpu
 CIRCUMSTANCES_FILE, SCENARIO = "circumstances.json", "scenario.json"
 OBSERVATIONS, PACKAGE = "observations.json", "package.json"
 WINDOW_PICTURE = "window.png"
-PICTURES = ("path.png", "plan.png", WINDOW_PICTURE)
+PICTURES = ("path.png", WINDOW_PICTURE)
 #: In the order in which they come into the folder.
 FILES = (
     *(BAG, RUN, OUTPUT, OBSERVATIONS, PACKAGE, CIRCUMSTANCES_FILE, SCENARIO),

@@ -197,7 +197,7 @@ class Recording:
 
     @cached_property
     def pictures(self) -> Pictures:
-        """The pictures of the scene at the end; a robot takes a second to be drawn."""
+        """The pictures of the scene at the end."""
         return load_subject(self.scene).pictures(self.trace)
 
     @cached_property

@@ -165,9 +165,6 @@ class Subject(ABC):
     outcomes: ClassVar[Mapping[str, Message]] = {}
     #: How places become pixels.
     plane: ClassVar[Plane] = Plane(500, 1.0, 500.0)
-    #: Whether what a person would have seen is that plane, so that places can be shown in it. Else
-    #: its `pictures` have a `plan`, if anything moves.
-    window_is_plane: ClassVar[bool] = False
     #: Whether its trace is that of scripted peers; else that is kept beside its own.
     has_cast: ClassVar[bool] = False
 

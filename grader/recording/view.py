@@ -155,7 +155,7 @@ class Solid:
         text: what there is to see, in words.
         frames, shapes: what it is made of.
         times_ns: when the frames are placed; () where no time passes.
-        ground_m: the height of the ground.
+        ground_m: the height of the ground; None: that of its lowest point.
         way: where it went on the ground, float64 (n, 2) [m].
         lost: the names of the frames that have no placing at the end.
         left_out: what belongs to it and is not drawn, in words.
@@ -166,7 +166,7 @@ class Solid:
     frames: tuple[SolidFrame, ...]
     shapes: tuple[Shape, ...]
     times_ns: tuple[int, ...] = ()
-    ground_m: float = 0.0
+    ground_m: float | None = 0.0
     way: Floats = field(default_factory=lambda: np.empty((0, 2)))
     lost: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
@@ -282,8 +282,7 @@ class Pictures:
     """The pictures of a recording by name.
 
     Attributes:
-        window: what a person would have seen at the end; None where there is nothing to see.
-        others: of these `plan` is the scene's plane, where the window shows something else.
+        window: the scene's plane at the end; None where there is nothing to see.
     """
 
     window: Pixels | None = None

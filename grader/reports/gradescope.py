@@ -93,6 +93,8 @@ def _overview(report: Report) -> str:
     if picture:
         alt = html.escape(tr("The window at the end"))
         parts.append(f'<p><img src="{picture}" width="500" alt="{alt}"></p>')
+    elif words := pictures.solid_words(report):
+        parts.append(f"<p>{html.escape(words)}</p>")
     output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
     if output:
         printed = html.escape(tr("What the node printed:"))

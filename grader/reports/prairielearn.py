@@ -40,10 +40,13 @@ def render_error(report: ErrorReport) -> str:
 def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> dict[str, Any]:
     nothing = {"name": report.not_shown_name, "points": 0, "max_points": 0}
     left_out = [{**nothing, "message": report.not_shown}] if report.not_shown else []
+    lines = [report.first_line, *report.advice, *report.notes]
+    if not images and (words := pictures.solid_words(report)):
+        lines.append(words)
     return {
         "gradable": True,
         "score": _share(report),
-        "message": text.clip("\n".join([report.first_line, *report.advice, *report.notes]), 1000),
+        "message": text.clip("\n".join(lines), 1000),
         "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,

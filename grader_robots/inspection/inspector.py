@@ -1,7 +1,7 @@
 """The inspection `robot_description`: the robots that a package describes, and how they look.
 
-`examine` is called in the process of the inspection, so that what only reports need (numpy, the
-pictures of robots) is imported where it is shown.
+`examine` is called in the process of the inspection, so that what only reports need (numpy) is
+imported where it is shown.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from grader_robots.inspection import files, meshes
 
 if TYPE_CHECKING:
     from grader.recording.subject import Trace
-    from grader.recording.view import Part, Pixels
+    from grader.recording.view import Part
 
 
 #: So many descriptions are looked at with other numbers.
@@ -54,12 +54,6 @@ class RobotInspector(Inspector):
             varied=tuple(varied),
             surfaces=tuple(robots.surfaces),
         )
-
-    def window(self, trace: PackageTrace) -> Pixels | None:
-        """Return a picture of the robot with all joints at 0, uint8 (500, 500, 3)."""
-        from grader_robots.scene import described
-
-        return described.window(trace)
 
     def words(self, trace: PackageTrace) -> Sequence[Message]:
         """Return what robot that is."""

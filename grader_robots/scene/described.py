@@ -1,4 +1,4 @@
-"""The robot of a package: what its launch file hands on, as a picture, a solid and a tree."""
+"""The robot of a package: what its launch file hands on, as a solid and a tree."""
 
 from __future__ import annotations
 
@@ -10,11 +10,9 @@ import numpy as np
 
 from grader.inspection.trace import Description, PackageTrace
 from grader.message import NOTHING, Message, joined, msg
-from grader.recording.view import Pixels, Placing, Solid, SolidFrame, Tree, TreeNode
+from grader.recording.view import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
 from grader_robots.scene import shapes
-from grader_robots.scene.shapes import MOST_NODES, descend, name_of, named, place_less, placing
-from robot_py.drawing import NOBODY, body, picture
-from robot_py.drawing.body import Floats
+from grader_robots.scene.shapes import MOST_NODES, descend, is_finite, name_of, named, placing
 from robot_py.kinematics import forward, joint_transform, tree
 from robot_py.model import Model
 from robot_py.urdf import parse
@@ -31,30 +29,23 @@ def model(trace: PackageTrace) -> Model | None:
     return None if found is None else _model(trace.texts[found.text])
 
 
-def window(trace: PackageTrace) -> Pixels:
-    """The robot with all joints at 0, uint8 (500, 500, 3)."""
-    robot = model(trace)
-    if robot is None:
-        return picture(NOBODY, labels=(str(_why_not(trace)),))
-    there = body(robot, forward(robot, {}), meshes(trace))
-    left_out = (msg("not drawn: {names}", names=named(there.left_out)),) if there.left_out else ()
-    labels = (*place_less(there.lost), *left_out)
-    return picture(there, height_m=there.lowest_m, labels=list(map(str, labels)))
-
-
 def solid(trace: PackageTrace) -> Solid | None:
-    """The same, to be turned; None where there is no robot."""
+    """The robot with all joints at 0; None where there is none."""
     robot = model(trace)
     if robot is None:
         return None
     placed = forward(robot, {})
-    there = body(robot, placed, meshes(trace))
+    lost = [
+        link
+        for link in robot.links
+        if link not in placed or not is_finite(placed[link].ravel().tolist())
+    ]
     joints = tree(robot).joints
-    links = (*placed, *there.lost)[:_MOST_LINKS]
+    links = [*(link for link in placed if link not in lost), *lost][:_MOST_LINKS]
     numbers = {link: number for number, link in enumerate(links)}
     frames = []
     for link in numbers:
-        if link in there.lost:
+        if link in lost:
             frames.append(SolidFrame(name_of(link), -1, (None,)))
         elif link == robot.root:
             frames.append(SolidFrame(name_of(link), -1, (Placing(),)))
@@ -64,14 +55,11 @@ def solid(trace: PackageTrace) -> Solid | None:
     found = _described(trace)
     by = name_of(found.by) if found is not None else ""
     notes = [msg("as {by} describes it, all joints at 0", by=by)]
-    if there.lost:
-        hanging = msg(
-            "white, at the origin, for they hang on nothing: {names}", names=named(there.lost)
+    if lost:
+        notes.append(
+            msg("white, at the origin, for they hang on nothing: {names}", names=named(lost))
         )
-        notes.append(hanging)
-    return shapes.solid(
-        robot, frames, numbers, there.lost, notes, meshes(trace), ground_m=there.lowest_m
-    )
+    return shapes.solid(robot, frames, numbers, lost, notes, meshes(trace), ground_m=None)
 
 
 def links(trace: PackageTrace) -> Tree | None:

@@ -153,9 +153,8 @@ class RobotScene(Scene):
         return ENDPOINTS
 
     def pictures(self, made: Trace) -> Pictures:
-        """The robot at the end, and its way from above."""
-        run = RobotTrace.of(made)
-        return Pictures(view.window(run), {"plan": view.plan(run)})
+        """Its way from above."""
+        return Pictures(view.plan(RobotTrace.of(made)))
 
     def view(self, made: Trace) -> View:
         """The robot, way, joints, heading, and tf."""

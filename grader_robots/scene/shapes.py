@@ -11,9 +11,8 @@ import numpy as np
 from grader import text
 from grader.message import Message, joined, msg, msg_many, plain_text
 from grader.recording.view import Floats, Placing, Shape, Solid, SolidFrame
-from robot_py.drawing.body import colour_of
 from robot_py.kinematics import matrix, quaternion, translation
-from robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere
+from robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual
 
 #: A page has no more shapes, and no more triangles of meshes.
 MOST_SHAPES, MOST_TRIANGLES = 400, 8000
@@ -21,6 +20,9 @@ MOST_SHAPES, MOST_TRIANGLES = 400, 8000
 MOST_NODES = 150
 LONGEST_NAME = 60
 _FARTHEST = 1e6
+#: Of a shape with a texture, which is not known; and of one without a material, as in RViz.
+_WHITE: Colour = (1.0, 1.0, 1.0, 1.0)
+_RED: Colour = (1.0, 0.0, 0.0, 1.0)
 
 
 def _shapes(
@@ -37,7 +39,7 @@ def _shapes(
     triangles = 0
     for link in model.links.values():
         for visual in link.visuals:
-            colour = colour_of(visual)
+            colour = _colour(visual)
             sizes = _sizes(visual.geometry, meshes)
             triangles += len(sizes) // 9
             pose = placing(matrix(visual.origin))
@@ -73,10 +75,11 @@ def solid(
     name = name_of(model.name)
     parts = [
         msg_many(
-            "The robot {name} with {n:,} link",
-            "The robot {name} with {n:,} links",
+            "The robot {name} with {n:,} link: {links}",
+            "The robot {name} with {n:,} links: {links}",
             len(model.links),
             name=name,
+            links=named(list(model.links)),
         ),
         *notes,
     ]
@@ -129,13 +132,6 @@ def named(names: Sequence[str], most: int = 6) -> Message:
     return msg("{names} and {count} more", names=few, count=len(names) - most)
 
 
-def place_less(names: Sequence[str]) -> tuple[Message, ...]:
-    """What a picture says of links that have no place; nothing where all have one."""
-    if not names:
-        return ()
-    return (msg("white, at the origin - no transform: {names}", names=named(names)),)
-
-
 def descend(
     start: str, children: Mapping[str, Sequence[str]], seen: set[str]
 ) -> Iterator[tuple[int, str]]:
@@ -164,6 +160,12 @@ def _sizes(shape: Geometry, meshes: Mapping[str, Floats]) -> tuple[float, ...]:
     if corners is None:
         return ()
     return tuple((corners * np.array(shape.scale)).ravel().tolist())
+
+
+def _colour(visual: Visual) -> Colour:
+    if visual.material is None:
+        return _RED
+    return _WHITE if visual.material.texture else visual.material.rgba
 
 
 def _hex(colour: Colour) -> str:

@@ -30,9 +30,8 @@ from grader_robots.scene import shapes
 from grader_robots.scene.decoding import Transform
 from grader_robots.scene.frames import Hung, below, hung, tree
 from grader_robots.scene.motion import ODOM, JointMotion, Odometry, fitted, joints, odometry
-from grader_robots.scene.shapes import is_finite, name_of, named, place_less, transform
+from grader_robots.scene.shapes import is_finite, name_of, named, transform
 from grader_robots.scene.trace import TICK_NS, RobotTrace
-from robot_py.drawing import NOBODY, body, picture
 from robot_py.model import Model
 
 #: Ten metres square, the origin of `odom` in the middle.
@@ -156,6 +155,8 @@ def _drawable(values: Floats) -> Floats:
 
 
 def _words(trace: RobotTrace, way: Odometry) -> Iterator[Message]:
+    if trace.robot is None:
+        yield msg("no robot description was recorded")
     there = way.places[np.isfinite(way.places).all(axis=1)]
     if not len(there):
         yield msg("nothing: no transform from odom to the robot's root was heard")
@@ -198,16 +199,6 @@ def solid(trace: RobotTrace) -> Solid | None:
     return shapes.solid(
         robot.model, frames, numbers, lost, notes, times_ns=times_ns, way=way(trace)
     )
-
-
-def window(trace: RobotTrace) -> Pixels:
-    """The robot as it stood at the end, with its way on the ground, uint8 (500, 500, 3)."""
-    if trace.robot is None:
-        return picture(NOBODY, labels=("no robot description was recorded",))
-    there = body(trace.robot.model, places(trace))
-    line = way(trace)
-    lost = list(map(str, place_less(there.lost)))
-    return picture(there, ways=(line,) if len(line) else (), labels=lost)
 
 
 def places(trace: RobotTrace) -> dict[str, Floats]:

@@ -1,6 +1,6 @@
 """A run on the class page: a small picture of its end, and the driven path.
 
-    thumb.json      {"picture": "data:image/png;base64,...", "path": [[x, y, ...]], "schema": ...}
+    thumb.json   {"picture": "data:image/png;base64,...", "words": "", "path": [[x, y, ...]], ...}
 
 Reading a recording takes a fraction of a second, and a class has hundreds: so it is made once,
 together with a student's folder. The same recording always gives the same bytes.
@@ -17,12 +17,13 @@ from typing import Annotated, Final, Literal, Self
 import numpy as np
 from PIL import Image
 
-from grader import strict_json
+from grader import strict_json, text
 from grader.recording.recording import Recording, Recordings
 from grader.recording.subject import load_subject
 from grader.recording.view import Floats
 from grader.reports.page.html import draw
 from grader.result import json_file
+from grader.translations import translate
 
 THUMB = "thumb.json"
 SCHEMA: Final = "turtlesim-grader/thumb/v1"
@@ -36,6 +37,7 @@ _TOLERANCES = (1.0, 1.5, 2.0, 3.0, 6.0, 12.0, 25.0, 50.0)
 _MOST_POINTS, _MOST_PIECES = 300, 20
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _PREFIX = "data:image/png;base64,"
+_MOST_WORDS = 120
 #: The largest valid file [bytes].
 _LIMIT_BYTES = 40_000
 
@@ -43,6 +45,8 @@ Piece = tuple[int, ...]
 
 
 def _is_png(value: str) -> str:
+    if not value:
+        return value
     if not value.startswith(_PREFIX):
         raise ValueError("expected the address of a PNG")
     data = base64.b64decode(value.removeprefix(_PREFIX), validate=True)
@@ -62,18 +66,21 @@ class Thumb:
     """The content of thumb.json.
 
     Attributes:
-        picture: as data URI.
+        picture: as data URI; '' for none.
+        words: what there is to see, where there is no picture.
         path: the driven path, in pieces: x0, y0, x1, y1, ... [`UNITS`, y down].
     """
 
     picture: Annotated[str, _is_png]
+    words: str
     path: tuple[Annotated[Piece, _is_piece], ...]
     schema: Literal["turtlesim-grader/thumb/v1"] = SCHEMA
 
     @classmethod
     def read(cls, folder: Path) -> Self | None:
-        """Read that of a hand-in's folder; None where there is no valid one."""
-        return json_file.kept(cls, folder / THUMB, _LIMIT_BYTES)
+        """Read that of a hand-in's folder; None where there is no valid one, or nothing to see."""
+        kept = json_file.kept(cls, folder / THUMB, _LIMIT_BYTES)
+        return kept if kept is not None and (kept.picture or kept.words) else None
 
     def svg(self) -> str:
         """Return the path as the `d` of an SVG path, with relative steps."""
@@ -87,13 +94,15 @@ class Thumb:
 
 def thumb(recordings: Recordings) -> bytes:
     """Return the file's content, of the nominal run."""
-    return strict_json.line(Thumb(_picture(recordings.nominal), _path(recordings.nominal)))
+    run = recordings.nominal
+    picture, solid = _picture(run), draw(run).turnable
+    words = text.clip(translate(solid.solid.text), _MOST_WORDS) if solid and not picture else ""
+    return strict_json.line(Thumb(picture, words, _path(run)))
 
 
 def _picture(recording: Recording) -> str:
     """Return the last picture with as many colours as fit; '' where there is none."""
-    made = recording.pictures
-    pixels = made.others.get("plan", made.window)  # the path is drawn over it
+    pixels = recording.pictures.window  # the path is drawn over it
     if pixels is None:
         return ""
     whole = Image.fromarray(pixels).convert("RGB")

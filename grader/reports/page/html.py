@@ -26,7 +26,7 @@ from grader.exercise.verdict import Evidence
 from grader.message import msg
 from grader.recording.recording import Recording
 from grader.recording.subject import Subject, load_subject
-from grader.recording.view import Floats, Solid, Table, Tree
+from grader.recording.view import Floats, Plane, Solid, Table, Tree
 from grader.reports import Format, readable, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import templating
@@ -43,6 +43,8 @@ _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
 #: Printed on paper: at most this many last lines and characters of a node's output.
 _PAPER_LINES, _PAPER_LIMIT = 25, 4000
+#: A plane has marks at its metres where one is no shorter.
+_LEAST_METRE_PX = 10.0
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Drawing:
 
     Attributes:
         animation, plots: None without a recording.
-        turnable: the final window as a solid to turn, where the scene has one.
+        turnable: a solid to turn, where the scene has one.
         trees, tables: the other parts of the view.
     """
 
@@ -71,8 +73,6 @@ class RunView(Drawing):
         title: its name, with the start of a varied run.
         facts: its summary in the result file.
         picture: the scene's plane at the end as data URI, or ''.
-        still: the window at the end, where that is not the plane, as data URI, or ''.
-        still_words: the same in words.
         expected: what checks expect of curves, by their titles.
         pins: the evidence in the plane.
         output: of the node.
@@ -83,8 +83,6 @@ class RunView(Drawing):
     title: str
     facts: RunSummary
     picture: str
-    still: str
-    still_words: str
     expected: Mapping[str, Drawn]
     pins: tuple[Pin, ...]
     output: str
@@ -103,9 +101,7 @@ class RunView(Drawing):
     @property
     def can_be_seen(self) -> bool:
         """Whether there is a plane, or curves whose time can be chosen below it."""
-        if self.still and not self.plots:
-            return bool(self.animation and self.animation.tracks)
-        return self.has_plane or bool(self.plots and self.plots.curves and not self.still)
+        return self.has_plane or bool(self.plots and self.plots.curves and not self.turnable)
 
 
 def render(report: Report) -> str:
@@ -123,7 +119,7 @@ def render(report: Report) -> str:
             runs=runs,
             animations={r.number: _script_data(r.animation) for r in runs if r.animation},
             pinned={pin.point.number for run in runs if run.can_be_seen for pin in run.pins},
-            has_parts=any(run.still or run.trees or run.tables for run in runs),
+            has_parts=any(run.turnable or run.trees or run.tables for run in runs),
             has_solids=any(run.turnable for run in runs),
             has_no_scene=not isinstance(report.subject, Scene),
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
@@ -134,7 +130,7 @@ def render(report: Report) -> str:
             box={
                 **{"width": WIDTH, "height": HEIGHT},
                 **{"size": plane.size_px, "meter": plane.metre_px, "origin": plane.origin_m},
-                "metres": range(math.floor(plane.origin_m) + 1, math.ceil(plane.end_m)),
+                "metres": _metres(plane),
             },
             to_px=plane.to_px,
             thing=translate(report.subject.thing),
@@ -143,6 +139,13 @@ def render(report: Report) -> str:
             radius=RADIUS_PX,
         )
     )
+
+
+def _metres(plane: Plane) -> range:
+    """Return the metres that have a mark; none of a plane in which they could not be told apart."""
+    if plane.metre_px < _LEAST_METRE_PX:
+        return range(0)
+    return range(math.floor(plane.origin_m) + 1, math.ceil(plane.end_m))
 
 
 def _first_fault(report: Report) -> Diagnosis | Evidence | None:
@@ -244,29 +247,18 @@ def draw(recording: Recording) -> Drawing:
 def _view(report: Report, number: int, on_paper: bool) -> RunView:
     recording = report.recordings.get(number)
     drawing = Drawing() if recording is None else draw(recording)
-    window = recorded_uri(report, number, "window") if number else canvas_uri(report)
-    is_apart = not report.subject.window_is_plane
     output = report.output if number == 0 else text.plain(recording.output if recording else "")
     return RunView(
         **vars(drawing),
         number=number,
         title=_title(report, number),
         facts=report.varied_runs[number - 1] if number else report.run,
-        picture=recorded_uri(report, number, "plan") if is_apart else window,
-        still=window if is_apart else "",
-        still_words=_still_words(drawing),
+        picture=recorded_uri(report, number) if number else canvas_uri(report),
         expected=expected(report, drawing.plots) if number == 0 else {},
         pins=pins(report, number),
         output=text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
         on_paper=on_paper,
     )
-
-
-def _still_words(drawing: Drawing) -> str:
-    if drawing.turnable is not None:
-        return translate(drawing.turnable.solid.text)
-    drawn_parts = drawing.animation.drawn if drawing.animation is not None else ()
-    return "; ".join(drawn_parts) or tr("The window at the end")
 
 
 def _title(report: Report, number: int) -> str:

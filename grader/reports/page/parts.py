@@ -120,7 +120,7 @@ def turnable(solid: Solid) -> Turnable:
             [frame.parent, [_placing(each) for each in frame.placings]] for frame in solid.frames
         ],
         "shapes": [_shape(each) for each in solid.shapes],
-        "ground": round(solid.ground_m, _PLACE),
+        "ground": None if solid.ground_m is None else round(solid.ground_m, _PLACE),
         "way": solid.way.round(3).tolist(),
     }
     return Turnable(solid, data)

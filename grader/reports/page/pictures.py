@@ -10,51 +10,47 @@ import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 from PIL import Image, UnidentifiedImageError
 
+from grader.recording.subject import load_subject
+from grader.recording.view import Solid
 from grader.reports.report import Point, Report
+from grader.translations import translate
 
 #: A larger picture is reduced to 256 colours. Only noise is larger: a spiral has some 20 kB.
 _LIMIT_BYTES = 150_000
-#: Of a picture that is shown only without script and on paper.
-_STILL_LIMIT_BYTES = 30_000
 
 
 def canvas_uri(report: Report) -> str:
     """Return the final window of the nominal run; '' where there is no picture."""
-    limit = _limit(report)
     path = report.beside.canvas_file
     if path is not None:
         try:
             with Image.open(path, formats=["PNG"]) as image:
                 if max(image.size) <= report.subject.plane.size_px:
                     # encoded again, without anything else in the file
-                    return _uri(_png(image.convert("RGB")), limit)
+                    return _uri(_png(image.convert("RGB")))
         except (OSError, UnidentifiedImageError):
             pass  # a damaged picture; the recording may have a good one
-    return recorded_uri(report, 0, "window")
+    return recorded_uri(report, 0)
 
 
-def recorded_uri(report: Report, run: int, name: Literal["window", "plan"]) -> str:
-    """Return the final window of a run, or the scene's plane where that is not the window.
-
-    It comes from the recording; '' without one, or where there is no such picture.
-    """
+def recorded_uri(report: Report, run: int) -> str:
+    """Return the final window of a run's recording; '' without one, or without a picture."""
     recording = report.recordings.get(run)
-    if recording is None or name not in recording.png:
-        return ""
-    limit = _limit(report) if name == "window" else _LIMIT_BYTES
-    return _uri(recording.png[name], limit)
+    return _uri(recording.canvas) if recording is not None and recording.canvas else ""
 
 
-def _limit(report: Report) -> int:
-    return _LIMIT_BYTES if report.subject.window_is_plane else _STILL_LIMIT_BYTES
+def solid_words(report: Report) -> str:
+    """Return in words what only a page can draw, of the nominal run; '' where there is nothing."""
+    recording = report.recordings.get(0)
+    parts = load_subject(recording.scene).view(recording.trace).parts if recording else ()
+    return next((translate(part.text) for part in parts if isinstance(part, Solid)), "")
 
 
-def _uri(data: bytes, limit: int) -> str:
-    if len(data) > limit:
+def _uri(data: bytes) -> str:
+    if len(data) > _LIMIT_BYTES:
         with Image.open(io.BytesIO(data)) as image:
             data = _png(image.quantize(256), optimize=True)
     return f"data:image/png;base64,{base64.b64encode(data).decode()}"

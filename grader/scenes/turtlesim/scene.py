@@ -46,7 +46,6 @@ class Turtlesim(Scene):
     thing = msg("turtle")
     outcomes: ClassVar = {"finished": msg("the turtle came to rest")}
     plane = view.PLANE
-    window_is_plane = True
     the_thing = msg("the turtle")
     #: from the centre to half a metre before a wall; rounded, for authors of exercises
     farthest_start_m = round(SIZE_M / 2 - 0.5, 2)

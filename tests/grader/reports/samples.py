@@ -120,7 +120,8 @@ def graded(
 ) -> Path:
     """A result file with a recording, a picture and an output beside it, as `grader run` leaves."""
     saving.save_all(Recordings(recording, tuple(varied)), folder / "recording")
-    (folder / "canvas.png").write_bytes(recording.png["window"])
+    if recording.canvas:
+        (folder / "canvas.png").write_bytes(recording.canvas)
     (folder / "output.txt").write_bytes(output.encode())
     artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
     if varied:

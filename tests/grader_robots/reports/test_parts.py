@@ -7,6 +7,7 @@ import re
 
 import pytest
 
+from grader.batch.page.thumb import THUMB, Thumb, thumb
 from grader.inspection.trace import (
     Description,
     LaunchedNode,
@@ -15,8 +16,9 @@ from grader.inspection.trace import (
     Parameter,
 )
 from grader.message import plain_text
-from grader.recording.recording import Recording, Run
+from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.view import Tree, TreeNode
+from grader.reports import gradescope
 from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.reports.page.parts import DEEPEST, WIDTH, drawn
@@ -94,9 +96,21 @@ def test_what_moves_has_a_player_at_the_solid_and_a_plane_with_its_pins(robot):
     assert 'id="pin1"' in robot
 
 
-def test_a_picture_says_in_words_what_it_shows(robot, package):
-    assert 'alt="The robot two with 2 links; at (' in robot
+def test_a_solid_says_in_words_what_it_shows(robot, package):
+    words = "The robot two with 2 links: axis, body; at ("
+    assert f'<p class="still">{words}' in robot and f'aria-label="{words}' in robot
     assert "as &lt;/script&gt;&lt;img src=x onerror=alert(1)&gt; describes it" in package
+
+
+def test_where_a_robot_cannot_be_drawn_it_is_told(tmp_path):
+    run = Run(ticks=0, simulated_s=0, trace_sha256=package_trace().sha256())
+    recording = Recording(package_trace(), run, scene="package")
+    words = "The robot arm with 1 link: base; as &lt;/script&gt;"
+    assert words in gradescope.render(read_report(samples.graded(tmp_path, recording)))
+    (tmp_path / THUMB).write_bytes(thumb(Recordings(recording)))
+    read = Thumb.read(tmp_path)
+    assert read is not None and read.picture == ""
+    assert read.words.startswith("The robot arm with 1 link: base; as ")
 
 
 def test_frames_are_a_drawing_with_words(robot):

@@ -39,7 +39,6 @@ def test_a_mesh_that_was_read_is_drawn_and_any_other_named():
     assert solid.left_out == () and "not drawn" not in str(solid.text)
     without = described.solid(trace())
     assert (without.left_out, len(without.shapes)) == ((URI,), 1)
-    assert described.window(with_mesh).tobytes() != described.window(trace()).tobytes()
 
 
 @pytest.mark.parametrize(
@@ -64,19 +63,17 @@ def test_the_tree_has_a_link_for_each_joint():
     ]
 
 
-def test_the_ground_is_where_the_robot_stands():
-    assert described.solid(trace()).ground_m == -0.5
-
-
 @pytest.mark.parametrize(
     "text",
-    ["", "no XML", "<robot name='a'/>", "<robot name='a'>" + "<link name='b'/>" * 3, " " * 600_000],
+    [
+        *("", "no XML", "<robot name='a'/>", "<!DOCTYPE a><robot/>", " " * 600_000),
+        "<robot name='a'>" + "<link name='b'/>" * 3,
+    ],
 )
-def test_what_is_no_robot_gives_a_picture_that_says_so(text):
+def test_what_is_no_robot_is_told(text):
     odd = trace(text)
     assert described.solid(odd) is None and described.links(odd) is None
     assert str(described.words(odd)) == "the robot description cannot be drawn"
-    assert PACKAGE.pictures(odd).window.shape == (500, 500, 3)
 
 
 def test_links_that_go_round_in_a_circle_are_not_followed():
@@ -104,9 +101,3 @@ def test_very_many_links_are_shown_as_far_as_there_is_room():
 def test_nothing_that_was_found_is_a_page_of_nothing():
     view = PACKAGE.view(PackageTrace())
     assert view.parts == () and tuple(map(str, view.drawn)) == ("no robot description was found",)
-
-
-def test_a_package_is_drawn_whatever_its_description_is():
-    for text in ("", "<robot", "<robot><link name='a'/><link/></robot>", "<!DOCTYPE a><robot/>"):
-        assert PACKAGE.pictures(trace(text)).window.shape == (500, 500, 3)
-    assert PACKAGE.pictures(PackageTrace()).window.shape == (500, 500, 3)

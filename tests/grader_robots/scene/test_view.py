@@ -55,6 +55,7 @@ def test_a_solid_has_a_placing_for_each_sample_of_what_moves(walk):
         ("sphere", "#ff0000", 1),
     ]
     assert made.lost == ()
+    assert str(made.text).startswith("The robot two with 2 links: axis, body; at (")
     assert "about a circle of 1.00 m" in str(made.text)
 
 
@@ -85,19 +86,18 @@ def test_a_quaternion_that_turns_nothing_gives_no_picture_that_fails(turned):
 
     trace = drive(odd, 20, URDF)
     assert "axis" in shown(trace).lost
-    assert view.window(trace).shape == (500, 500, 3)
     assert view.plan(trace).shape == (500, 500, 3)
 
 
 def test_the_picture_is_the_same_each_time(walk):
-    assert view.window(walk).tobytes() == view.window(walk).tobytes()
+    assert view.plan(walk).tobytes() == view.plan(walk).tobytes()
 
 
-def test_a_recording_of_nothing_still_has_its_pictures():
-    pictures = SCENE.pictures(RobotTrace(0))
-    assert pictures.window.shape == pictures.others["plan"].shape
+def test_a_recording_of_nothing_still_has_its_picture():
+    assert SCENE.pictures(RobotTrace(0)).window.shape == (500, 500, 3)
     made = SCENE.view(RobotTrace(0))
     assert (made.parts, made.tracks, made.curves) == ((), (), ())
+    assert str(made.drawn[0]) == "no robot description was recorded"
 
 
 def test_a_way_far_out_and_a_great_circle_do_no_harm():
@@ -108,7 +108,7 @@ def test_a_way_far_out_and_a_great_circle_do_no_harm():
 
     trace = drive(far, 100, URDF)
     assert np.isfinite(view.way(trace)).all()
-    assert view.window(trace).shape == view.plan(trace).shape
+    assert view.plan(trace).shape == (500, 500, 3)
 
 
 def test_the_curve_of_the_way_is_measured_from_its_circle(walk):

@@ -1,6 +1,6 @@
 "use strict";
-// Draws a page's solids, so that they can be turned: a z-buffer as in robot_py/drawing, from the
-// triangles of boxes, cylinders and balls. Without it the page has a still picture.
+// Draws a page's solids, so that they can be turned: a z-buffer of the triangles of boxes, cylinders
+// and balls. Without it the page has words.
 (() => {
   const AROUND = 28, FARTHEST = 1e6;
   const LIGHT = [0.35, 0.1, 0.93], HALF_WIDTH = 0.32, FILLED = 0.86;
@@ -104,6 +104,9 @@
       this.player = figure.querySelector(".player input");
       this.sample = Math.max(this.data.t.length - 1, 0);
       this.waits = false;
+      this.place();
+      // without a ground it stands on its lowest point
+      this.data.ground ??= this.world.reduce((z, { p }) => Math.min(z, p[2], p[8], p[14]), this.world.length ? Infinity : 0);
       this.frame();
       this.back();
       figure.querySelector(".turning").hidden = false;

@@ -77,11 +77,11 @@ def test_a_way_of_no_end_has_few_corners(spiral, tmp_path):
 
 def test_an_svg_path_says_the_same_in_steps():
     path = ((0, 0, 10, 5, 7, 9), (1000, 1000, 999, 1000))
-    assert Thumb("", path).svg() == "M0 0l10 5-3 4M1000 1000l-1 0"
+    assert Thumb("", "", path).svg() == "M0 0l10 5-3 4M1000 1000l-1 0"
 
 
 PNG = "data:image/png;base64,iVBORw0KGgo="
-GOOD = {"schema": SCHEMA, "picture": PNG, "path": [[0, 0, 1, 1]]}
+GOOD = {"schema": SCHEMA, "picture": PNG, "words": "", "path": [[0, 0, 1, 1]]}
 
 
 @pytest.mark.parametrize(
