@@ -38,7 +38,7 @@ help:
 	@echo "make lint      ruff and mypy"
 	@echo "make docs      the site, in build/site/html: pages, exercises, API, gallery; its links checked"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
-	@echo "make bench     what the simulator, a grading and a class cost: tables, in twenty minutes"
+	@echo "make bench     what the simulator, a grading and a class cost: in build/bench.json, ten minutes"
 	@echo "make release   all that a release consists of, in dist/, installed by name and tried where there is no gcc"
 	@echo "make clean     remove everything that was made here"
 	@echo "PYTHON=python3.12 make install   with that Python (3.11, 3.12 or 3.13)"
@@ -106,11 +106,11 @@ demo: install
 	@$(BIN)/grader run "$$($(BIN)/python -P -c 'import turtlesim_challenge as c; print(c.__path__[0])')/turtle_controller.py" --out demo
 	@echo "== the picture is demo/canvas.png, the result demo/result.json"
 
+# two of them are compared by: .venv/bin/python -m pyperf compare_to OLD.json build/bench.json
 bench: install
-	@$(BIN)/python benchmarks/node.py
-	@$(BIN)/python benchmarks/grading.py
-	@$(BIN)/python benchmarks/class.py --count 20 80 --jobs 2
-	@$(BIN)/python benchmarks/large_course.py --count 200
+	@scripts/install.sh bench
+	@mkdir -p build && rm -f build/bench.json
+	@for each in node grading class; do $(BIN)/python benchmarks/$$each.py --append build/bench.json $(ARGS); done
 
 # ROS and PYTHON: only for these
 release: export ROS := $(GIVEN_ROS)

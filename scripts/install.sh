@@ -5,6 +5,7 @@
 #   scripts/install.sh         the project and what it needs
 #   scripts/install.sh test    ... and what its tests, ruff and mypy need
 #   scripts/install.sh docs    ... and what makes the site
+#   scripts/install.sh bench   ... and what runs the benchmarks
 #
 #   VENV     another folder than .venv
 #   BOUNDS   lowest: our dependencies at their lower bounds

@@ -3,6 +3,7 @@
     requirements.py           for building and running it
     requirements.py test      ... and also for `make test` and `make lint`
     requirements.py docs      ... and also for `make docs`
+    requirements.py bench     ... and also for `make bench`
     requirements.py release   for scripts/release.sh alone
 
 BOUNDS=lowest asks for our dependencies at their lower bounds.
@@ -46,7 +47,7 @@ def main() -> list[str]:
         return list(groups["release"])
     build, dependencies = ours["build-system"]["requires"], ours["project"]["dependencies"]
     lists = {"test": [*ours["project"]["optional-dependencies"]["robots"], *groups["test"]]}
-    lists["docs"] = groups["docs"]
+    lists |= {name: groups[name] for name in ("docs", "bench")}
     tools = [each for word in sys.argv[1:] for each in lists[word]]
     # where ROS is sourced, it is all there
     is_sourced = bool(os.environ.get("ROS_DISTRO"))

@@ -11,8 +11,10 @@ import pytest
 ROOT = Path(__file__).parents[2]
 #: One prints when it is imported, one needs what `make mutate` installs.
 LEFT_OUT = {"requirements", "mutate"}
+#: pyperf comes with `make bench`.
 IMPORT = """
-import importlib, sys
+import importlib, sys, types
+sys.modules["pyperf"] = types.ModuleType("pyperf")
 sys.path.insert(0, sys.argv[1])
 for name in sys.argv[2:]:
     importlib.import_module(name)
