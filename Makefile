@@ -19,7 +19,7 @@ endif
 # are in tests/grader/cli and tests/packaging/test_rosdep.py
 NOT_AT_LOWEST := tests/docs/test_trust.py tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py \
-	tests/packaging/test_licences.py tests/packaging/test_release_workflow.py
+	tests/packaging/test_release_workflow.py
 
 .PHONY: help install tools needs test test-more test-all test-lowest test-kilted mutate size catalogues lint docs demo bench release clean
 .DEFAULT_GOAL := help

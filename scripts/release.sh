@@ -5,6 +5,8 @@
 #                     and for each ROS release and each Python from 3.11 to 3.13 that is here a wheel
 #                     of what the project needs of it
 #   dist/*.cdx.json   all that `pip install` brings with it, by CycloneDX
+#   dist/licences-*.md   ... and its licences; of ROS's own, which say nothing in their metadata,
+#                     share/PACKAGE/package.xml does
 #   dist/SHA256SUMS
 #
 #   PYTHON   only for that Python
@@ -186,13 +188,16 @@ for python in "${pythons[@]}"; do
         quietly "$python" -m venv --without-pip "$empty"
         install "$empty" "turtlesim_py[$ros]==$version"
         try "$empty"
-        quietly "$first" scripts/licences.py --check "$empty"
         bom=$dist/turtlesim_py-$version-$ros.cdx.json
         if [ ! -e "$bom" ]; then
             quietly "$tools/bin/cyclonedx-py" environment --of JSON --output-reproducible \
                 --pyproject pyproject.toml -o "$bom" "$empty/bin/python"
-            quietly "$first" scripts/licences.py --complete "$bom" "$empty"
             quietly "$tools/bin/python" -c "$VALIDATE" "$bom"
+            # a licence's whole text in place of its name has further lines
+            "$tools/bin/pip-licenses" --python "$empty/bin/python" --format markdown \
+                --order license --partial-match --fail-on 'GPL;GNU;MPL-;Mozilla' 2>>"$log" |
+                grep -v '^|  ' >"$dist/licences-$ros.md" ||
+                fail "something that is installed has a licence that asks for more than ours: see $log"
         fi
         # What is left without the project stands for a sourced ROS, which pip knows nothing of
         quietly "$builder/bin/pip" --python "$empty/bin/python" uninstall --yes turtlesim_py
@@ -215,5 +220,5 @@ for python in "${pythons[@]}"; do
         unset ROS_DISTRO AMENT_PREFIX_PATH
     done
 done
-(cd "$dist" && sha256sum pypi/* ./*.cdx.json >SHA256SUMS)
+(cd "$dist" && sha256sum pypi/* ./*.cdx.json ./licences-*.md >SHA256SUMS)
 echo "== dist/ has a release $version: wheels for ${#pythons[@]} of 3 Pythons, ${#releases[@]} ROS releases"

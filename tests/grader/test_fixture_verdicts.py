@@ -24,7 +24,7 @@ RIGHT = others_are_more(
     *("reference", "quick_spiral"),
 )
 #: Controllers as first-year students write them, each in another style; they are mutated, too, by
-#: scripts/search_wrong_verdicts.py --only mistakes.
+#: tests/searches.
 OF_STUDENTS = others_are_more(
     "four gradings each, which differ in nothing but the style of the source",
     [

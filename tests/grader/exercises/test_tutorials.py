@@ -115,7 +115,6 @@ def test_each_style_keeps_every_point_three_times_with_one_hash(name, style):
 @pytest.mark.more
 @pytest.mark.parametrize("name", ["talker_listener", "catch_them_all", "follow_me"])
 def test_ten_gradings_of_several_programs_are_one(name):
-    """`scripts/repeat.py` makes a hundred, on a busy machine."""
     results = [grader.grade(reference(name), name) for _ in range(10)]
     assert len({tuple(r.trace_sha256 for r in (x.run, *x.varied_runs)) for x in results}) == 1
 
