@@ -11,7 +11,7 @@ import re
 import reprlib
 import string
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Union
 
 Value = Union[str, int, float, "Message"]
@@ -99,6 +99,10 @@ class Message:
         """Return the message with values for some of its names."""
         made = {name: _value(value) for name, value in values.items()}
         return Message(self.key, {**self.values, **made}, self.many, self.words)
+
+    def translated(self, language: str, text: str | None) -> Message:
+        """Return the message with what its author says in a language; as it is without."""
+        return replace(self, words={**self.words, language: text}) if text else self
 
     def map_texts(self, change: Callable[[str], str]) -> Message:
         """Return the message with each text among its values, and theirs, changed."""
@@ -190,13 +194,9 @@ def as_message(text: str | Message) -> Message:
     return text if isinstance(text, Message) else plain_text(text)
 
 
-def authored(text: str, words: Mapping[str, str] | None = None) -> Message:
-    """Make a message of an author's text, with its translations, if there are some.
-
-    Args:
-        words: language -> text. In a language that is left out, a catalogue may know the text.
-    """
-    return Message(text.replace("{", "{{").replace("}", "}}"), words=dict(words or {}))
+def authored(text: str) -> Message:
+    """Make a message of an author's text, which a catalogue may know."""
+    return Message(text.replace("{", "{{").replace("}", "}}"))
 
 
 def joined(parts: Iterable[str | Message], between: str | Message = "") -> Message:

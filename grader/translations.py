@@ -1,7 +1,7 @@
 """Messages rendered in a language: its sentences are in `languages/CODE.json`, by their keys.
 
-A catalogue may have holes: a missing sentence is shown in English. A sentence about a number has a
-list of forms there. docs/languages.md explains how sentences are collected and translated.
+A sentence that is not in a catalogue is shown in English. One about a number has a list of forms
+there. `scripts/catalogues.py` collects the sentences, and says how they are translated.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def catalogue(language: str) -> Mapping[str, str | list[str]]:
 
 
 def _translated(message: Message, language: str) -> str:
-    """Return the catalogue's sentence with names for its values; '' for a hole."""
+    """Return the catalogue's sentence with names for its values; '' where it lacks it."""
     found = catalogue(language).get(message.key, "")
     if isinstance(found, str):
         return found

@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Find the sentences in the code, and update the catalogues of all languages.
+"""Keep the catalogues of translations: a sentence that is not in one is shown in English.
 
-    make catalogues               after a sentence was written
-    scripts/catalogues.py holes   list the sentences without a translation
+    make catalogues               drops the translations of sentences that are no longer in the code
+    scripts/catalogues.py holes   prints the sentences without a translation, as lines to fill in
 
 Translators edit `grader/languages/*.json`; the sentences of the simulator's page are in
-`turtlesim_py/live/page/*.json`, those of a cast's in `grader/cast/page/live/*.json`.
+`turtlesim_py/live/page/*.json`, those of a cast's in `grader/cast/page/live/*.json`. A translation
+has the values of its sentence in any order, with the same formats; a sentence about a number has a
+list of forms: for one, for more. French says "vous", and has a no-break space before `: ; ! ?`;
+Chinese has its own punctuation, and a space around Latin words. Exercises have their translations
+beside them, in `exercise.fr.yaml`.
 """
 
 from __future__ import annotations
@@ -20,11 +24,8 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-LANGUAGES = ("fr", "zh")
 #: The live page of a cast.
 HOPS = ROOT / "grader" / "cast" / "page" / "live"
-#: The number of plural forms.
-FORMS = {"fr": 2, "zh": 1}
 #: The functions whose argument is a sentence, or a pair of singular and plural.
 ONE = ("msg", "tr", "Rejected", "_misfit", "Mistake", "expect")
 PAIR, IN_CONTEXT = ("msg_many", "tr_many"), "in_context"
@@ -134,37 +135,28 @@ CATALOGUES: dict[Path, Callable[[], Iterable[Sentence]]] = {
 }
 
 
-def read(folder: Path, language: str) -> dict[str, Any]:
-    """Read a catalogue."""
-    found: dict[str, Any] = json.loads((folder / f"{language}.json").read_text(encoding="utf-8"))
-    return found
+def update(there: dict[str, Any], sentences: Iterable[Sentence]) -> tuple[dict[str, Any], ...]:
+    """Return the translations of sentences that are still there, and those that are missing.
 
-
-def updated(folder: Path, language: str) -> dict[str, Any]:
-    """Return a catalogue with exactly the current sentences; "" is a missing translation."""
-    old, new = read(folder, language), dict[str, Any]()
-    for sentence in CATALOGUES[folder]():
-        if not sentence:
-            continue
+    Args:
+        there: the catalogue as it is.
+    """
+    kept, missing = {}, {}
+    for sentence in sentences:
         key = sentence if isinstance(sentence, str) else sentence[0]
-        hole = "" if isinstance(sentence, str) else [""] * FORMS[language]
-        known = old.get(key)
-        if key not in new or isinstance(hole, list):
-            new[key] = known if isinstance(known, type(hole)) else hole
-    return dict(sorted(new.items()))
-
-
-def holes(folder: Path, language: str) -> list[str]:
-    """Return the sentences that have no translation."""
-    found = updated(folder, language).items()
-    return [key for key, to in found if not (to if isinstance(to, str) else all(to))]
+        said = there.get(key)
+        if said and all(said):
+            kept[key] = said
+        elif key:
+            missing[key] = "" if isinstance(sentence, str) else ["", ""]
+    return kept, missing
 
 
 def text(catalogue: dict[str, Any]) -> str:
     """Return the text of a catalogue's file: a line for each sentence."""
     lines = (
-        f" {json.dumps(key, ensure_ascii=False)}: {json.dumps(to, ensure_ascii=False)}"
-        for key, to in catalogue.items()
+        f" {json.dumps(key, ensure_ascii=False)}: {json.dumps(said, ensure_ascii=False)}"
+        for key, said in sorted(catalogue.items())
     )
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
@@ -207,17 +199,16 @@ def _literal(inside: str) -> str:
 
 
 def main() -> int:
-    """Update the catalogues, or list what is not translated."""
-    for folder in CATALOGUES:
-        for language in LANGUAGES:
-            missing = holes(folder, language)
+    """Update the catalogues, or print what they lack."""
+    for folder, sentences in CATALOGUES.items():
+        found = list(sentences())
+        for file in sorted(folder.glob("??.json")):
+            kept, missing = update(json.loads(file.read_text(encoding="utf-8")), found)
+            print(f"{file.relative_to(ROOT)}: {len(missing)} sentences are not translated")
             if sys.argv[1:] == ["holes"]:
-                print(*(f"{language}: {sentence}" for sentence in missing), sep="\n")
-                continue
-            made = updated(folder, language)
-            (folder / f"{language}.json").write_text(text(made), encoding="utf-8")
-            name = (folder / f"{language}.json").relative_to(ROOT)
-            print(f"{name}: {len(made)} sentences, {len(missing)} of them not translated")
+                print(text(missing))
+            else:
+                file.write_text(text(kept), encoding="utf-8")
     return 0
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -46,52 +45,6 @@ def obstacles(page: Any) -> list[str]:
         page.evaluate(Axe().axe_script)
     found = page.evaluate("(rules) => axe.run(rules).then(({ violations }) => violations)", RULES)
     return [f"{each['id']}: {node['html'][:120]}" for each in found for node in each["nodes"]]
-
-
-#: A person sees these texts; what has its own place to be looked up in (code, names) is left out.
-_TEXTS = """
-(left_out) => {
-  const same = ["code, kbd, pre, textarea, script, style, noscript, [translate=no]", left_out]
-    .filter(Boolean).join();
-  const isSeen = (element) => element.checkVisibility() && !element.closest(same);
-  const walker = document.createTreeWalker(document.documentElement, NodeFilter.SHOW_TEXT);
-  const texts = [];
-  while (walker.nextNode()) {
-    if (isSeen(walker.currentNode.parentElement)) texts.push(walker.currentNode.data);
-  }
-  for (const name of ["aria-label", "aria-valuetext", "placeholder", "title"]) {
-    for (const element of document.querySelectorAll(`[${name}]`)) {
-      if (isSeen(element)) texts.push(element.getAttribute(name));
-    }
-  }
-  return texts.filter((text) => text.trim());
-}
-"""
-#: Names of ROS and of code, units, keys, and what programs have logged: the same in all languages.
-_SAME = re.compile(
-    r"[\w/.]*[_/0-9][\w/.]*|\b(rad|px|Tab|JSON|Page (Up|Down)|Home|End|II|III|IV)\b"
-    r"|\b(spawn|kill|clear|reset)\b|INFO: .*",
-    re.DOTALL,
-)
-_ENGLISH = {
-    "zh": re.compile(r"[A-Za-z]{2}"),
-    "fr": re.compile(
-        r"\b(the|and|with|to|is|are|this|that|which|what|where|nothing|none|turtle|speed|turning|"
-        r"lifted|ahead|top|bottom|left|right|show|names|times|earlier|later|other|of)\b",
-        re.IGNORECASE,
-    ),
-}
-
-
-def english(page: Any, language: str, left_out: str = "") -> list[str]:
-    """The texts of a page, seen or read out, that are still English.
-
-    Args:
-        left_out: a selector of what others say.
-    """
-    texts = page.evaluate(_TEXTS, left_out)
-    assert texts
-    return [text for text in texts if _ENGLISH[language].search(_SAME.sub("", text))]
 
 
 _CUT_OFF = """

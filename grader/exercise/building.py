@@ -17,7 +17,7 @@ from typing import Any
 
 from grader import content, extensions
 from grader.errors import ExerciseError
-from grader.exercise import places, policies, translated
+from grader.exercise import places, policies
 from grader.exercise.cases import RunCase, read_cases
 from grader.exercise.check import Checks
 from grader.exercise.exercise import (
@@ -45,7 +45,7 @@ MOST_RUNS = 100
 #: Says which hand-ins that name no exercise are for this one.
 FITS = "fits"
 #: Keys that are for people and judge nothing.
-WORDS = ("title", "task", "starter", FITS, translated.PART)
+WORDS = ("title", "task", "starter", FITS)
 SETTING = "setting"
 #: It is sent from process to process [characters].
 LONGEST_SETTING = 50_000
@@ -82,8 +82,6 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     if wrong is not None:
         raise Mistake(("tolerances", wrong[0]), wrong[1])
     points = _points(data["points"], checks)
-    words = translated.translated(data.get(translated.PART), checks, tolerances)
-    checks = checks.with_words(words.titles, words.rubrics)
     return Exercise(
         name=data["exercise"],
         limits=limits,
@@ -102,13 +100,12 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         sha256=_sha256(data, {SETTING: setting, **interfaces}, place.folder),
         visible=policies.visible(data.get("visible"), checks, points),
         late=policies.late(data.get("late"), round(sum(points.values()), 2)),
-        explained=words.tolerances,
         fits=_fits(data.get(FITS) or {}),
         interfaces=interfaces,
         cases=tuple(cases),
         is_to_end=any("exits" in each for each in data.get(EXPECT, {}).values()),
-        title=authored(str(data["title"]), words.title),
-        task=authored(data.get("task", ""), words.task),
+        title=authored(str(data["title"])),
+        task=authored(data.get("task", "")),
     )
 
 
@@ -226,7 +223,7 @@ def _checks(
     from grader.exercise.known_types import KnownTypes
 
     has_own = (place.folder / places.CHECKS).is_file()
-    checks = places.import_checks(place).with_words({}, {}) if has_own else Checks()
+    checks = places.import_checks(place).copy() if has_own else Checks()
     return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s)
 
 

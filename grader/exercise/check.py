@@ -21,8 +21,6 @@ from grader.message import NOTHING, Message, authored, chained, msg, reason
 from grader.recording.recording import NominalAlone, NotOver, Recording, Recordings
 
 Tolerances = Mapping[str, Any]
-#: Name of a check -> language -> text.
-Words = Mapping[str, Mapping[str, str]]
 #: Raises a ValueError where a tolerance cannot be used.
 Validator = Callable[[Any], None]
 
@@ -62,18 +60,19 @@ class Checks:
     def __iter__(self) -> Iterator[Check]:
         return iter(self._checks)
 
-    def with_words(self, titles: Words, rubrics: Words) -> Checks:
-        """Return the checks with titles and rubrics in other languages, by the check's name."""
+    def copy(self) -> Checks:
+        """Return a copy, to which others can be added."""
+        return self.translated("", {})
+
+    def translated(self, language: str, texts: Mapping[str, Mapping[str, str]]) -> Checks:
+        """Return a copy with titles and rubrics in a language: check -> title, rubric -> text."""
         made = Checks()
         made._validators = self._validators
-        made._checks = [
-            replace(
-                check,
-                title=replace(check.title, words=titles.get(check.name, {})),
-                rubric=replace(check.rubric, words=rubrics.get(check.name, {})),
-            )
-            for check in self
-        ]
+        for check in self:
+            known = texts.get(check.name, {})
+            title = check.title.translated(language, known.get("title"))
+            rubric = check.rubric.translated(language, known.get("rubric"))
+            made._checks.append(replace(check, title=title, rubric=rubric))
         return made
 
     def tolerance(self, validate: Validator) -> Validator:

@@ -104,7 +104,7 @@ class Exercise:
         late: what a late submission costs; None for nothing.
         fits: what a hand-in that names no exercise has where it is plainly for this one: `files`,
             patterns of names, where it has no program; `publishes`, types of its topics.
-        explained: tolerance -> language -> what it is, for the sheet.
+        explained: language -> tolerance -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
         interfaces: a type that it brings along, 'my_interfaces/msg/Num' -> its definition.
         setting: the text of the file that it is set up with; '' for none.

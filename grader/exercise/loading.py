@@ -6,16 +6,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from grader.errors import ExerciseError
-from grader.exercise import cases, places, translated
+from grader.exercise import cases, places
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
+from grader.exercise.translated import read_translations, translate
 from grader.message import reason
 from grader.yaml_file import (
     Mistake,
@@ -31,18 +32,10 @@ SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", INSPECTS, CPU),
     *(INSPECTIONS, INTERFACES, *cases.KEYS, EXPECT),
-    *(
-        "points",
-        "visible",
-        "late",
-        "tolerances",
-        "starter",
-        "program",
-        "programs",
-        FITS,
-        translated.PART,
-    ),
+    *("points", "visible", "late", "tolerances", "starter", "program", "programs", FITS),
 )
+#: Keys of an edited copy -> what it replaces, for which the original's translations do not fit.
+TRANSLATED = {"title": "title", "task": "task", EXPECT: "checks"}
 
 
 def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
@@ -91,7 +84,8 @@ def _from_place(place: Place) -> Exercise:
     with _naming(place.folder):
         file = _read(place.description)
         with _placing(file):
-            return build(_described(file, place), place)
+            exercise = build(_described(file, place), place)
+        return _translated(exercise, place.description)
 
 
 def _from_file(path: Path) -> Exercise:
@@ -102,7 +96,19 @@ def _from_file(path: Path) -> Exercise:
         with _placing(edited):
             _check_keys(edited.data)
             place, original = _original(edited.data.get("exercise"), path.parent)
-            return build(_merged(original, edited.data), place)
+            merged = _merged(original, edited.data)
+            exercise = build(merged, place)
+        replaced = [to for key, to in TRANSLATED.items() if merged.get(key) != original.get(key)]
+        exercise = _translated(exercise, place.description, replaced)
+        return _translated(exercise, path)
+
+
+def _translated(exercise: Exercise, description: Path, without: Collection[str] = ()) -> Exercise:
+    """Add the translations beside an exercise.yaml, without those of some keys."""
+    for language, file in read_translations(description).items():
+        with _placing(file):
+            exercise = translate(exercise, language, file.data, without)
+    return exercise
 
 
 @contextmanager
@@ -205,9 +211,6 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
             example, fits = repr(known[key]), _alike(value, known[key])
             expect(fits, (part, key), "expected e.g. {known}, found {found}", value, known=example)
         merged[part] = {**known, **given}
-    if translated.PART in original and translated.PART not in edited:
-        anew = [key for key in ("title", "task") if merged.get(key) != original.get(key)]
-        merged[translated.PART] = translated.without(original[translated.PART], anew)
     return merged
 
 

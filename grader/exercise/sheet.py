@@ -1,8 +1,8 @@
 """Makes the exercise sheet: all that a student needs to know, from the exercise that will judge.
 
 It is Markdown, in the language of this process's user. What an author has written about the
-exercise in exercise.yaml (`title`, `task`, the comments beside its tolerances, `languages`) and
-checks.py (the docstrings of the checks) is shown, with the numbers that are in force.
+exercise in exercise.yaml (`title`, `task`, the comments beside its tolerances), in its translations
+and in checks.py (the docstrings of the checks) is shown, with the numbers that are in force.
 """
 
 from __future__ import annotations
@@ -224,12 +224,12 @@ def _tolerances(exercise: Exercise) -> Iterator[str]:
 
 def _explained(exercise: Exercise) -> str:
     """Return the tolerances with their translated comments; '' where there are none."""
-    language = current()
-    if not any(language in texts for texts in exercise.explained.values()):
+    explained = exercise.explained.get(current())
+    if not explained:
         return ""
     lines = []
     for name, value in exercise.tolerances.items():
-        text = exercise.explained.get(name, {}).get(language, "")
+        text = explained.get(name)
         lines.append(f"{name}: {_in_yaml(value)}" + (f"  # {text}" if text else ""))
     return "\n".join(lines)
 

@@ -1,100 +1,92 @@
-"""The key `languages` of exercise.yaml: title, task, checks and tolerances in other languages.
+"""Translations of an exercise: `exercise.fr.yaml` beside its exercise.yaml.
 
-    languages:
-      fr:
-        title: Dans le coin
-        checks:
-          moves: Le nœud conduit la tortue
-          arrives: {title: Elle s'arrête dans un coin, rubric: Dans chaque essai ...}
-        tolerances:
-          corner_m: distance du coin
+    title: Dans le coin
+    checks:
+      moves: Le nœud conduit la tortue
+      arrives: {title: Elle s'arrête dans un coin, rubric: Dans chaque essai ...}
+    tolerances:
+      corner_m: distance du coin
 
-A text alone is the title of a check.
+A text alone is the title of a check. What a translation leaves out is shown in the language of
+exercise.yaml. It judges nothing, and is no part of the exercise's hash.
 """
 
 from __future__ import annotations
 
+import glob
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
-from grader.exercise.check import Checks
+from grader.errors import ExerciseError
+from grader.exercise.exercise import Exercise
 from grader.translations import ENGLISH, LANGUAGES
-from grader.yaml_file import Mistake, check_known, expect
+from grader.yaml_file import Keys, Mistake, YamlFile, check_known, expect, read_yaml
 
-PART = "languages"
-#: All but the language of the file itself.
-OTHERS = tuple(language for language in LANGUAGES if language != ENGLISH)
-KEYS = ("title", "task", "checks", "tolerances")
+OF_ALL = ("title", "task")
+KEYS = (*OF_ALL, "checks", "tolerances")
 OF_A_CHECK = ("title", "rubric")
-ByLanguage = dict[str, str]
 
 
-@dataclass(frozen=True)
-class Translated:
-    """Each text by its language; one that is left out is shown in the language of the file.
-
-    Attributes:
-        title, task: of the exercise.
-        titles, rubrics: of its checks, by their names.
-        tolerances: what stands beside them in the sheet, by their names.
-    """
-
-    title: ByLanguage = field(default_factory=dict)
-    task: ByLanguage = field(default_factory=dict)
-    titles: dict[str, ByLanguage] = field(default_factory=dict)
-    rubrics: dict[str, ByLanguage] = field(default_factory=dict)
-    tolerances: dict[str, ByLanguage] = field(default_factory=dict)
-
-
-def translated(given: object, checks: Checks, tolerances: Collection[str]) -> Translated:
-    """Parse the key of the file.
+def read_translations(description: Path) -> dict[str, YamlFile]:
+    """Read the translations beside an exercise.yaml, or beside an edited copy: language -> file.
 
     Raises:
-        Mistake: a language, a key, a check or a tolerance is unknown, or a value is no text.
+        ExerciseError: one is no YAML, or in a language that there is not.
+        OSError: one cannot be read.
     """
-    found = Translated()
-    names = [check.name for check in checks]
-    for language, words in _named(given, (PART,), OTHERS).items():
-        at = (PART, language)
-        for key, value in _named(words, at, KEYS).items():
-            here = (*at, key)
-            if key == "title":
-                found.title[language] = _text(value, here)
-            elif key == "task":
-                found.task[language] = _text(value, here)
-            elif key == "checks":
-                _checks(value, here, names, found)
-            else:
-                for name, text in _named(value, here, tolerances).items():
-                    by_language = found.tolerances.setdefault(name, {})
-                    by_language[language] = _text(text, (*here, name))
-    return found
-
-
-def without(given: object, keys: Collection[str]) -> Any:
-    """Remove the texts that an edited copy replaces, in the language of the file alone."""
-    if not isinstance(given, dict) or not all(isinstance(words, dict) for words in given.values()):
-        return given  # `translated` refuses it
-    return {
-        language: {key: text for key, text in words.items() if key not in keys}
-        for language, words in given.items()
-    }
-
-
-def _checks(given: object, at: tuple[str, ...], names: Collection[str], found: Translated) -> None:
-    language = at[1]
-    for name, value in _named(given, at, names).items():
-        here = (*at, name)
-        texts = value if isinstance(value, dict) else {"title": value}
-        for key, text in _named(texts, here, OF_A_CHECK).items():
-            each = found.titles if key == "title" else found.rubrics
-            each.setdefault(name, {})[language] = _text(
-                text, (*here, key) if isinstance(value, dict) else here
+    languages = [code for code in LANGUAGES if code != ENGLISH]
+    files = {}
+    name = f"{glob.escape(description.stem)}.[a-z][a-z]{description.suffix}"
+    for path in sorted(description.parent.glob(name)):
+        language = path.stem[-2:]
+        if language not in languages:
+            raise ExerciseError(
+                "{name}: expected one of {languages} as its language, found {language}",
+                name=path.name,
+                languages=", ".join(languages),
+                language=language,
             )
+        files[language] = read_yaml(path)
+    return files
 
 
-def _named(given: object, at: tuple[str, ...], known: Collection[str]) -> Mapping[str, Any]:
+def translate(
+    exercise: Exercise, language: str, texts: object, without: Collection[str] = ()
+) -> Exercise:
+    """Return the exercise with its texts in a language, too.
+
+    Args:
+        texts: the content of the translation.
+        without: keys in it that are not used.
+
+    Raises:
+        Mistake: a key, a check or a tolerance is unknown, or a value is no text.
+    """
+    given = {key: value for key, value in _named(texts, (), KEYS).items() if key not in without}
+    names = [check.name for check in exercise.checks]
+    of_checks = {
+        name: _of_check(value, ("checks", name))
+        for name, value in _named(given.get("checks"), ("checks",), names).items()
+    }
+    tolerances = _texts(given.get("tolerances"), ("tolerances",), exercise.tolerances)
+    whole = _texts({key: given[key] for key in OF_ALL if key in given}, (), OF_ALL)
+    earlier = exercise.explained.get(language, {})
+    return replace(
+        exercise,
+        title=exercise.title.translated(language, whole.get("title")),
+        task=exercise.task.translated(language, whole.get("task")),
+        checks=exercise.checks.translated(language, of_checks),
+        explained={**exercise.explained, language: {**earlier, **tolerances}},
+    )
+
+
+def _of_check(given: object, at: Keys) -> dict[str, str]:
+    return _texts(given, at, OF_A_CHECK) if isinstance(given, dict) else {"title": _text(given, at)}
+
+
+def _named(given: object, at: Keys, known: Collection[str]) -> Mapping[str, Any]:
     """Return the mapping at some keys, each name of which has to be known."""
     if given is None:
         return {}
@@ -109,7 +101,11 @@ def _named(given: object, at: tuple[str, ...], known: Collection[str]) -> Mappin
     return given
 
 
-def _text(given: Any, at: tuple[str, ...]) -> str:
+def _texts(given: object, at: Keys, known: Collection[str]) -> dict[str, str]:
+    return {name: _text(value, (*at, name)) for name, value in _named(given, at, known).items()}
+
+
+def _text(given: Any, at: Keys) -> str:
     is_text = isinstance(given, str) and given.strip()
     expect(is_text, at, "expected a text, found {found}", given)
     return str(given)

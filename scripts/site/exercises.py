@@ -25,9 +25,9 @@ BESIDE = {
 INTRODUCTION = """# Exercises
 
 Each page is what a student gets: `grader new DIR --exercise NAME` writes it, with the files to
-begin with, and `grader run DIR` grades by it; also [in French and
-Chinese](../docs/languages.md). To change points, tolerances or the task, edit a copy; to write your
-own: [for any node](../docs/any-node.md), or [with checks in Python](../docs/write-an-exercise.md).
+begin with, and `grader run DIR` grades by it; `--lang` shows it in French or Chinese. To change
+points, tolerances or the task, edit a copy; to write your own: [for any node](../docs/any-node.md),
+or [with checks in Python](../docs/write-an-exercise.md).
 """
 
 

@@ -134,7 +134,7 @@ def test_a_plain_text_is_itself_whatever_is_in_it():
 
 
 def test_what_an_author_has_written_has_no_values():
-    made = authored("Draw a {square}.", {"fr": "Dessinez un {carré}."})
+    made = authored("Draw a {square}.").translated("fr", "Dessinez un {carré}.")
     assert str(made) == "Draw a {square}."
     assert made.words == {"fr": "Dessinez un {carré}."}
 
@@ -205,7 +205,7 @@ SAID = [
     msg("It made {turns:.1f} turns, {why}", turns=2.5, why=msg("of {asked}.", asked=msg("three"))),
     joined([msg("one"), " 2"]),
     msg_many("{n} pin", "{n} pins", 3),
-    authored("Drive {on}", {"zh": "前进"}),
+    authored("Drive {on}").translated("zh", "前进"),
     in_context("left", "of a wall"),
     msg("{is_so} at {where}", is_so=True, where=plain_text("{home}")),
 ]

@@ -25,10 +25,9 @@ from grader.recording.subject import load_subject
 from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.scenes.live import Grading
-from grader.translations import ENGLISH, use
 from tests import runs
 from tests.barriers import barriers
-from tests.browser import WIDTHS, clipped, cut_off, english, needs_browser, obstacles, open_browser
+from tests.browser import WIDTHS, clipped, cut_off, needs_browser, obstacles, open_browser
 from tests.grader.exercise.expect.traces import endpoint, event, line, text, trace
 from tests.grader.reports import samples
 from tests.programs import DEADLINE_S, Program
@@ -69,18 +68,15 @@ def everything() -> Recordings:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory, everything: Recordings) -> Path:
-    """The replay in each language, of that run, of the hostile one, and of one with much in it."""
+    """The replay of that run, of the hostile one, and of one with much in it."""
     made = tmp_path_factory.mktemp("timeline")
     much = trace(*(text(n / 1000, "/chatter", str(n)) for n in range(10_000)))
     traces = (everything.nominal.trace, HOSTILE_RUN, much)
     played = tuple(PlayedRun(n, f"Run {n}", "finished", each) for n, each in enumerate(traces))
     moment = Moment(number=1, run=1, time_s=4.0, place=None, text=HOSTILE)
     judged = (JudgedCheck("It says it", "failed", "failed", HOSTILE, "Say it.", (moment,)),)
-    for language in ("en", "fr", "zh"):
-        use(language)
-        content = render(Playback(f"node.py {HOSTILE}", "", played, judged))
-        (made / f"{language}.html").write_text(content, encoding="utf-8")
-    use(ENGLISH)
+    content = render(Playback(f"node.py {HOSTILE}", "", played, judged))
+    (made / "replay.html").write_text(content, encoding="utf-8")
     return made
 
 
@@ -114,7 +110,7 @@ def visit(browser: Any) -> Iterator[Callable[..., Any]]:
 
 @pytest.fixture
 def replay(folder: Path, visit: Callable[..., Any]) -> Any:
-    return visit((folder / "en.html").as_uri())
+    return visit((folder / "replay.html").as_uri())
 
 
 def columns(page: Any) -> list[int]:
@@ -182,7 +178,7 @@ def test_ten_thousand_messages_can_be_used(folder: Path, replay: Any) -> None:
     go(replay, 8.0)
     assert cells(replay, CURRENT)[-1] == "8000"
     assert replay.locator(ROWS).count() < 100
-    assert (folder / "en.html").stat().st_size < 2_500_000
+    assert (folder / "replay.html").stat().st_size < 2_500_000
 
 
 def test_another_recording_is_there_for_comparison(
@@ -201,7 +197,7 @@ def test_another_recording_is_there_for_comparison(
 
 @pytest.mark.parametrize("width", others_are_more("the narrowest stands for all", WIDTHS, 320))
 def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: int) -> None:
-    page = visit((folder / "en.html").as_uri(), width, reduced_motion="reduce")
+    page = visit((folder / "replay.html").as_uri(), width, reduced_motion="reduce")
     for button in page.locator("#runs button").all()[:2]:
         button.click()
         go(page, 3.0)
@@ -209,13 +205,6 @@ def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: i
         assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert barriers(page) == []
     assert clipped(page) == {}
-
-
-@pytest.mark.parametrize("language", others_are_more("one language", ["fr", "zh"], "fr"))
-def test_the_replay_speaks_each_language(folder: Path, visit: Any, language: str) -> None:
-    page = visit((folder / f"{language}.html").as_uri())
-    of_the_run = "#hops, #checks, header, #outcome, #runs"
-    assert english(page, language, of_the_run) == []
 
 
 @pytest.mark.more("tables of other reports are in `make test`")
@@ -287,11 +276,6 @@ def test_nobody_is_kept_from_looking_on(live: TimelinePage, visit: Any, width: i
     assert cut_off(page) == []
     assert barriers(page) == []
     assert clipped(page) == {}
-    page.select_option("#language", "fr")
-    page.wait_for_selector(
-        "html[lang=fr] #counted:has-text('jusqu')"
-    )  # shown with the next picture
-    assert english(page, "fr", "#hops, #checks, #grading-score, #grading-first, #state") == []
 
 
 def test_a_run_is_seen_to_its_end(tmp_path: Path, visit: Any) -> None:

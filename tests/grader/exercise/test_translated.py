@@ -40,11 +40,13 @@ def english_again():
     use(ENGLISH)
 
 
-def written(tmp_path, languages, **changes):
-    tmp_path.mkdir(exist_ok=True)
-    return exercises.write(
-        tmp_path / "ahead", tolerances={"far_m": 0.5}, task=TASK, languages=languages, **changes
-    )
+def written(folder, translations, **changes):
+    folder.mkdir(exist_ok=True)
+    changes = {"tolerances": {"far_m": 0.5}, "task": TASK} | changes
+    path = exercises.write(folder / "ahead", **changes)
+    for language, texts in translations.items():
+        (path / f"exercise.{language}.yaml").write_text(yaml.safe_dump(texts))
+    return path
 
 
 def sheet_in(language, exercise):
@@ -96,37 +98,49 @@ def test_words_change_no_hash_and_no_points(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("languages", "words"),
+    ("texts", "words"),
     [
-        ("French", "languages: expected some of fr, zh, each with its text; found 'French'"),
-        ({"de": {"title": "Vorwärts"}}, "languages: unknown 'de'; there are"),
-        ({"en": {"title": "Ahead"}}, "languages: unknown 'en'"),
-        ({"fr": {"titel": "x"}}, "languages: fr: unknown 'titel'; did you mean 'title'?"),
-        ({"fr": {"title": 3}}, "languages: fr: title: expected a text, found 3"),
-        ({"fr": {"title": " "}}, "languages: fr: title: expected a text, found ' '"),
+        ("French", ": expected some of title, task, checks, tolerances, each with its text; found"),
+        (["x"], ": expected some of title, task, checks, tolerances"),
+        ({"titel": "x"}, ": unknown 'titel'; did you mean 'title'?"),
+        ({"title": 3}, ", line 1: title: expected a text, found 3"),
+        ({"title": " "}, ", line 1: title: expected a text, found ' '"),
+        ({"checks": {"fast": "x"}}, ", line 1: checks: unknown 'fast'; there are commands"),
+        ({"checks": {"far": 3}}, ", line 2: checks: far: expected a text, found 3"),
         (
-            {"fr": {"checks": {"fast": "x"}}},
-            "languages: fr: checks: unknown 'fast'; there are commands",
+            {"checks": {"far": {"rubrik": "x"}}},
+            ", line 2: checks: far: unknown 'rubrik'; did you mean 'rubric'?",
         ),
-        ({"fr": {"checks": {"far": 3}}}, "languages: fr: checks: far: expected a text, found 3"),
-        (
-            {"fr": {"checks": {"far": {"rubrik": "x"}}}},
-            "languages: fr: checks: far: unknown 'rubrik'; did you mean 'rubric'?",
-        ),
-        ({"fr": {"tolerances": {"far": "x"}}}, "languages: fr: tolerances: unknown 'far'"),
-        ({"fr": ["x"]}, "languages: fr: expected some of title, task, checks, tolerances"),
+        ({"tolerances": {"far": "x"}}, ", line 1: tolerances: unknown 'far'"),
     ],
 )
-def test_a_slip_is_told_where_it_stands(tmp_path, languages, words):
+def test_a_slip_is_told_where_it_stands(tmp_path, texts, words):
     with pytest.raises(ExerciseError) as error:
-        load_exercise(written(tmp_path, languages))
-    assert words in str(error.value.message)
-    assert "exercise.yaml, line " in str(error.value.message)
+        load_exercise(written(tmp_path, {"fr": texts}))
+    assert f"exercise.fr.yaml{words}" in str(error.value.message)
 
 
-def test_an_edited_copy_keeps_the_words_of_what_it_does_not_change(tmp_path):
+def test_a_language_that_there_is_not_is_told(tmp_path):
+    with pytest.raises(ExerciseError) as error:
+        load_exercise(written(tmp_path, {"cn": {"title": "前进"}}))
+    said = str(error.value.message)
+    assert "exercise.cn.yaml: expected one of fr, zh as its language, found cn" in said
+
+
+def test_an_edited_copy_keeps_the_texts_of_what_it_does_not_change(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({"exercise": "square", "title": "A smaller square"}))
     exercise = load_exercise(path)
     assert translate(exercise.title, "fr") == "A smaller square"
     assert translate(exercise.task, "fr").startswith("Écrivez un nœud")
+
+
+def test_an_edited_copy_has_translations_beside_it(tmp_path):
+    copy = {"exercise": "square", "title": "A smaller square"}
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(copy))
+    (tmp_path / "mine.fr.yaml").write_text("title: Un carré plus petit\ntolerances: {side_m: côté}")
+    exercise = load_exercise(tmp_path / "mine.yaml")
+    assert translate(exercise.title, "fr") == "Un carré plus petit"
+    assert translate(exercise.task, "fr").startswith("Écrivez un nœud")
+    assert exercise.explained["fr"]["side_m"] == "côté"
+    assert exercise.explained["fr"]["near_m"]

@@ -61,7 +61,7 @@ def test_a_whole_number_may_be_written_as_a_float():
 def test_everything_comes_back_as_it_was(tmp_path):
     seen = (Evidence(0.016, msg("n {at}", at=2), 2.0, 3.0, 1, tick=1),)
     words = (plain_text("seen {as} it is"), msg_many("{n} help", "{n} helps", 2))
-    title = authored("A", {"fr": "Â"})
+    title = authored("A").translated("fr", "Â")
     verdict = Verdict("a", title, "failed", 1.5, 4.0, *words, seen, ("b",))
     run = RunSummary(exit_code=-9, outcome="killed", ticks=3, flags=(msg("x"),), seed=5)
     varied = replace(run, seed=None, start=Start(1.0, 2.0, 3.0))

@@ -13,10 +13,8 @@ from grader.limited import WorkLimits
 from grader.recording.recording import Recordings
 from grader.testing import check_exercise, checking, drive, twist
 from grader.testing.checking import examine, odd_recordings
-from tests.grader.languages.holes import holes
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import CHECKS, MUTANTS
-from tests.tiers import others_are_more
 
 
 def driver(speed):
@@ -85,15 +83,6 @@ def test_what_is_left_of_the_points_must_be_what_was_said(tmp_path, driven):
         "far: leaves 0 of 6 points; mutants.yaml says some (on slow)",
         "far: never fails on any mutant",
     ]
-
-
-@pytest.mark.parametrize("language", others_are_more("as French", ["fr", "zh"], "fr"))
-def test_what_is_to_mend_is_told_in_the_readers_language(language, tmp_path, driven):
-    driven["slow"] = None
-    driven["again"] = 1.5
-    found = check_exercise(exercises.write(tmp_path)).problems
-    assert len(found) == 4
-    assert [hole for each in found for hole in holes(each.text, language)] == []
 
 
 def test_an_exercise_without_mutants_is_told(tmp_path, driven):

@@ -12,7 +12,6 @@ from grader.recording.recording import Recording, Recordings
 from grader.strict_json import to_json
 from grader.testing import drive, pen, twist
 from tests.grader.driving import CENTRE, RED, WHITE, Spiral
-from tests.grader.languages.holes import unknown
 
 FULL = {
     "moves": 5,
@@ -28,7 +27,6 @@ FULL = {
 def scores(recording: Recording) -> dict[str, float]:
     exercise = load_exercise("turtlesim_challenge")
     verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
-    assert unknown(verdicts) == []  # to translators
     return {verdict.check: verdict.score for verdict in verdicts}
 
 

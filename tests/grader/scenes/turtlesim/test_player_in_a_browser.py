@@ -18,7 +18,6 @@ from tests.browser import (
     WIDTHS,
     clipped,
     cut_off,
-    english,
     moving,
     needs_browser,
     obstacles,
@@ -315,10 +314,6 @@ def test_which_run_is_shown_is_seen_where_the_reader_chooses_the_colours(visit):
     assert shown.evaluate(colour) != other.evaluate(colour)
 
 
-#: What the report says, which has tests of its own.
-OF_THE_REPORT = "title, header, #runs, #outcome, #checks, #compared-with, #canvas"
-
-
 @pytest.mark.parametrize(
     ("language", "tick", "curve"),
     [
@@ -336,7 +331,4 @@ def test_it_speaks_the_language_of_the_call_whatever_the_browsers(visit, languag
     assert page.get_attribute("html", "lang") == language
     assert page.inner_text("#time") == tick
     assert page.inner_text("#plots figcaption span >> nth=0").startswith(curve)
-    assert english(page, language, OF_THE_REPORT) == []
-    page.click("#play")
-    assert english(page, language, OF_THE_REPORT) == []
     assert obstacles(page) == []
