@@ -1,6 +1,7 @@
 """The attacks: what each is about, and which level stops it.
 
-`docs/threat-model.md` shows this table; a test holds the two together.
+This is the table of the threat model, which `test_attacks.py` holds. What an attack does is the
+first line of its program in `submissions/`.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class Attack:
     """One hostile submission.
 
     Attributes:
-        about: the part of a grading that it attacks: see `docs/threat-model.md`.
+        about: the part of a grading that it attacks.
         stopped_by: the grader's levels at which it achieves nothing. At the others it may achieve
             what it is after, but earns no points, and the grader goes on.
         make: makes the submission.

@@ -20,12 +20,8 @@ def loaded(file: str) -> Any:
     return yaml.safe_load((BATCH / file).read_text(encoding="utf-8"))
 
 
-def test_the_workflow_follows_the_schema_and_has_its_actions_pinned() -> None:
-    path = BATCH / "github" / "grade-class.yml"
-    words = ["--builtin-schema", "vendor.github-workflows", str(path)]
-    check = subprocess.run([sys.executable, "-m", "check_jsonschema", *words], capture_output=True)
-    assert check.returncode == 0, check.stdout
-    used = re.findall(r"uses: (\S+)", path.read_text())
+def test_the_workflow_has_its_actions_pinned() -> None:
+    used = re.findall(r"uses: (\S+)", (BATCH / "github" / "grade-class.yml").read_text())
     (template,) = (ROOT / "grader" / "course" / "templates" / "github").rglob("grade.yml")
     known = template.read_text()
     assert used

@@ -11,7 +11,6 @@ from itertools import filterfalse
 from pathlib import Path
 
 import pytest
-from catkin_pkg.package import parse_package
 
 from grader.reports import names
 from grader.requirements import OPTIONAL
@@ -117,16 +116,13 @@ GENERATORS = re.compile(r"rosidl_(generator|typesupport)_\w+")
 
 
 @pytest.mark.parametrize("manifest", MANIFESTS)
-def test_package_xml_asks_for_what_is_imported_of_ros_and_says_whose_it_is(manifest):
-    found = parse_package(str(ROOT / manifest))
+def test_package_xml_asks_for_what_is_imported_of_ros(manifest):
     wanted = set().union(*map(imported, MANIFESTS[manifest]))
     if any(map(GENERATORS.fullmatch, wanted)):
         wanted = {"rosidl_default_generators", *filterfalse(GENERATORS.fullmatch, wanted)}
     asked = depends(manifest, "jazzy")
     assert wanted <= asked
     assert not [key for key in asked if key.endswith("-pip")]  # bloom would take it for apt's
-    assert {url.type for url in found.urls} == {"website", "repository", "bugtracker"}
-    assert [author.name for author in found.authors] == [found.maintainers[0].name]
 
 
 @pytest.mark.parametrize("manifest", ["package.xml", "turtlesim_challenge/package.xml"])

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from grader import strict_json
 from grader.batch import pool
-from grader.batch.pool import Task
+from grader.batch.pool import Answer, Task
 
 PATIENT_S = 60.0
 ANSWERS = """
@@ -45,6 +46,20 @@ def test_a_worker_that_dies_loses_its_own_task_alone_and_that_is_told(
     assert {key for key, answer in done.items() if answer.state == "done"} == {"0", "2", "3"}
     assert done["1"].state == "failed"
     assert str(done["1"].message) == "the process that graded it ended (SIGKILL), 2 times"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        *(b"[]", b"1", b'"x"', b"\xff", b"{"),
+        b'{"state": "failed", "message": 1}',
+        b'{"state": "failed", "message": {"key": "{a}"}}',
+        b'{"state": "failed", "message": "x", "more": 1}',
+    ],
+)
+def test_a_line_that_is_no_answer_is_refused(line: bytes) -> None:
+    with pytest.raises(ValueError):
+        strict_json.of_line(Answer, line)
 
 
 def test_who_dies_once_is_asked_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -12,8 +12,6 @@ import pytest
 import yaml
 
 from grader.cli import main
-from grader.exercise.loading import load_exercise
-from grader.testing.solutions import read_solutions
 from tests.grader.testing import exercises
 
 ROOT = Path(__file__).parents[3]
@@ -78,28 +76,6 @@ def test_what_cannot_be_used_ends_with_exit_code_2(tmp_path, check):
 def test_a_number_of_jobs_that_is_none_is_named(number, capsys):
     assert main(["check-exercise", "square", "--jobs", number]) == 2
     assert f"--jobs: expected a number of processes, found {number}" in capsys.readouterr().err
-
-
-def test_the_tables_in_the_docs_are_of_the_solutions_that_there_are():
-    page = (ROOT / "docs" / "check-exercise.md").read_text(encoding="utf-8")
-    square = ROOT / "tests" / "submissions" / "square_mutants.yaml"
-    for name, path in (("turtlesim_challenge", None), ("square", square)):
-        exercise = load_exercise(name)
-        head = "| " + "".join(f" | `{check}`" for check in exercise.points) + " | caught by |\n"
-        assert head in page
-        table = page.partition(head)[2].partition("\n\n")[0].splitlines()[1:-1]
-        cells = {row.split("|")[1].strip(" `"): row for row in table}
-        solutions = read_solutions(exercise, path)
-        assert list(cells) == [solution.name for solution in solutions]
-        for solution in solutions:
-            for check, cell in zip(
-                exercise.points, cells[solution.name].split("|")[2:], strict=False
-            ):
-                left = (solution.leaves or {}).get(check, 1.0)
-                if solution.is_right or (solution.leaves is not None and left == 1.0):
-                    assert cell.strip() == "", (solution.name, check)
-                elif solution.leaves is not None and left != "some":
-                    assert cell.strip() in (f"**{100 * left:.0f} %**", "–")
 
 
 def test_every_mutant_of_the_square_is_a_change_of_its_solution():

@@ -58,14 +58,6 @@ def test_exercises_between_commas_are_told(tmp_path, capsys):
     assert "--exercises talker,square: separate them by blanks" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("exercises", [["talker"], ["talker", "square"]])
-@pytest.mark.parametrize("kind", KINDS)
-def test_paragraphs_of_the_readme_are_one_empty_line_apart(tmp_path, kind, exercises):
-    assert new(tmp_path / "course", "--exercises", *exercises, kind=kind) == 0
-    text = (tmp_path / "course" / "README.md").read_text()
-    assert "\n\n\n" not in text and text.strip() + "\n" == text
-
-
 def test_an_unknown_exercise_is_told_with_those_that_there_are(tmp_path, capsys):
     assert new(tmp_path / "course", "--exercises", "talker", "spiral") == 2
     said = capsys.readouterr().err

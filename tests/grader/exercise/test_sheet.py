@@ -7,7 +7,6 @@ import yaml
 
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
-from grader.exercise.places import names
 from grader.exercise.sheet import Start, in_force, sheet
 from grader.recording.subject import load_subject
 from tests.grader.testing import exercises
@@ -20,11 +19,7 @@ def sheet_of(where, start=START):
     return sheet(exercise, load_subject(exercise.scene), start)
 
 
-#: Scene -> what a task in it names, and what a sheet tells of how to try.
-ASKED = {
-    "turtlesim": ("/turtle1/cmd_vel", "/turtle1/pose", "floats"),
-    "robot": ("joint_states", "`odom` to `axis`", "radians"),
-}
+#: Scene -> what a sheet tells of how to try.
 TRIED = {
     "turtlesim": ("    turtlesim\n    (cd mine && python3 -m pkg.node)\n", "save_canvas"),
     "robot": ("    (cd mine && python3 -m pkg.node)\n", "rviz2"),
@@ -32,7 +27,7 @@ TRIED = {
 }
 
 
-@pytest.mark.parametrize("name", [name for name in names() if load_exercise(name).is_started])
+@pytest.mark.parametrize("name", ["turtlesim_challenge", "state_publisher", "talker_listener"])
 def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_begin(name):
     exercise, text = load_exercise(name), sheet_of(name)
     assert text.startswith(
@@ -44,9 +39,6 @@ def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_be
     assert f"{exercise.limits.total_s:g} simulated seconds" in " ".join(text.split())
     for key, value in exercise.tolerances.items():
         assert f"\n{key}: {value}" in text
-    is_other = exercise.cases[0].cast is not None or exercise.programs
-    for words in () if is_other else ASKED[exercise.scene]:
-        assert words in str(exercise.task)
     for words in (
         *TRIED[exercise.scene],
         "    ros2 run pkg node\n",

@@ -31,9 +31,3 @@ def test_who_asks_for_help_gets_it_and_nothing_starts(name, word, monkeypatch, c
 def test_a_parameter_s_value_is_no_cry_for_help(module):
     with Program(module, "--ros-args", "-r", "__ns:=/helped", "-p", "turtle_image:=-h") as program:
         assert program.wait() == 2
-
-
-def test_the_simulator_s_help_names_its_parameters():
-    about = import_module("turtlesim_py.ros.node").ABOUT
-    declared = ("background_r", "holonomic", "turtle_image", "image_rate", "canvas_folder")
-    assert all(name in about for name in declared)
