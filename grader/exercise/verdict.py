@@ -134,13 +134,6 @@ class Verdict:
             return ()
         return tuple(n for n in self.depends_on if n in verdicts and not verdicts[n].passed)
 
-    @property
-    def share(self) -> float:
-        """How much of the points is earned, 0 to 1."""
-        if self.max_score <= 0:
-            return 1.0 if self.passed else 0.0
-        return min(self.score / self.max_score, 1.0)
-
 
 def _convert_texts(made: object, *names: str) -> None:
     """Convert plain texts, of checks whose authors translate nothing, to messages."""

@@ -13,12 +13,13 @@ from dataclasses import replace
 from functools import cache, partial
 from itertools import accumulate
 from pathlib import Path
+from statistics import fmean
 
 import jinja2
 
 from grader import text
 from grader.batch.entry import Entry
-from grader.batch.page import clusters, figures
+from grader.batch.page.checks import check_rows
 from grader.batch.page.students import STATES, Student, evenly, students
 from grader.batch.page.thumb import EDGE_PX, UNITS, Thumb
 from grader.exercise.exercise import Exercise
@@ -46,7 +47,7 @@ def render_all(
     everybody = students(entries)
     judged = [student for student in everybody if student.entry.result is not None]
     scores = [e.score for e in entries if e.state != "nothing" and e.score is not None]
-    items = figures.items([s.entry.result for s in judged if s.entry.result], exercise.points)
+    results = [student.entry.result for student in judged if student.entry.result]
     each = MOST_ROWS if len(everybody) <= MOST_ROWS else ROWS
     rows = {
         FURTHER.format(first // each + 1) if first else PAGE: everybody[first : first + each]
@@ -61,13 +62,10 @@ def render_all(
         links=links or {},
         total=len(everybody),
         parts=dict(zip(rows, numbers, strict=True)),
-        spread=figures.distribution(scores, exercise.max_score),
+        mean=fmean(scores) if scores else None,
         states=_states(everybody),
         judged=len(judged),
-        items=items,
-        first=clusters.to_mend_first(everybody),
-        nothing_to_mend=sum(all(v.passed for v in s.entry.verdicts.values()) for s in judged),
-        lost={item.check: clusters.of_check(judged, item.check) for item in items},
+        checks=check_rows(results, exercise.points),
         words=_script_words(),
     )
     return {
@@ -111,8 +109,6 @@ def _environment() -> jinja2.Environment:
     made.globals.update(
         edge=EDGE_PX,
         units=UNITS,
-        least=figures.LEAST,
-        rarer=clusters.RARER,
         plain=lambda value: text.one_line(text.plain(value)),
     )
     return made

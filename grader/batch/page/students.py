@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -24,8 +23,6 @@ STATES: Final[Mapping[State, Message]] = {
     "nothing": msg("nothing handed in"),
     "failed": msg("the grader failed"),
 }
-#: Stands for what is left out of a sentence.
-GAP = "…"
 
 
 @dataclass(frozen=True)
@@ -89,15 +86,6 @@ class Student:
     @property
     def _handed_in(self) -> SubmissionInfo | None:
         return None if self.entry.result is None else self.entry.result.handed_in
-
-    def without_names(self, sentence: str) -> str:
-        """Return a sentence without the name and the ids of this student."""
-        people = self.entry.hand_in.people
-        names = [self.entry.id, self.name, *(person.id for person in people)]
-        words = {word for name in names for word in re.split(r"[\W_]+", name) if len(word) > 2}
-        for word in sorted(words, key=lambda word: (-len(word), word)):
-            sentence = re.sub(rf"(?<!\w){re.escape(word)}(?!\w)", GAP, sentence, flags=re.I)
-        return sentence
 
 
 def students(entries: Iterable[Entry]) -> list[Student]:

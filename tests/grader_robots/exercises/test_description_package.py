@@ -66,7 +66,7 @@ def graded(path: Path, exercise: object = EXERCISE) -> Result:
 
 
 def lost(result: Result) -> dict[str, float]:
-    return {v.check: v.share for v in result.verdicts if not v.passed}
+    return {v.check: v.score / v.max_score for v in result.verdicts if not v.passed}
 
 
 @pytest.mark.parametrize("name", FIRST_LINES)

@@ -82,7 +82,7 @@ def lost(controller, package=PACKAGE, ticks=1000):
     recording = Recording(trace, scene="robot", package=package)
     found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
     assert [v.rationale for v in found if "fault of the exercise" in str(v.rationale)] == []
-    return {v.check: round(v.share, 2) for v in found if not v.passed}
+    return {v.check: round(v.score / v.max_score, 2) for v in found if not v.passed}
 
 
 @pytest.mark.parametrize(

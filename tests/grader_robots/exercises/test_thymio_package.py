@@ -36,7 +36,7 @@ def test_the_first_line_of_a_wrong_thymio_names_its_mistake(name, tmp_path):
     solution = SOLUTIONS[name]
     result = judge(recorded(looked_at(solution.lay_out(tmp_path))), EXERCISE)
     assert FIRST_LINES[name] in str(result.diagnosis.cause)
-    left = {verdict.check: verdict.share for verdict in result.verdicts if not verdict.passed}
+    left = {v.check: v.score / v.max_score for v in result.verdicts if not v.passed}
     assert left == solution.leaves
 
 

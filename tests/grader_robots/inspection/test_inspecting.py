@@ -22,7 +22,7 @@ NEVER_ENDS = "while True:\n    pass\n"
 
 
 def shares(result):
-    return {verdict.check: verdict.share for verdict in result.verdicts}
+    return {v.check: v.score / v.max_score for v in result.verdicts}
 
 
 def test_two_looks_are_equal_and_are_what_is_found_without_confinement():

@@ -190,7 +190,6 @@
     for (const link of all("a.part")) link.hash = hide ? "names-hidden" : "";
     for (const [link, address] of links) if (hide) rest(link); else wake(link, address);
     for (const element of all(".named")) element.hidden = hide;
-    for (const element of all(".nameless")) element.hidden = !hide;
     texts = new Map();
     if (hide) by("find").value = "";
     sort(sorted.column, sorted.descending);  // an order by names would tell them

@@ -18,8 +18,6 @@ def test_points_can_be_read_in_every_row_and_in_the_chosen_one(scheme):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_bars_and_the_chosen_path_are_seen(scheme):
+def test_the_chosen_path_is_seen(scheme):
     colors = SCHEMES[scheme]
-    for drawn in ("curve", "good", "bad", "soft"):
-        assert contrast(colors[drawn], colors["card"]) >= OTHER, drawn
     assert contrast(colors["bad"], colors["paper"]) >= OTHER
