@@ -9,11 +9,9 @@ from dataclasses import replace
 
 import pytest
 
-from grader.batch.entry import entries
 from grader.batch.page import html as class_page
 from grader.batch.regrade import shown
 from grader.batch.regrade.changes import Failure, Regrade, compared
-from grader.batch.similar import page
 from grader.exercise.loading import load_exercise
 from grader.reports import ErrorReport
 from grader.reports import read as read_report
@@ -23,7 +21,6 @@ from grader_robots.scene.driving import drive as drive_robot
 from tests.barriers import barriers
 from tests.browser import needs_browser, open_browser
 from tests.grader.batch.page.classes import entry, result
-from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
@@ -71,14 +68,6 @@ def page_of_a_class(folder) -> str:
     ]
 
 
-def page_of_what_is_alike(folder) -> str:
-    for who, handed_in in list(HONEST.items())[:3]:
-        hand_in(folder, who, handed_in, name=f"{who.title()} Ünal")
-    hand_in(folder, "copy", HONEST["quick"], name="Zoë")
-    page.write(entries(folder), CHALLENGE, folder)
-    return (folder / page.PAGE).read_text(encoding="utf-8")
-
-
 def page_of_a_regrade(folder) -> str:
     before = [entry(id, result({"moves": 10.0}), name=id.title()) for id in ("zoe17", "bob18")]
     after = [entry(id, result({"moves": 4.0}, "Too slow."), name=id.title()) for id in ("zoe17",)]
@@ -116,7 +105,6 @@ def browser():
         pytest.param(report_of_a_robot, marks=pytest.mark.more("a package's has all its parts")),
         report_of_a_package,
         page_of_a_class,
-        page_of_what_is_alike,
         page_of_a_regrade,
         page_without_a_result,
     ],

@@ -178,7 +178,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.batch.store": GROUND
     | {"grader.batch"}
     | below("grader", "exercise.exercise", "recording.recording", "submission.folder"),
-    "grader.batch.similar.sources": GROUND
+    "grader.batch.export": GROUND
     | {"grader.batch"}
     | below("grader", "exercise.exercise", "submission.folder", "testing.solutions")
     | below("grader", "submission.manifest", "reports.csv"),

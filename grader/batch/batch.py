@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader import content, files, system
-from grader.batch import grade
+from grader.batch import export, grade
 from grader.batch.class_file import CLASS, MACHINE, ClassFile
 from grader.batch.entry import Entry, HandIn
 from grader.batch.gradebook.write import CSV
 from grader.batch.gradebook.write import write as write_gradebook
 from grader.batch.page import html
 from grader.batch.pool import Done, Task
-from grader.batch.similar import page, sources
 from grader.batch.store import STUDENTS, Store, of_hand_in, of_run
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
@@ -274,12 +273,11 @@ def write_outputs(
     Raises:
         UsageError: a file cannot be written.
     """
-    page.write(entries, exercise, out)
-    links = {tr("Look at these together"): page.PAGE, tr("Gradebook"): CSV}
+    links = {tr("Gradebook"): CSV}
     for older in out.glob(html.FURTHER.format("*")):
         files.clear(older)
     for name, text in html.render_all(entries, exercise, links).items():
         files.put(out / name, text.encode("utf-8"))
     notes = write_gradebook(out, entries, exercise.title, view, assignment)
-    sources.write_exports(entries, exercise, out)
+    export.write_exports(entries, exercise, out)
     return notes

@@ -20,11 +20,11 @@ from pathlib import Path
 from typing import IO
 
 from grader import files, grading, judging, scratch, strict_json
+from grader.batch import export
 from grader.batch.entry import Entry, HandIn, State
 from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR
 from grader.batch.page.thumb import THUMB, thumb
 from grader.batch.pool import Answer, Ending, Task
-from grader.batch.similar import features, sources
 from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
 from grader.errors import (
     CheckFailed,
@@ -176,12 +176,9 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
 def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path) -> None:
     """Write what the pages of the whole class show of a run: they open no recording."""
     copy = submission.copy
-    left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE)
-    nominal = recordings.nominal
+    if copy is not None:
+        export.keep(copy.folder, place / export.SOURCE)
     files.put(place / THUMB, thumb(recordings))
-    files.put(
-        place / features.NAME, features.features_file(place / sources.SOURCE, nominal, left_out)
-    )
 
 
 def _without_path(submission: Submission) -> Submission:

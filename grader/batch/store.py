@@ -1,7 +1,7 @@
 """Write the folder of a class: every folder moves into its place whole or not at all.
 
-    store/KEY/          the files of one run: recording/, source/, similar.json, thumb.json, which
-                        are linked into the folder of each who handed it in; or error.json
+    store/KEY/          the files of one run: recording/, source/, thumb.json, which are linked into
+                        the folder of each who handed it in; or error.json
     submissions/ID/     the result of one hand-in; see `grader.batch.entry`
     aside/ID/           what is no longer among the submissions
     before/N/           what a regrade has replaced; see `grader.batch.regrade.judging`
@@ -24,9 +24,8 @@ from pathlib import Path
 from grader import content, files, system
 from grader.batch.class_file import CLASS
 from grader.batch.entry import ENTRY, SUBMISSIONS
+from grader.batch.export import SOURCE
 from grader.batch.page.thumb import THUMB
-from grader.batch.similar.features import NAME as BEHAVIOUR
-from grader.batch.similar.sources import SOURCE
 from grader.exercise.exercise import Exercise
 from grader.message import msg
 from grader.recording.recording import Clock
@@ -40,7 +39,7 @@ REGRADE = "regrade"
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
 #: The files of a run that are also in the folder of each who handed it in.
-SHARED = (RECORDING, SOURCE, BEHAVIOUR, THUMB)
+SHARED = (RECORDING, SOURCE, THUMB)
 #: Prefix of a folder that is being replaced, beside what replaces it.
 _OLDER = "older-"
 

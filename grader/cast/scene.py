@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import islice
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, ClassVar
 
@@ -13,7 +11,7 @@ from grader.cast.trace import CastTrace
 from grader.message import Message, msg
 from grader.recording.channel import Channel
 from grader.recording.playback import Playback
-from grader.recording.subject import BagMessage, Behaviour, Command, Start, Trace
+from grader.recording.subject import BagMessage, Start, Trace
 from grader.recording.view import Cell, Table, View
 from grader.scenes.live import LivePage
 from grader.scenes.scene import (
@@ -29,8 +27,6 @@ from grader.translations import tr
 
 #: So many rows of what was exchanged are in a report.
 MOST_ROWS = 60
-#: So many numbers of a message are compared with another submission's.
-MOST_NUMBERS = 100
 #: So often viewers are told what is new [ticks].
 NEWS_TICKS = 6
 
@@ -117,17 +113,6 @@ class GraphScene(Scene):
         assert isinstance(made, CastTrace)
         return {**made.definitions, **self.message_definitions()}
 
-    def behaviour(self, made: Trace) -> Behaviour:
-        """Return the program's messages."""
-        assert isinstance(made, CastTrace)
-        own = (e for e in made.messages if e.topic != trace.ROSOUT and not made.is_peer(e))
-        return Behaviour(
-            tuple(
-                Command(e.time_ns, e.topic, tuple(islice(_numbers(made.values(e)), MOST_NUMBERS)))
-                for e in own
-            )
-        )
-
     def view(self, made: Trace) -> View:
         """Return a table of what was exchanged, as much of it as a page shows at once."""
         assert isinstance(made, CastTrace)
@@ -201,18 +186,6 @@ class GraphScene(Scene):
 def _hop(item: Mapping[str, Any]) -> str:
     to = f" → {', '.join(item['to'])}" if item["to"] else ""
     return f"{item['from']}{to}: {item['what']}"
-
-
-def _numbers(value: Any) -> Iterator[float]:
-    """Yield the numbers in plain data; of a text its checksum, in parts that are kept whole."""
-    if isinstance(value, str):
-        summed = zlib.crc32(value.encode("utf-8", "replace"))
-        yield from (summed % 1000, summed // 1000 % 1000, summed // 1_000_000)
-    elif isinstance(value, Mapping | list):
-        for each in value.values() if isinstance(value, Mapping) else value:
-            yield from _numbers(each)
-    else:
-        yield float(value)
 
 
 SCENE = GraphScene()

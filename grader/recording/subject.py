@@ -11,14 +11,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol
 
-import numpy as np
-
 from grader import extensions
 from grader.errors import SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
 from grader.recording.scene_at_work import at_work
-from grader.recording.view import Floats, Pictures, Plane, View
+from grader.recording.view import Pictures, Plane, View
 from grader.strict_json import SPARSE
 from grader.text import place
 
@@ -28,7 +26,7 @@ DEFAULT_SCENE: Final = "turtlesim"
 #: raise anything.
 HOOKS: Final[Mapping[str, tuple[type[Exception], ...]]] = {
     **dict.fromkeys(("untouched", "message_definitions", "definitions_of", "to_messages"), ()),
-    **dict.fromkeys(("bag_topics", "encode", "scenario", "behaviour", "view", "pictures"), ()),
+    **dict.fromkeys(("bag_topics", "encode", "scenario", "view", "pictures"), ()),
     **dict.fromkeys(("remarks", "endpoints", "wrong_setting", "adapted", "how_to_try"), ()),
     **dict.fromkeys(("odd_traces", "simulate", "preload", "starts"), ()),
     **{"interfaces_for": (SubmissionError,), "live_page": (OSError,)},
@@ -118,39 +116,6 @@ class Endpoint(NamedTuple):
     begin_s: float = 0.0
 
 
-class Command(NamedTuple):
-    """A command or request of a submission.
-
-    Attributes:
-        time_ns: when, from the start of the run [ns].
-        name: of the command and of what it is for.
-        values: its arguments, in the subject's own order and units; may be not a number.
-    """
-
-    time_ns: int
-    name: str
-    values: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Behaviour:
-    """What a submission did, to be compared with another.
-
-    Attributes:
-        commands: in order; of each what has an effect, and no names of its own.
-        path: of what the exercise is about, float64 (n, 2) [m]; all of it finite.
-    """
-
-    commands: tuple[Command, ...] = ()
-    path: Floats = field(default_factory=lambda: np.empty((0, 2)))
-
-
-def until_lost(points: Floats) -> Floats:
-    """Return the points, float64 (n, 2), before the first that is not a number."""
-    lost = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    return points[: int(lost[0])] if len(lost) else points
-
-
 class Subject(ABC):
     """The subject of recordings. The abstract members are obligatory, the others have defaults."""
 
@@ -225,10 +190,6 @@ class Subject(ABC):
     def scenario(self, trace: Trace) -> dict[str, Any]:
         """Return the inputs, to be replayed without ROS; empty where they cannot be."""
         return {}
-
-    def behaviour(self, trace: Trace) -> Behaviour:
-        """Return what the submission did, for a comparison of submissions."""
-        return Behaviour()
 
     # How it is shown ------------------------------------------------------------------------------
 

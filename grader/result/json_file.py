@@ -11,7 +11,7 @@ from grader import strict_json
 from grader.errors import UsageError
 from grader.files import read_ours
 from grader.message import Message, joined, msg, plain_text, reason
-from grader.strict_json import Bounds, Made
+from grader.strict_json import Made
 
 #: No file of ours is longer [bytes].
 MOST_BYTES = 2**26
@@ -99,12 +99,10 @@ def typed(kind: type[Made], data: Any, phrases: Any = None) -> Made:
         raise ValueError(msg("is damaged: {why}", why=str(error))) from None
 
 
-def kept(
-    kind: type[Made], path: Path, most_bytes: int, bounds: Bounds = strict_json.OURS
-) -> Made | None:
+def kept(kind: type[Made], path: Path, most_bytes: int) -> Made | None:
     """Read a dataclass from a small file of ours; None where there is no valid one."""
     try:
-        return strict_json.of_line(kind, read_ours(path, most_bytes), bounds)
+        return strict_json.of_line(kind, read_ours(path, most_bytes))
     except (OSError, ValueError):
         return None
 

@@ -13,18 +13,14 @@ from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
 from grader.recording.subject import (
     BagMessage,
-    Behaviour,
-    Command,
     Endpoint,
     Start,
     Trace,
-    until_lost,
 )
 from grader.recording.view import Pictures, View
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
 from grader.translations import tr
 from grader_robots.scene import decoding, driving, trace, view
-from grader_robots.scene.motion import odometry
 from grader_robots.scene.trace import DESCRIPTION, JOINT_STATES, TF, TF_STATIC, TOPICS, RobotTrace
 from robot_py.robot_state import RefusedDescription, Robot
 
@@ -139,14 +135,6 @@ class RobotScene(Scene):
                 if 1 <= state.tick <= run.ticks
             ],
         }
-
-    def behaviour(self, made: Trace) -> Behaviour:
-        """Every joint state, and the robot's way up to where it was nowhere."""
-        run = RobotTrace.of(made)
-        commands = (
-            Command(s.tick * trace.TICK_NS, "joint_states", s.positions) for s in run.joint_states
-        )
-        return Behaviour(tuple(commands), until_lost(odometry(run).places[:, :2]))
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
         """Those of its node."""

@@ -12,13 +12,13 @@ from typing import Any, ClassVar, Final
 from grader.message import Message, msg
 from grader.recording.channel import Channel
 from grader.recording.playback import Playback
-from grader.recording.subject import BagMessage, Behaviour, Endpoint, Start, Trace
+from grader.recording.subject import BagMessage, Endpoint, Start, Trace
 from grader.recording.view import Pictures, View
 from grader.scenes.live import LivePage
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
 from grader.scenes.turtlesim import interfaces, messages, remarks, view
 from grader.scenes.turtlesim.interfaces import endpoints_of
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace, behaviour
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace
 from grader.translations import tr
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import TICK_NS
@@ -137,10 +137,6 @@ class Turtlesim(Scene):
         events = TurtleTrace.of(made).events
         within = [to_json(event) for event in events if 1 <= event.tick <= made.ticks]
         return {"ticks": made.ticks, "events": within}
-
-    def behaviour(self, made: Trace) -> Behaviour:
-        """Return all inputs, and the path of the first turtle."""
-        return behaviour(TurtleTrace.of(made))
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
         """Return the endpoints of the node and of each turtle."""

@@ -10,13 +10,13 @@ import hashlib
 import json
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording.subject import Behaviour, Command, Start, Trace, until_lost
+from grader.recording.subject import Start, Trace
 from turtlesim_py.world import events as inputs
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import (
@@ -156,26 +156,3 @@ def _check_tick(what: str, tick: int, ticks: int) -> None:
     # inputs after the last tick have the number of the next one
     if not 0 <= tick <= ticks + 1:
         raise ValueError(f"{what} at tick {tick!r:.40} of {ticks}")
-
-
-def behaviour(trace: TurtleTrace) -> Behaviour:
-    """Return every input to the arena, and turtle1's path while its position was finite.
-
-    Of a velocity command the values count that the node uses: ahead, sideways, turning.
-    """
-    way = trace.trajectory()
-    path = until_lost(np.column_stack((way.x, way.y)))
-    return Behaviour(tuple(map(_command, trace.events)), path)
-
-
-def _command(event: Event) -> Command:
-    turtle = getattr(event, "turtle", FIRST_TURTLE)
-    name = event.op if turtle == FIRST_TURTLE else f"{event.op} of another"
-    return Command(event.tick * TICK_NS, name, _values(event))
-
-
-def _values(event: Event) -> tuple[float, ...]:
-    if isinstance(event, CmdVel):
-        return (event.linear[0], event.linear[1], event.angular[2])
-    every = (getattr(event, field.name) for field in fields(event) if field.name != "tick")
-    return tuple(float(value) for value in every if isinstance(value, int | float))

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[3]
 DEADLINE_S = 240.0
 #: When it was run, and how long that took.
 CLOCKS = re.compile(rb'("wall_s"|"date"): [^,\n]+')
-OF_ALL = ("class.json", "gradebook.csv", "gradebook.jsonl", "index.html", "similar.html")
+OF_ALL = ("class.json", "gradebook.csv", "gradebook.jsonl", "index.html")
 #: Of each student; the page tells how long the run took, as the result does.
 EACH = ("entry.json", "result.json", "output.txt", "canvas.png")
 

@@ -11,12 +11,11 @@ from typing import Any
 
 import pytest
 
-from grader.batch import pool
+from grader.batch import export, pool
 from grader.batch.class_file import CLASS, ClassFile
 from grader.batch.entry import ENTRY, Entry, entries
 from grader.batch.page.thumb import THUMB, Thumb
 from grader.batch.pool import Answer
-from grader.batch.similar import features, sources
 from grader.batch.store import RECORDING, STUDENTS, Store
 from grader.cli import main
 from grader.errors import UsageError
@@ -142,21 +141,19 @@ def test_what_pages_show_of_a_run_is_left_out_where_it_is_no_file_of_ours(
     out: Path, how: str
 ) -> None:
     folder = Store(out).student("right")
-    for name in (THUMB, features.NAME):
-        replaced(folder / name, NO_FILE[how])
+    replaced(folder / THUMB, NO_FILE[how])
     assert Thumb.read(folder) is None
-    assert features.Features.read(folder) is None
 
 
 def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(out: Path) -> None:
-    kept = Store(out).student("right") / sources.SOURCE
+    kept = Store(out).student("right") / export.SOURCE
     (source,) = kept.iterdir()
     replaced(source, is_huge)
-    (file,) = sources.kept(kept)
-    assert len(file.data) == sources.MAX_SOURCE_BYTES
+    (file,) = export.kept(kept)
+    assert len(file.data) == export.MAX_SOURCE_BYTES
     link = out / "link"
     link.symlink_to(kept)
-    assert sources.kept(link) == []
+    assert export.kept(link) == []
 
 
 def test_whatever_was_changed_in_a_class_the_same_call_ends_as_before(
@@ -193,7 +190,7 @@ def test_no_link_in_a_run_is_followed_into_a_student_s_folder(tmp_path: Path) ->
         run = store.run("ab")
         (run / RECORDING).mkdir(parents=True)
         (run / RECORDING / "more").symlink_to(secret)
-        (run / sources.SOURCE).symlink_to(secret)
+        (run / export.SOURCE).symlink_to(secret)
         (run / THUMB).symlink_to(secret / "token.py")
         place = store.new_place()
         (place / STUDENTS / "zoe").mkdir(parents=True)

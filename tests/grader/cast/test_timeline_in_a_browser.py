@@ -21,7 +21,6 @@ from grader.exercise.loading import load_exercise
 from grader.recording import saving
 from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
 from grader.recording.recording import Recordings
-from grader.recording.subject import load_subject
 from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.scenes.live import Grading
@@ -310,16 +309,6 @@ def test_a_parameter_is_set_or_got_and_a_refusal_says_why() -> None:
     )
     told = [each["text"] for each in timeline.items(trace(*events))]
     assert told == ["get p → world, get q → 0.5", "set p, set q → too large"]
-
-
-def test_what_the_program_sends_is_its_behaviour(everything: Recordings) -> None:
-    done = load_subject("graph").behaviour(everything.nominal.trace).commands
-    assert {each.name for each in done} == {"/out", "/chatter", "/tf"}
-    assert [each.values for each in done if each.name == "/out"][:3] == [(0.0,), (1.0,), (2.0,)]
-    said = [each.values for each in done if each.name == "/chatter"]
-    assert len(set(said)) == len(said) > 1
-    hostile = load_subject("graph").behaviour(HOSTILE_RUN)
-    assert len(hostile.commands) == 20  # log lines have names of its own
 
 
 def test_a_program_of_many_nodes_has_as_many_lanes_as_can_be_seen() -> None:

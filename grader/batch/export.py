@@ -1,16 +1,17 @@
-"""Keep the sources of a class, and export them for JPlag and Dolos, which compare sources.
+"""Keep the sources of a class, and export them for compare50, JPlag and Dolos.
 
     DIR/submissions/ID/source/        the Python files of a hand-in
     export/jplag/students/ID/...py    a folder for each hand-in
     export/jplag/base/...py           what everybody was given
     export/dolos.zip                  students/ID.py, starter.py, info.csv
 
+    compare50 export/jplag/students/* -d export/jplag/base -o REPORT
     java -jar jplag.jar -l python3 export/jplag/students -bc export/jplag/base
     dolos run -l python export/dolos.zip
 
-Names are made valid for every system; files beyond the limits are left out and counted. What
-everybody was given, or may have read, is no sign of copying: the exercise's starter, and its right
-solutions if it names them (mutants.yaml).
+Names are made valid for every system; files beyond the limits are left out. What everybody was
+given, or may have read, is no sign of copying: the exercise's starter, and its right solutions if
+it names them (mutants.yaml).
 
 JPlag reads each folder below the given one as a submission, and ignores what matches the base code
 (its wiki, How to Use JPlag). Dolos compares files, so each hand-in is one file; its info.csv has a
@@ -51,14 +52,11 @@ class File(NamedTuple):
     data: bytes
 
 
-def keep(copy: Path, into: Path) -> int:
+def keep(copy: Path, into: Path) -> None:
     """Copy the sources of a submission into a folder, which is made anew.
 
     Args:
         copy: the private copy of the submission; links out of it are not followed.
-
-    Returns:
-        How many were left out.
 
     Raises:
         OSError: a folder cannot be written, or a source cannot be read.
@@ -66,17 +64,15 @@ def keep(copy: Path, into: Path) -> int:
     remove(into)
     into.mkdir(parents=True)
     names: set[str] = set()
-    size = left_out = 0
+    size = 0
     for path in _sources(copy):
         data = read_bounded(path)
         if data is None or len(names) >= MOST_FILES or size + len(data) > MOST_BYTES:
-            left_out += 1
             continue
         size += len(data)
         target = into / _free_name(path.relative_to(copy), names)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(data)
-    return left_out
 
 
 def kept(folder: Path) -> list[File]:
@@ -128,17 +124,12 @@ def given_files(exercise: Exercise) -> list[File]:
         ExerciseError: its mutants.yaml cannot be used.
         OSError: one of them cannot be read.
     """
-    found = starter(exercise)
+    starter = exercise.starter_files("").items()
+    found = [File(f"starter/{name}", data) for name, data in starter if name.endswith(".py")]
     solutions = read_solutions(exercise) if (exercise.folder / FILE_NAME).is_file() else ()
     for each in solutions:
         found += _below(each.path) if each.is_right else []
     return sorted(set(found))
-
-
-def starter(exercise: Exercise, package: str = "") -> list[File]:
-    """Return the starter, as `grader new` writes it into a package of this name."""
-    files = exercise.starter_files(package).items()
-    return [File(f"starter/{name}", data) for name, data in files if name.endswith(".py")]
 
 
 def _below(path: Path) -> list[File]:

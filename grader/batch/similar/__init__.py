@@ -1,1 +1,0 @@
-"""Find hand-ins of a class that behave alike, or have the same sources."""
