@@ -10,8 +10,6 @@ from dataclasses import replace
 import pytest
 
 from grader.batch.page import html as class_page
-from grader.batch.regrade import shown
-from grader.batch.regrade.changes import Failure, Regrade, compared
 from grader.exercise.loading import load_exercise
 from grader.reports import ErrorReport
 from grader.reports import read as read_report
@@ -68,24 +66,6 @@ def page_of_a_class(folder) -> str:
     ]
 
 
-def page_of_a_regrade(folder) -> str:
-    before = [entry(id, result({"moves": 10.0}), name=id.title()) for id in ("zoe17", "bob18")]
-    after = [entry(id, result({"moves": 4.0}, "Too slow."), name=id.title()) for id in ("zoe17",)]
-    change = compared(before[0], after[0])
-    assert change is not None
-    challenge = load_exercise("turtlesim_challenge")
-    failure = Failure(before[1], "its recording is damaged")
-    found = Regrade(
-        *(folder, challenge, tuple(before)),
-        (change,),
-        (),
-        (failure,),
-        1,
-        ("A note.",),
-    )
-    return shown.page(found, "../..")
-
-
 def page_without_a_result(folder) -> str:
     error = ErrorResult("submission", "Found no .py file; hand in one.", 100)
     return html.render_error(ErrorReport(error, folder))
@@ -105,7 +85,6 @@ def browser():
         pytest.param(report_of_a_robot, marks=pytest.mark.more("a package's has all its parts")),
         report_of_a_package,
         page_of_a_class,
-        page_of_a_regrade,
         page_without_a_result,
     ],
     ids=lambda made: made.__name__,

@@ -20,7 +20,8 @@ from grader.batch import batch
 from grader.batch.class_file import ClassFile
 from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person, comparable, entries, id_of
 from grader.batch.find.newest import safe_id
-from grader.batch.store import ASIDE, BEFORE, REGRADE, Store, link
+from grader.batch.regrade import CHANGES
+from grader.batch.store import ASIDE, Store, link
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.removal import remove
@@ -36,8 +37,7 @@ class Plan:
     """What is to be done.
 
     Attributes:
-        goes: folders: hand-ins of the student alone, runs that nobody else has, and what regrades
-            have kept of the class as it was.
+        goes: folders: hand-ins of the student alone, and runs that nobody else has.
         groups: hand-ins of groups, and what they are without the student.
         remaining: the class afterwards.
     """
@@ -64,7 +64,6 @@ def plan(store: Store, student: str) -> Plan:
     groups = [(each, _without(person, each)) for each in theirs if each not in own]
     keys = {each.key for each in own} - {each.key for each in kept if each not in own}
     runs = [store.run(key) for key in sorted(keys) if store.has(key)]
-    older = [path for name in (BEFORE, REGRADE) if (path := store.out / name).is_dir()]
     hand_ins = [each.folder for each in own]
     now = {each.folder: hand_in for each, hand_in in groups}
     # beside a group may be what a call that was cut off has made of it
@@ -72,7 +71,7 @@ def plan(store: Store, student: str) -> Plan:
     there = [e for e in kept if e.folder.parent.name == SUBMISSIONS and e.folder not in gone]
     remaining = [_as(each, now.get(each.folder, each.hand_in)) for each in there]
     remaining.sort(key=lambda entry: entry.id)
-    return Plan(person, (*older, *runs, *hand_ins), tuple(groups), tuple(remaining))
+    return Plan(person, (*runs, *hand_ins), tuple(groups), tuple(remaining))
 
 
 def carry_out(made: Plan, store: Store, exercise: Exercise, view: View, assignment: str) -> None:
@@ -83,6 +82,7 @@ def carry_out(made: Plan, store: Store, exercise: Exercise, view: View, assignme
     """
     batch.write_outputs(store.out, made.remaining, exercise, view, assignment)
     replace(ClassFile.read(store.out), hand_ins=len(made.remaining)).put(store.out)
+    files.clear(store.out / CHANGES)  # has the student's row; a regrade makes it anew
     for folder in made.goes:
         store.take_out(folder)
     for entry, hand_in in made.groups:

@@ -4,7 +4,6 @@
                         the folder of each who handed it in; or error.json
     submissions/ID/     the result of one hand-in; see `grader.batch.entry`
     aside/ID/           what is no longer among the submissions
-    before/N/           what a regrade has replaced; see `grader.batch.regrade.judging`
     .unfinished/        what is being made; what an interrupted call has left there is removed
 
 A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
@@ -32,9 +31,7 @@ from grader.recording.recording import Clock
 from grader.removal import remove
 from grader.submission.folder import MAX_ENTRIES, is_generated, is_junk
 
-STORE, UNFINISHED, ASIDE, BEFORE = "store", ".unfinished", "aside", "before"
-#: The table and the page of a regrade that was only shown.
-REGRADE = "regrade"
+STORE, UNFINISHED, ASIDE = "store", ".unfinished", "aside"
 #: What a worker leaves: one run, and a folder for each hand-in.
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
@@ -147,7 +144,7 @@ class Store:
 
 def _check_is_ours(out: Path) -> None:
     """Refuse a folder in which another program's files have our names, or that is a link."""
-    for name in (STORE, SUBMISSIONS, ASIDE, BEFORE):
+    for name in (STORE, SUBMISSIONS, ASIDE):
         if (out / name).is_symlink():
             raise files.cannot_write(out / name, msg("it is a link; expected a folder, or nothing"))
     if (out / CLASS).is_file():

@@ -91,7 +91,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--apply",
         action="store_true",
-        help=tr("with --regrade: write it; what was before is kept"),
+        help=tr("with --regrade: write it"),
     )
     options.add_of_outputs(parser)
 

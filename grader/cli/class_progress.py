@@ -6,10 +6,8 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from statistics import mean
-from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -69,40 +67,23 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
 
 
 @contextmanager
-def bar(
-    console: Console, what: str, total: int, *columns: TextColumn | TimeRemainingColumn, **task: Any
-) -> Iterator[Callable[..., None]]:
-    """Show a bar in a terminal; yield the function that advances it by one.
-
-    Args:
-        what: stands before the bar.
-        columns: behind the bar.
-        task: initial fields of the bar; the function accepts new values.
-    """
-    counted = tr("{done} of {total}", done="{task.completed}", total="{task.total}")
-    before = TextColumn(f"{what} {counted}".lstrip())
-    with Progress(
-        *(before, BarColumn(), *columns),
-        console=console,
-        transient=True,
-        speed_estimate_period=SPEED_OF_S,
-    ) as progress:
-        yield partial(progress.update, progress.add_task("", total=total, **task), advance=1)
-
-
-@contextmanager
 def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[[HandIn], None]]:
     began = time.monotonic()
     over = failed = 0
-    columns = (
+    with Progress(
+        TextColumn(tr("{done} of {total}", done="{task.completed}", total="{task.total}")),
+        BarColumn(),
         TextColumn("{task.fields[rate]}"),
         TextColumn("{task.fields[failed]}", style="red"),
         TimeRemainingColumn(),
         TextColumn("{task.description}"),
-    )
-    # those that need no run are over at once, and tell nothing of the time that runs take
-    done, fields = len(planned.done) + len(planned.trivial), {"rate": "", "failed": ""}
-    with bar(console, "", planned.hand_ins, *columns, completed=done, **fields) as advance:
+        console=console,
+        transient=True,
+        speed_estimate_period=SPEED_OF_S,
+    ) as progress:
+        # those that need no run are over at once, and tell nothing of the time that runs take
+        done = len(planned.done) + len(planned.trivial)
+        bar = progress.add_task("", total=planned.hand_ins, completed=done, rate="", failed="")
 
         def show(hand_in: HandIn) -> None:
             nonlocal over, failed
@@ -112,7 +93,9 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
             entry = Entry.read(store.student(hand_in.id))
             failed += entry.state == "failed"
             a_minute = over * MINUTE_S / max(time.monotonic() - began, 1e-3)
-            advance(
+            progress.update(
+                bar,
+                advance=1,
                 rate=tr("{a_minute:.0f} a minute", a_minute=a_minute),
                 failed=tr("{failed} failed", failed=failed) if failed else "",
                 description=clip(for_terminal(f"{hand_in.known_as}: {_outcome(entry)}"), 60),

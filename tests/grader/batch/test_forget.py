@@ -22,11 +22,10 @@ Call = Callable[..., int]
 
 @pytest.fixture
 def out(named: Path, tmp_path: Path) -> Path:
-    """The class, regraded once, with hand-ins that were set aside."""
+    """The class, with changes that a regrade has shown, and hand-ins that were set aside."""
     out = tmp_path / "class"
     shutil.copytree(named / "class", out)
-    (out / "before" / "1").mkdir(parents=True)
-    shutil.copy(out / "gradebook.csv", out / "before" / "1")
+    shutil.copy(out / "gradebook.csv", out / "changes.csv")
     for id in ("zm4711", "dk4714+jg4715"):
         shutil.copytree(out / "submissions" / id, out / "aside" / id)
     return out
@@ -135,7 +134,7 @@ def test_a_call_that_was_cut_off_is_finished_by_the_next(
         path.name for path in (whole / "submissions").iterdir() if student not in path.name
     )
     assert {*others} <= {path.name for path in (out / "submissions").iterdir()}
-    assert not (out / "before").exists()
+    assert not (out / "changes.csv").exists()
 
 
 def test_nothing_changes_without_yes(
@@ -144,7 +143,7 @@ def test_nothing_changes_without_yes(
     before = {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.is_file()}
     assert call("zm4711") == 0
     said = capsys.readouterr().out.replace("\n", "")
-    for path in ("submissions/zm4711", "aside/zm4711", "before"):
+    for path in ("submissions/zm4711", "aside/zm4711"):
         assert f"- goes: {out / path}" in said
     assert "--yes" in said
     assert {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.is_file()} == before

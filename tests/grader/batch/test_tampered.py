@@ -200,7 +200,7 @@ def test_no_link_in_a_run_is_followed_into_a_student_s_folder(tmp_path: Path) ->
         assert (zoe / RECORDING / "more").is_symlink()
 
 
-@pytest.mark.parametrize("name", ["store", "submissions", "aside", "before"])
+@pytest.mark.parametrize("name", ["store", "submissions", "aside"])
 def test_a_class_of_which_a_part_is_a_link_is_not_written_into(tmp_path: Path, name: str) -> None:
     elsewhere, out = tmp_path / "elsewhere", tmp_path / "class"
     for folder in (elsewhere, out):
