@@ -182,22 +182,20 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"grader.batch"}
     | below("grader", "exercise.exercise", "submission.folder", "testing.solutions")
     | below("grader", "submission.manifest", "reports.csv"),
-    # at which level a class is confined
+    # at which level a class is confined, and the workers of a cluster are
     "grader.batch.class_file": GROUND
     | {"grader.run.processes.levels"}
     | below("grader", "exercise.exercise", "recording.recording", "result.json_file"),
+    "grader.batch.cluster": GROUND | {"grader.batch", "grader.run.processes.levels"},
     # a worker: its process, and what it opens
     "grader.batch.pool": GROUND
     | {"grader.batch", "grader.recording.recording"}
     | below("grader.run", "fork_servers", "processes.fork_server"),
-    **dict.fromkeys(
-        ("grader.batch.grade", "grader.batch.remote"),
-        GROUND
-        | {"grader.batch"}
-        | below("grader", "grading", "judging", "result", "run.opening", "recording.recording")
-        | below("grader", "exercise.exercise", "exercise.loading", "exercise.places")
-        | below("grader", "reports.__init__", "run.processes", "run.fork_servers", "submission"),
-    ),
+    "grader.batch.grade": GROUND
+    | {"grader.batch"}
+    | below("grader", "grading", "judging", "result", "run.opening", "recording.recording")
+    | below("grader", "exercise.exercise", "exercise.loading")
+    | below("grader", "reports.__init__", "run.processes", "run.fork_servers", "submission"),
     # a page is shown as the simulator's is
     "grader.cli.live": GROUND
     | below("grader", "recording", "run", "scenes", "exercise.exercise", "reports")

@@ -7,7 +7,7 @@ that is graded into that folder later.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
@@ -154,43 +154,6 @@ def on_this_machine(level: str) -> str:
             why=error.message,
             advice=ADVICE[level],
         ) from None
-
-
-@dataclass
-class OfCluster:
-    """The level at which the workers of a cluster grade a class.
-
-    Attributes:
-        level: '' until it is chosen.
-        least: the lowest that may be; '' for any.
-        settle: called with the level that was chosen.
-    """
-
-    level: str = ""
-    least: str = ""
-    settle: Callable[[str], None] = lambda _: None
-
-    def choose(self, offered: Iterable[str]) -> None:
-        """Choose the best level that workers offer, once; without workers, that of this machine.
-
-        Raises:
-            UsageError: it is too low.
-        """
-        if self.level:
-            return
-        there = set(filter(None, offered)) or {levels.here().level, self.least}
-        self.level = next((level for level in LEVELS if level in there), "")
-        if self.least and (not self.level or _is_less(self.level, self.least)):
-            raise self.none_offers(self.least)
-        self.settle(self.level)
-
-    def none_offers(self, level: str) -> UsageError:
-        """Return the error of a cluster that cannot grade at a level."""
-        return UsageError(
-            "no worker of the cluster offers isolation by {level}. To get it: {advice}.",
-            level=level,
-            advice=ADVICE[level],
-        )
 
 
 def _is_less(level: str, than: str) -> bool:

@@ -56,6 +56,7 @@ class Store:
             UsageError: it cannot be written, or another grading writes into it.
         """
         _check_is_ours(out)
+        is_new = not out.exists()
         files.make_folder(out)
         with files.sole_writer(out):
             _put_back(out)
@@ -67,7 +68,7 @@ class Store:
             finally:
                 remove(out / UNFINISHED)
                 if not (out / CLASS).is_file():  # refused: nothing is left of it
-                    for name in (STORE, SUBMISSIONS, ""):
+                    for name in (STORE, SUBMISSIONS, *([""] if is_new else [])):
                         with suppress(OSError):
                             (out / name).rmdir()
 

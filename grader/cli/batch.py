@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help=tr("grade on the workers of a dask cluster instead"),
+        help=tr("grade on the workers of a Dask cluster instead, which share a folder"),
     )
     add_of_runs(
         parser,
@@ -114,7 +114,6 @@ def main(args: argparse.Namespace) -> int:
     from grader.batch.batch import Order, check_same_class
     from grader.batch.class_file import begun_at
     from grader.batch.entry import entries
-    from grader.batch.store import Store
     from grader.cli import class_progress
     from grader.exercise.loading import load_exercise
 
@@ -122,7 +121,7 @@ def main(args: argparse.Namespace) -> int:
     exercise = load_exercise(args.exercise) if args.exercise else None  # refused at once
     secret = options.secret_of(args)
     pseudonyms = _pseudonyms(args, messages)
-    with _found(args, messages, pseudonyms) as (found, named):
+    with _found(args, messages, pseudonyms) as (store, found, named):
         if exercise is None:
             args.named = _named(found, messages)
             exercise = load_exercise(args.named)
@@ -133,19 +132,18 @@ def main(args: argparse.Namespace) -> int:
             secret=secret,
             hides_seed=options.hides_seed(args),
             pseudonyms="" if pseudonyms is None else pseudonyms.mark,
+            isolation=begun_at(args.out, args.again, args.isolation or ""),
         )
-        with Store.opened(args.out) as store:
-            order = replace(order, isolation=begun_at(args.out, args.again, args.isolation or ""))
-            check_same_class(store, order.class_file, order.again)
-            _grade(args, order, found, store, messages)
-            graded = entries(args.out)
-            written = batch.write_outputs(args.out, graded, exercise, view, args.assignment)
-            if args.names:
-                written = _write_names(args, graded, named, exercise, view)
-            elif pseudonyms is not None:
-                written = [msg("Gradebook and imports with names, for a course system: --names")]
-            for note in written:
-                say(messages, note)
+        check_same_class(store, order.class_file, order.again)
+        _grade(args, order, found, store, messages)
+        graded = entries(args.out)
+        written = batch.write_outputs(args.out, graded, exercise, view, args.assignment)
+        if args.names:
+            written = _write_names(args, graded, named, exercise, view)
+        elif pseudonyms is not None:
+            written = [msg("Gradebook and imports with names, for a course system: --names")]
+        for note in written:
+            say(messages, note)
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
 
@@ -226,13 +224,14 @@ def _write_names(
 @contextmanager
 def _found(
     args: argparse.Namespace, messages: Console, pseudonyms: Pseudonyms | None
-) -> Iterator[tuple[Found, dict[str, HandIn]]]:
-    """Find the hand-ins, and print the notes on them, which call people as the export does.
+) -> Iterator[tuple[Store, Found, dict[str, HandIn]]]:
+    """Open the folder of the class, find the hand-ins, and print the notes on them.
 
     Under pseudonyms the hand-ins come without names, and beside them who has which.
     """
     from grader.batch.class_file import CLASS
     from grader.batch.find.finding import find
+    from grader.batch.store import Store
 
     is_same = args.submissions.resolve() == args.out.resolve()
     if is_same or (args.submissions / CLASS).is_file():
@@ -241,16 +240,20 @@ def _found(
             "into; name the submissions themselves. Nothing was changed.",
             submissions=args.submissions,
         )
-    with find(args.submissions, args.pattern, args.roster) as found:
-        for note in found.notes:
-            say(messages, note)
-        if pseudonyms is None:
-            yield found, {}
-            return
-        hidden = pseudonyms.hide(found.hand_ins)
-        named = {id: with_names for id, (_, with_names) in hidden.items()}
-        args.again = next((id for id, was in named.items() if was.id == args.again), args.again)
-        yield replace(found, hand_ins=[without for without, _ in hidden.values()]), named
+    with Store.opened(args.out) as store:
+        # what is unpacked has to be seen by all machines of a cluster
+        place = store.new_place() if args.scheduler else None
+        with find(args.submissions, args.pattern, args.roster, place) as found:
+            for note in found.notes:
+                say(messages, note)
+            if pseudonyms is None:
+                yield store, found, {}
+                return
+            hidden = pseudonyms.hide(found.hand_ins)
+            named = {id: with_names for id, (_, with_names) in hidden.items()}
+            args.again = next((id for id, was in named.items() if was.id == args.again), args.again)
+            found = replace(found, hand_ins=[without for without, _ in hidden.values()])
+            yield store, found, named
 
 
 def _grade(
@@ -263,7 +266,7 @@ def _grade(
 
     planned = batch.plan(found.hand_ins, order, store)
     if args.scheduler:
-        work = _on_a_cluster(args, order, messages)
+        work = _on_a_cluster(args, order, store, messages)
     else:
         work = partial(pool.work, jobs=_jobs_of(args))
         if any(task.run is None for task in planned.tasks):
@@ -307,12 +310,16 @@ def _jobs_of(args: argparse.Namespace) -> int:
     return args.jobs or max(1, round(cores.share()))
 
 
-def _on_a_cluster(args: argparse.Namespace, order: Order, messages: Console) -> Work:
-    from grader.batch import class_file, cluster
+def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> Work:
+    from grader.batch import cluster
 
-    settle = partial(class_file.note, args.out)
-    isolation = class_file.OfCluster(order.isolation, args.isolation or "", settle)
-    return lambda tasks: cluster.work(tasks, args.scheduler, partial(say, messages), isolation)
+    inputs = [args.submissions.absolute()]
+    if order.exercise_path != order.exercise.name:
+        inputs.append(Path(order.exercise_path))
+    place = store.new_place().absolute()
+    terms = cluster.Terms(args.out.absolute(), place, tuple(inputs), order.isolation)
+    notify = partial(say, messages)
+    return lambda tasks: cluster.work(tasks, args.scheduler, terms, notify, args.isolation or "")
 
 
 def processes(text: str) -> int:

@@ -7,17 +7,9 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
-
-import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 BATCH = ROOT / "examples" / "batch"
-PYPROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-
-
-def loaded(file: str) -> Any:
-    return yaml.safe_load((BATCH / file).read_text(encoding="utf-8"))
 
 
 def test_the_workflow_has_its_actions_pinned() -> None:
@@ -26,16 +18,6 @@ def test_the_workflow_has_its_actions_pinned() -> None:
     known = template.read_text()
     assert used
     assert [action for action in used if f"uses: {action} " not in known] == []
-
-
-def test_scheduler_and_workers_of_the_dask_cluster_are_of_one_image() -> None:
-    spec = loaded("kubernetes/dask-cluster.yaml")["spec"]
-    containers = [spec[part]["spec"]["containers"][0] for part in ("worker", "scheduler")]
-    assert len({container["image"] for container in containers}) == 1
-    assert "$(DASK_WORKER_NAME)" in containers[0]["args"]  # by which the operator knows it
-    text = (BATCH / "kubernetes" / "dask-cluster.yaml").read_text()
-    (named,) = re.findall(r"'(distributed>=[\d.]+)'", text)
-    assert f'"{named}"' in PYPROJECT
 
 
 def test_the_script_for_dask_jobqueue_ends_with_what_the_grading_says(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
     pip install dask-jobqueue 'turtlesim_py[cluster]'
     python with_dask.py SUBMISSIONS --out CLASS [an option of grader batch] ...
 
-Only the grader has to be on all nodes; they share no folder with this machine.
+The grader is on all nodes, and SUBMISSIONS and CLASS lie in a folder that all of them see.
 """
 
 import subprocess

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from grader import message
+from grader.batch.class_file import CLASS
 from grader.batch.entry import HandIn
 from grader.batch.find import canvas, class_archive, clones, gradescope, moodle, newest, plain
 from grader.batch.find.attempt import Export, Item, Layout, items_of
 from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR, joined
 from grader.batch.find.plain import Pattern
 from grader.batch.find.roster import Roster, is_of_classroom50, read_roster
+from grader.batch.store import STORE, UNFINISHED
 from grader.errors import UsageError
 from grader.message import Message, msg, msg_many
 from grader.scratch import make_folder
@@ -45,7 +47,10 @@ class Found:
 
 @contextmanager
 def find(
-    submissions: Path, pattern: str | None = None, roster: Path | None = None
+    submissions: Path,
+    pattern: str | None = None,
+    roster: Path | None = None,
+    place: Path | None = None,
 ) -> Iterator[Found]:
     """Find the hand-ins; unpacked and renamed files last until the context ends.
 
@@ -53,13 +58,14 @@ def find(
         submissions: the export of a course system, a folder or an archive, or any folder.
         pattern: of the names, where they are not recognised: see `plain.py`.
         roster: the class as a CSV file; else `roster.csv` in the folder, if there is one.
+        place: an empty folder for what is unpacked; None: one of this machine's own.
 
     Raises:
         UsageError: there are no hand-ins, or pattern or roster cannot be used.
         GraderFailure: there is no place for files.
     """
     names = None if pattern is None else Pattern(pattern)
-    with make_folder() as scratch:
+    with nullcontext(place) if place else make_folder() as scratch:
         try:
             found = _found(submissions, names, roster, scratch.resolve())
         except OSError as error:
@@ -168,8 +174,9 @@ def _top(
 
 
 def _is_ours(item: Item) -> bool:
-    """Whether it is a folder that `grader batch` has written."""
-    return item.is_folder and all((item.path / name).exists() for name in ("class.json", "store"))
+    """Whether it is a folder that `grader batch` writes into, perhaps now."""
+    ours = (item.path / name for name in (CLASS, UNFINISHED))
+    return item.is_folder and (item.path / STORE).exists() and any(map(Path.exists, ours))
 
 
 def _layout(items: Sequence[Item]) -> Layout | None:
