@@ -1,18 +1,16 @@
-"""Unpacks a submitted archive without trusting it: nothing outside its folder, no links, no bomb.
+"""Unpacks an archive without trusting it: nothing outside its folder, no links, no bomb.
 
-A zip in a zip is unpacked as well (`finding.py`); all levels share one `Budget`.
+It is a submission's, or that of a whole class. A zip in a zip of a submission is unpacked as well
+(`finding.py`); all levels share one `Budget`.
 """
 
 from __future__ import annotations
 
 import errno
 import gzip
-import lzma
 import stat
-import struct
 import tarfile
 import zipfile
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -21,28 +19,32 @@ from typing import IO, Final
 
 from grader.errors import SubmissionError
 from grader.message import NOTHING, Message, as_message, msg, plain_text
-from grader.submission.folder import MAX_BYTES, shown
-from grader.submission.safe_members import PACK_AGAIN, Bounded, Budget, ListTooLong, Member, write
-
-#: What an archive that is damaged, or made to look so, makes its reader raise.
-DAMAGED: Final = (
-    *(zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, struct.error, EOFError),
-    *(ValueError, OverflowError, RuntimeError),
+from grader.submission.folder import shown
+from grader.submission.safe_members import (
+    DAMAGED,
+    PACK_AGAIN,
+    ArchiveLimits,
+    Bounded,
+    Budget,
+    ListTooLong,
+    Member,
+    Report,
+    TooMuch,
+    refuse,
+    write,
 )
+
 # damage as an OSError: bz2's and gzip's have no number, EINVAL is a position before the file's
 # start; the others are members in each other's way
 _DAMAGED_ERRNOS: Final = (
     *(None, errno.EINVAL, errno.ENOTDIR),
     *(errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG),
 )
-#: Of the list of members, all of them. It is read at once, and becomes 50 times as large.
-MAX_LIST_BYTES: Final = 6_000_000
 
 # bits of the general purpose flags (APPNOTE.TXT 4.4.4)
 _ENCRYPTED: Final = 0x1
 _UTF_8: Final = 0x800
 
-MAX_HEADERS: Final = 50_000  # with those of caches and venvs, which are not written
 MAX_HEADER_BYTES: Final = 100_000  # of one header, with the long names that come before it
 
 _LONG: Final = msg(
@@ -53,11 +55,12 @@ _GZIP: Final = b"\x1f\x8b"
 _CHUNK_BYTES: Final = 1 << 16
 
 
-def unpack(archive: Path, into: Path, budget: Budget) -> None:
+def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -> None:
     """Write the files of an archive below `into`; caches, venvs and colcon's output stay out.
 
     Args:
         into: an empty folder.
+        report: see `safe_members.write`.
 
     Raises:
         SubmissionError: it is empty, damaged, encrypted or too large, or it reaches outside.
@@ -68,21 +71,23 @@ def unpack(archive: Path, into: Path, budget: Budget) -> None:
         raise SubmissionError(
             "{name} is empty (0 bytes). {pack_again}", name=name, pack_again=PACK_AGAIN
         )
-    if size > MAX_BYTES:
-        raise SubmissionError(
+    if size > budget.limits.most_bytes:
+        raise TooMuch(
             "{name} has more than {max_bytes:g} MB, the limit for a submission. "
             "Leave out recordings, videos and virtual environments, and pack it "
             "again.",
             name=name,
-            max_bytes=MAX_BYTES / 1e6,
+            max_bytes=budget.limits.most_bytes / 1e6,
         )
     is_zip = archive.suffix.lower() == ".zip"
     kind = "zip" if is_zip else "tar"
     try:
         with (
-            opened_zip(archive) if is_zip else opened_tar(archive, into.with_suffix(".tar"))
+            _opened_zip(archive, budget.limits)
+            if is_zip
+            else _opened_tar(archive, into.with_suffix(".tar"), budget.limits)
         ) as members:
-            write(name, members, into, budget)
+            write(name, members, into, budget, report)
     except ListTooLong as error:
         raise SubmissionError(
             "{name} lists too many files, or too long names: {error}. {pack_again}",
@@ -121,18 +126,9 @@ def _damaged(name: str, kind: str, why: Message) -> SubmissionError:
 
 
 @contextmanager
-def opened_zip(archive: Path, most: int | None = None) -> Iterator[list[Member]]:
-    """Open a zip: its members.
-
-    Args:
-        most: so large the list of members may be [bytes]; else as large as a submission's.
-
-    Raises:
-        ListTooLong: there are too many members, or their names are too long.
-        NotImplementedError: it is packed in a way that Python does not know.
-        Exception: it is damaged; see `DAMAGED`.
-    """
-    most = most or MAX_LIST_BYTES
+def _opened_zip(archive: Path, limits: ArchiveLimits) -> Iterator[list[Member]]:
+    """Open a zip: its members."""
+    most = limits.list_bytes
     why = msg("its list has more than {most:g} MB", most=most / 1e6)
     with Bounded(archive, most, why) as file, zipfile.ZipFile(file) as packed:
         yield [
@@ -178,31 +174,22 @@ def _refusal_of_zip(info: zipfile.ZipInfo) -> Message:
 
 
 @contextmanager
-def opened_tar(
-    archive: Path, plain: Path, headers: int | None = None, budget: Budget | None = None
-) -> Iterator[list[Member]]:
+def _opened_tar(archive: Path, plain: Path, limits: ArchiveLimits) -> Iterator[list[Member]]:
     """Open a tar: its members.
 
     Args:
         plain: where the tar may lie without its compression; gone afterwards.
-        headers: so many members it may have; else as many as a submission.
-        budget: what may come out of its compression; else as much as out of a submission's.
-
-    Raises:
-        ListTooLong: there are too many members, or their names are too long.
-        SubmissionError: it is too large without its compression.
-        Exception: it is damaged; see `DAMAGED`.
     """
     with archive.open("rb") as file:
         is_compressed = file.read(len(_GZIP)) == _GZIP
     try:
         if is_compressed:
-            _decompress(archive, plain, budget or Budget())
+            _decompress(archive, plain, Budget(limits))
         with (
             Bounded(plain if is_compressed else archive, MAX_HEADER_BYTES, _LONG) as file,
             tarfile.TarFile(fileobj=file, errorlevel=0) as packed,
         ):
-            yield list(_members(packed, headers or MAX_HEADERS))
+            yield list(_members(packed, limits.headers))
     finally:
         plain.unlink(missing_ok=True)
 

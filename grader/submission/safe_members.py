@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 import io
+import lzma
+import os
 import re
+import struct
+import tarfile
+import zipfile
+import zlib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO, Final
@@ -24,9 +31,18 @@ from grader.submission.folder import (
 
 MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
 MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more
+MAX_NAME_BYTES: Final = 250  # of a file or folder; file systems allow 255
+MAX_HEADERS: Final = 50_000  # of a tar, with those of caches and venvs, which are not written
+#: Of the list of a zip's members. It is read at once, and becomes 50 times as large.
+MAX_LIST_BYTES: Final = 6_000_000
 PACK_AGAIN: Final = msg("Pack your .py file or package folder into a new .zip and hand that in.")
 
 _CHUNK_BYTES: Final = 1 << 16
+#: What an archive that is damaged, or made to look so, makes its reader raise.
+DAMAGED: Final = (
+    *(zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, struct.error, EOFError),
+    *(ValueError, OverflowError, RuntimeError),
+)
 
 
 @dataclass(frozen=True)
@@ -44,6 +60,15 @@ class Member:
     is_folder: bool
     refusal: Message
     open: Callable[[], IO[bytes]]
+
+
+#: Called with a member that cannot be written, and why; what it raises refuses the archive.
+Report = Callable[[Member, Exception], None]
+
+
+def refuse(_: Member, error: Exception) -> None:
+    """Refuse an archive for one of its members: what a student hands in is whole."""
+    raise error
 
 
 class ListTooLong(Exception):
@@ -76,68 +101,102 @@ class Bounded(io.BufferedReader):
         return data
 
 
-class Budget:
-    """How much may still come out of all archives of a submission together."""
+class TooMuch(SubmissionError):
+    """An archive holds more than it may."""
 
-    def __init__(self, bytes_left: int = MAX_BYTES, files_left: int = MAX_MEMBERS) -> None:
-        self._all_bytes, self._all_files = bytes_left, files_left
-        self._bytes_left, self._files_left = bytes_left, files_left
+
+@dataclass(frozen=True)
+class ArchiveLimits:
+    """How much an archive may hold: those of a submission.
+
+    Attributes:
+        most_bytes: of the file, and of all that comes out of it.
+        most_files: but for caches, venvs and colcon's output.
+        list_bytes: of the list of a zip's members.
+        headers: of a tar.
+    """
+
+    most_bytes: int = MAX_BYTES
+    most_files: int = MAX_MEMBERS
+    list_bytes: int = MAX_LIST_BYTES
+    headers: int = MAX_HEADERS
+
+
+class Budget:
+    """How much may still come out of an archive, and of those inside of it, together."""
+
+    def __init__(self, limits: ArchiveLimits | None = None) -> None:
+        self.limits = limits or ArchiveLimits()
+        self._bytes_left, self._files_left = self.limits.most_bytes, self.limits.most_files
 
     def count_bytes(self, name: str, count: int) -> None:
         """Count bytes that came out of the archive of this name.
 
         Raises:
-            SubmissionError: they are too many.
+            TooMuch: they are too many.
         """
         self._bytes_left -= count
         if self._bytes_left < 0:
-            raise SubmissionError(
+            raise TooMuch(
                 "{name} unpacks to more than {all_bytes:g} MB, the limit for a "
                 "submission. Leave out recordings, videos and virtual environments, and"
                 " pack it again.",
                 name=name,
-                all_bytes=self._all_bytes / 1e6,
+                all_bytes=self.limits.most_bytes / 1e6,
             )
 
     def count_files(self, name: str, count: int) -> None:
         """Count files that an archive holds.
 
         Raises:
-            SubmissionError: they are too many.
+            TooMuch: they are too many.
         """
         self._files_left -= count
         if self._files_left < 0:
-            raise SubmissionError(
+            raise TooMuch(
                 "{name} holds {count:,} files; the limit for a submission is "
                 "{all_files:,}. {pack_again}",
                 name=name,
                 count=count,
-                all_files=self._all_files,
+                all_files=self.limits.most_files,
                 pack_again=PACK_AGAIN,
             )
 
 
-def write(name: str, members: Sequence[Member], into: Path, budget: Budget) -> None:
+def write(
+    name: str, members: Sequence[Member], into: Path, budget: Budget, report: Report = refuse
+) -> None:
     """Write what really comes out, and count it: the sizes in an archive are only claims.
 
+    Args:
+        report: called with each member that is no plain file, would be written elsewhere, or cannot
+            be read or written.
+
     Raises:
-        SubmissionError: a member is no plain file, or would be written elsewhere; or there are
-            too many, or none.
+        SubmissionError: there are too many, or none.
     """
-    for path, member in _chosen(name, members, budget):
+    for path, member in _chosen(name, members, budget, report):
         target = into / path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with member.open() as source, target.open("wb") as file:
-            while chunk := source.read(_CHUNK_BYTES):
-                budget.count_bytes(name, len(chunk))
-                file.write(chunk)
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with member.open() as source, target.open("wb") as file:
+                while chunk := source.read(_CHUNK_BYTES):
+                    budget.count_bytes(name, len(chunk))
+                    file.write(chunk)
+        except (*DAMAGED, NotImplementedError, OSError) as error:
+            report(member, error)
 
 
 def _chosen(
-    name: str, members: Sequence[Member], budget: Budget
+    name: str, members: Sequence[Member], budget: Budget, report: Report
 ) -> list[tuple[PurePosixPath, Member]]:
-    """Check the members and keep the files to write; directories are made on the way."""
-    everything = [(_inside(name, member.name), member) for member in members]
+    """Check the members and return the files to write; directories are made on the way."""
+    everything: list[tuple[PurePosixPath, Member]] = []
+    for member in members:
+        try:
+            everything.append((_inside(name, member.name), member))
+        except SubmissionError as error:
+            report(member, error)
     # .parent.name is "" at the top: a submission is never left out as a whole
     marks = [path for path, _ in everything if marks_generated(path) and path.parent.name]
     results = {path.parent for path, member in everything if _is_result(path, member)}
@@ -159,16 +218,17 @@ def _chosen(
     budget.count_files(name, len(chosen))
     for _, member in chosen:
         if member.refusal:
-            raise SubmissionError(joined([name, member.refusal], " "))
-    return chosen
+            report(member, SubmissionError(joined([name, member.refusal], " ")))
+    return [(path, member) for path, member in chosen if not member.refusal]
 
 
 def _is_result(path: PurePosixPath, member: Member) -> bool:
     """Whether it is the result of an earlier grading, in a folder of its own."""
     if path.name != RESULT or not path.parent.name or member.is_folder or member.refusal:
         return False
-    with member.open() as source:
+    with suppress(*DAMAGED, NotImplementedError, OSError), member.open() as source:
         return is_result(source.read(BEGINNING_BYTES))
+    return False  # which is told when it is written
 
 
 def _inside(name: str, member: str) -> PurePosixPath:
@@ -192,4 +252,13 @@ def _inside(name: str, member: str) -> PurePosixPath:
             member=shown(member),
             pack_again=PACK_AGAIN,
         )
-    return path
+    return PurePosixPath(*map(short, path.parts))
+
+
+def short(part: str) -> str:
+    """Shorten a name for the file system; its end, with the suffix, stays."""
+    if len(os.fsencode(part)) <= MAX_NAME_BYTES:
+        return part
+    end = part[-30:]
+    begin = part.encode("utf-8", "surrogateescape")[: MAX_NAME_BYTES - len(os.fsencode(end)) - 3]
+    return f"{begin.decode('utf-8', 'ignore')}…{end}"

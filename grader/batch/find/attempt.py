@@ -18,7 +18,6 @@ from grader.submission.folder import is_junk, listed
 from grader.text import clip, one_line, plain
 
 _MAX_NAME = 200  # characters of a person's name or id
-_MAX_NAME_BYTES: Final = 200  # of a file's name; file systems allow 255
 #: ISO 8601, and its variants in names of files: 2026-11-01_12-30-05, 20261101T123005Z;
 #: Ruby's YAML has nanoseconds and a space before the zone.
 _TIME: Final = re.compile(
@@ -69,7 +68,7 @@ class Attempt:
         number: counts from 1; 0 if the export does not contain it.
         at: when it was handed in, with its time zone.
         problem: why there is nothing to grade.
-        aliases: other possible ids; the same place in all attempts of a class holds the real one.
+        keys: what may be the student's id in a roster, the best first; (): those of the person.
         alone: whether a single file in a folder is the submission, and not the folder.
     """
 
@@ -79,7 +78,7 @@ class Attempt:
     number: int = 0
     at: datetime | None = None
     problem: Message = NOTHING
-    aliases: tuple[str, ...] = ()
+    keys: tuple[str, ...] = ()
     alone: bool = False
 
 
@@ -133,19 +132,9 @@ def add_note(notes: list[Message], what: Message, names: Iterable[Text]) -> None
         notes.append(what.given(names=listed(every)))
 
 
-def short(part: str) -> str:
-    """Shorten a name for the file system; its end, with the suffix, stays."""
-    if len(os.fsencode(part)) <= _MAX_NAME_BYTES:
-        return part
-    end = part[-30:]
-    begin = part.encode("utf-8", "surrogateescape")[: _MAX_NAME_BYTES - len(os.fsencode(end)) - 3]
-    return f"{begin.decode('utf-8', 'ignore')}…{end}"
-
-
-def mostly(items: Iterable[Item], fits: Callable[[Item], object]) -> bool:
-    """Whether there are items, and at least half of them fit."""
-    found = [bool(fits(item)) for item in items]
-    return bool(found) and 2 * sum(found) >= len(found)
+def at_least_half(items: Sequence[Item], predicate: Callable[[Item], object]) -> bool:
+    """Whether there are items, and the predicate is true of at least half of them."""
+    return bool(items) and 2 * sum(bool(predicate(item)) for item in items) >= len(items)
 
 
 def person(id: str, name: str = "", columns: Mapping[str, str] | None = None) -> Person:
@@ -177,7 +166,8 @@ def read_time(text: str) -> datetime | None:
         if match["utc"]:
             return at.replace(tzinfo=UTC)
         if match["sign"]:
-            return at.replace(tzinfo=zone(match["sign"], match["hours"], match["minutes"]))
+            ahead = timedelta(hours=int(match["hours"]), minutes=int(match["minutes"]))
+            return at.replace(tzinfo=timezone(-ahead if match["sign"] == "-" else ahead))
         return at.astimezone()
     except (ValueError, OverflowError, OSError):  # there is no such day, or zone
         return None
@@ -195,15 +185,3 @@ def _of_moodle(text: str) -> datetime | None:
         with suppress(ValueError, OverflowError, OSError):
             return datetime.strptime(text, form).astimezone()
     return None
-
-
-def zone(sign: str, hours: str, minutes: str) -> timezone:
-    """Return the time zone of an offset.
-
-    Raises:
-        ValueError: no zone has this offset.
-    """
-    ahead = timedelta(hours=int(hours), minutes=int(minutes))
-    if ahead > timedelta(hours=14):
-        raise ValueError(f"no time zone is {hours}:{minutes} from Greenwich")
-    return timezone(-ahead if sign == "-" else ahead)

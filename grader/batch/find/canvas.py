@@ -13,13 +13,12 @@ import re
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final, NamedTuple
+from typing import Final
 
 from grader.batch.entry import Person
-from grader.batch.find.attempt import Attempt, Export, Item, Piece, add_note, mostly, person
-from grader.message import NOTHING, msg
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, add_note, at_least_half, person
+from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk
-from grader.submission.unpacking import is_archive
 
 LAYOUT: Final = msg("what Canvas's “Download Submissions” makes")
 _NAME: Final = re.compile(
@@ -33,31 +32,14 @@ _AGAIN: Final = re.compile(r"(?P<stem>.+)-(?P<times>[1-9]\d?)(?P<ending>(?:\.[A-
 _ONLY_TEXT: Final = msg("Only a text or a link was handed in, and no file.")
 
 
-class _File(NamedTuple):
-    """A submitted file.
-
-    Attributes:
-        id: Canvas's number of it, which grows with time.
-        original: its name, with what Canvas may have added.
-        filename: its name without that.
-        again: how often a file of this name had been handed in before.
-    """
-
-    item: Item
-    id: int
-    original: str
-    filename: str
-    again: int
-
-
 def matches(items: Sequence[Item]) -> bool:
     """Whether a folder has this layout."""
-    return mostly(items, _parsed)
+    return at_least_half(items, _parsed)
 
 
 def read(items: Sequence[Item]) -> Export:
     """Read the attempts in a folder."""
-    files: dict[tuple[str, str], list[_File]] = defaultdict(list)
+    files: dict[tuple[str, str], list[tuple[Item, str]]] = defaultdict(list)
     people: dict[tuple[str, str], Person] = {}
     others: list[str] = []
     for item in items:
@@ -74,18 +56,14 @@ def read(items: Sequence[Item]) -> Export:
         people[whose] = person(whose[0], name, columns | ({"Late": "yes"} if is_late else {}))
         submitted = files[whose]
         if match["file"] and not is_junk(match["filename"]):
-            submitted.append(_file(item, match))
-    attempts, outdated, notes = [], list[str](), []
-    for whose, submitted in files.items():
-        kept, older = _newest(submitted)
-        outdated += [file.item.name for file in older]
-        attempts.append(_attempt("_".join(whose), people[whose], kept))
+            submitted.append((item, match["filename"]))
+    notes: list[Message] = []
     if len({id for id, _ in files}) < len(files):  # a student may be named like that: ann_12
         notes.append(
             msg("Some ids stand there with several names; look at these hand-ins yourself.")
         )
-    add_note(notes, msg("Left out, since there is a newer one of this name: {names}."), outdated)
     add_note(notes, msg("Left out, since Canvas does not name them so: {names}."), others)
+    attempts = [_attempt("_".join(key), people[key], files[key]) for key in files]
     return Export(LAYOUT, attempts, notes)
 
 
@@ -93,41 +71,17 @@ def _parsed(item: Item) -> re.Match[str] | None:
     return None if item.is_folder else _NAME.fullmatch(item.name)
 
 
-def _file(item: Item, match: re.Match[str]) -> _File:
-    again = _AGAIN.fullmatch(filename := match["filename"])
-    if again is None:
-        return _File(item, int(match["file"]), filename, filename, 0)
-    plain = f"{again['stem']}{again['ending']}"
-    return _File(item, int(match["file"]), filename, plain, int(again["times"]))
-
-
-def _newest(files: list[_File]) -> tuple[list[_File], list[_File]]:
-    """Split a student's files into those that are graded, and older ones.
-
-    An export holds one attempt, but two may have been unpacked into one folder. `part-1.py` and
-    `part-2.py` are one attempt, though: of files of one name only the newest is graded where one of
-    them has that very name, or where they are archives, of which there can be but one.
-    """
-    alike: dict[str, list[_File]] = defaultdict(list)
-    for file in files:
-        alike[file.filename].append(file)
-    kept, older = [], []
-    for same in alike.values():
-        same.sort(key=lambda file: file.id)
-        is_one = len(same) == 1 or any(not file.again for file in same)
-        if is_one or is_archive(same[0].item.path):
-            kept.append(same[-1])
-            older += same[:-1]
-        else:
-            kept += [file._replace(filename=file.original, again=0) for file in same]
-    return kept, older
-
-
-def _attempt(whose: str, student: Person, files: list[_File]) -> Attempt:
-    pieces = tuple(Piece(file.item.path, file.filename) for file in files)
+def _attempt(whose: str, student: Person, files: Sequence[tuple[Item, str]]) -> Attempt:
     if files:  # Canvas assigns a feedback file to the student by this
-        columns = {**student.columns, "Exported as": files[0].item.name}
+        columns = {**student.columns, "Exported as": files[0][0].name}
         student = replace(student, columns=columns)
-    number = 1 + max((file.again for file in files), default=0)
+    again = [_AGAIN.fullmatch(name) for _, name in files]
+    names = [f"{m['stem']}{m['ending']}" if m else files[at][1] for at, m in enumerate(again)]
+    number = 1
+    if len(set(names)) == len(names):
+        number += max((int(match["times"]) for match in again if match), default=0)
+    else:  # part-1.py, part-2.py: the student called them so
+        names = [name for _, name in files]
+    pieces = tuple(Piece(item.path, name) for (item, _), name in zip(files, names, strict=True))
     problem = NOTHING if pieces else _ONLY_TEXT
     return Attempt(whose, (student,), pieces, number, problem=problem)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -27,6 +26,7 @@ from grader.submission.unpacking import is_archive
 #: The members of the class, if beside the submissions; the second is Classroom 50's.
 ROSTER: Final = "roster.csv"
 SCORES: Final = "scores.csv"
+_TABLES: Final = (ROSTER, SCORES)
 #: The first layout that a folder matches is used; a plain folder matches none.
 LAYOUTS: Final[tuple[Layout, ...]] = (gradescope, moodle, canvas, clones)
 _MAX_WRAPPERS: Final = 3  # folders in a folder that an archive was packed from
@@ -69,12 +69,6 @@ def find(
         try:
             found = _found(submissions, names, roster, scratch.resolve())
         except OSError as error:
-            if error.errno == errno.ENOSPC:
-                raise UsageError(
-                    "there is no space left in {folder} for what was handed in. "
-                    "Set TMPDIR to a folder with more.",
-                    folder=scratch.parent,
-                ) from None
             where = shown(str(error.filename or submissions))
             raise UsageError(
                 "cannot read {where}: {error}", where=where, error=str(error.strerror)
@@ -88,7 +82,7 @@ def _found(submissions: Path, names: Pattern | None, roster: Path | None, scratc
     reading = _read(submissions, items, names)
     attempts, about = list(reading.attempts), list(reading.notes)
     if known := _roster(roster, lying):
-        attempts, unknown = joined(attempts, known, reading.layout == plain.LAYOUT)
+        attempts, unknown = joined(attempts, known)
         about += unknown
     hand_ins, older = newest.hand_ins(attempts, scratch / "hand_ins")
     if not hand_ins:
@@ -101,25 +95,19 @@ def _first_note(layout: Message, hand_ins: Sequence[HandIn]) -> Message:
     """Return which layout was read, and how many hand-ins there are."""
     missing = sum(hand_in.problem in (NOT_HANDED_IN, UNCLEAR) for hand_in in hand_ins)
     there = len(hand_ins) - missing
-    if missing:
-        note = msg_many(
-            "Read as {layout}: {n:,} hand-in, {missing} missing.",
-            "Read as {layout}: {n:,} hand-ins, {missing} missing.",
-            there,
-            layout=layout,
-            missing=missing,
-        )
-    else:
-        note = msg_many(
+    notes = [
+        msg_many(
             "Read as {layout}: {n:,} hand-in.",
             "Read as {layout}: {n:,} hand-ins.",
             there,
             layout=layout,
         )
-    if layout != plain.LAYOUT:
-        return note
-    advice = msg("If that is wrong, say with --pattern how the names are made.")
-    return message.joined([note, advice], " ")
+    ]
+    if missing:
+        notes.append(msg("Missing: {missing}.", missing=missing))
+    if layout == plain.LAYOUT:
+        notes.append(msg("If that is wrong, say with --pattern how the names are made."))
+    return message.joined(notes, " ")
 
 
 # Which folder ------------------------------------------------------------------------------------
@@ -154,21 +142,17 @@ def _top(
     """
     lying: dict[str, Item] = {}
     for _ in range(_MAX_WRAPPERS + 1):
-        items = []
-        for item in items_of(folder):
-            if item.name.lower() in (ROSTER, SCORES) and item.path.is_file():
-                lying[item.name.lower()] = item
-            elif not _is_ours(item):
-                items.append(item)
+        found = items_of(folder)
+        tables = [each for each in found if each.name.lower() in _TABLES and each.path.is_file()]
+        lying |= {each.name.lower(): each for each in tables}
+        items = [each for each in found if each not in tables and not _is_ours(each)]
         if len(items) != 1 or not items[0].is_folder or names or _layout(items):
             break
         below = items_of(items[0].path)
-        is_packed = folder != submissions and below
         if not _layout(below):
-            if not is_packed:
+            if folder == submissions or not below:
                 break
-            if what := plain.one_submission(below):
-                raise _is_one(submissions, msg("it holds {what}", what=shown(what)))
+            _check_several(submissions, below)
         folder = items[0].path
     return folder, items, lying
 
@@ -189,9 +173,13 @@ def _read(submissions: Path, items: Sequence[Item], names: Pattern | None) -> Ex
         return names.read(items)
     if layout := _layout(items):
         return layout.read(items)
+    _check_several(submissions, items)
+    return plain.read(items)
+
+
+def _check_several(submissions: Path, items: Sequence[Item]) -> None:
     if what := plain.one_submission(items):
         raise _is_one(submissions, msg("it holds {what}", what=shown(what)))
-    return plain.read(items)
 
 
 def _is_one(submissions: Path, what: Message) -> UsageError:
@@ -203,9 +191,8 @@ def _is_one(submissions: Path, what: Message) -> UsageError:
 
 
 def _roster(given: Path | None, lying: dict[str, Item]) -> Roster | None:
-    if given is not None:
-        return read_roster(given)
-    if item := lying.get(ROSTER):
-        return read_roster(item.path)
-    item = lying.get(SCORES)
-    return read_roster(item.path) if item and is_of_classroom50(item.path) else None
+    if given is None and ROSTER in lying:
+        given = lying[ROSTER].path
+    if given is None and SCORES in lying and is_of_classroom50(lying[SCORES].path):
+        given = lying[SCORES].path
+    return None if given is None else read_roster(given)

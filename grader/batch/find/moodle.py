@@ -13,7 +13,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from grader.batch.find.attempt import Attempt, Export, Item, Piece, add_note, mostly, person
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, add_note, at_least_half, person
 from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk
 
@@ -27,7 +27,7 @@ _ONLY_TEXT: Final = msg("Only a text was handed in online, and no file.")
 
 def matches(items: Sequence[Item]) -> bool:
     """Whether a folder has this layout."""
-    return mostly(items, lambda item: _PREFIX.fullmatch(item.name))
+    return at_least_half(items, lambda item: _PREFIX.fullmatch(item.name))
 
 
 def read(items: Sequence[Item]) -> Export:

@@ -19,10 +19,11 @@ from typing import Final
 
 from grader.batch import store
 from grader.batch.entry import MAX_ID, HandIn, Person, id_of
-from grader.batch.find.attempt import Attempt, Piece, add_note, moment, short
+from grader.batch.find.attempt import Attempt, Piece, add_note, moment
 from grader.batch.find.joining import is_of_roster
 from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk, shown
+from grader.submission.safe_members import short
 from grader.text import unaccented
 
 _EMPTY: Final = msg("What was handed in is an empty folder.")
@@ -68,21 +69,23 @@ def _one_each(attempts: Sequence[Attempt]) -> tuple[list[Attempt], list[Person]]
 
     A member of the roster and an unknown person are never the same, whatever their ids.
     """
-    by_person: dict[tuple[bool, str], list[int]] = defaultdict(list)
-    for number, attempt in enumerate(attempts):
-        for person in attempt.people:
-            by_person[is_of_roster(attempt), person.id].append(number)
-    stays = list(map(list[Person], (attempt.people for attempt in attempts)))
-    moved = []
-    for (_, id), numbers in by_person.items():
-        if len(numbers) == 1 or all(len(attempts[number].people) == 1 for number in numbers):
-            continue
-        last = max(numbers, key=lambda number: moment(attempts[number].at))
-        moved += [person for person in attempts[last].people if person.id == id]
-        for number in set(numbers) - {last}:
-            stays[number] = [person for person in stays[number] if person.id != id]
-    pairs = zip(attempts, stays, strict=True)
-    return [replace(each, people=tuple(people)) for each, people in pairs if people], moved
+    newest: dict[tuple[bool, str], Attempt] = {}
+    for attempt in sorted(attempts, key=lambda each: moment(each.at), reverse=True):
+        for key in _keys(attempt):
+            newest.setdefault(key, attempt)
+    members = {key for each in attempts if len(each.people) > 1 for key in _keys(each)}
+    kept, moved = [], dict[str, Person]()
+    for attempt in attempts:
+        pairs = list(zip(_keys(attempt), attempt.people, strict=True))
+        gone = {key for key, _ in pairs if key in members and newest[key] is not attempt}
+        moved |= {person.id: person for key, person in pairs if key in gone}
+        if people := tuple(person for key, person in pairs if key not in gone):
+            kept.append(replace(attempt, people=people))
+    return kept, list(moved.values())
+
+
+def _keys(attempt: Attempt) -> list[tuple[bool, str]]:
+    return [(is_of_roster(attempt), person.id) for person in attempt.people]
 
 
 def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
@@ -91,7 +94,7 @@ def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
     for each in attempt.pieces:
         problem = problem or _no_submission(each.path)
     if not problem:
-        piece = assembled(attempt, place)
+        piece = _assembled(attempt, place)
         problem = _EMPTY if piece is None else NOTHING
     return HandIn(
         id,
@@ -119,7 +122,7 @@ def _no_submission(path: Path) -> Message:
     return NOTHING if stat.S_ISREG(mode) else _NO_FILE
 
 
-def assembled(attempt: Attempt, place: Path) -> Piece | None:
+def _assembled(attempt: Attempt, place: Path) -> Piece | None:
     """Return an attempt as one file or folder; None where it is empty.
 
     Args:
@@ -129,14 +132,15 @@ def assembled(attempt: Attempt, place: Path) -> Piece | None:
         OSError: something cannot be read or copied.
     """
     pieces = [piece for piece in attempt.pieces if not _is_empty(piece.path)]
-    if not pieces:
-        return None
-    if len(pieces) == 1 and pieces[0].path.is_dir():
-        only = _only_file(pieces[0].path) if attempt.alone else None
-        return pieces[0] if only is None else Piece(only, only.name)
-    if len(pieces) == 1 and pieces[0].path.name == pieces[0].name:
-        return pieces[0]
-    place.mkdir(parents=True)
+    if len(pieces) == 1:
+        (piece,) = pieces
+        if piece.path.is_dir():
+            only = _only_file(piece.path) if attempt.alone else None
+            return piece if only is None else Piece(only, only.name)
+        if piece.path.name == piece.name:
+            return piece
+    if pieces:
+        place.mkdir(parents=True)
     laid = [path for path in (_lay(piece, place) for piece in pieces) if path is not None]
     if len(laid) == 1 and len(pieces) == 1:
         return Piece(laid[0], laid[0].name)
@@ -161,9 +165,7 @@ def _lay(piece: Piece, place: Path) -> Path | None:
 
 def _free(place: Path, name: str) -> Path:
     """Return a free path in a folder for an untrusted name."""
-    if name in (".", "..") or "/" in name or os.sep in name or "\0" in name:
-        name = "submission"
-    name = short(name)
+    name = "submission" if name in (".", "..") or {"/", "\0"} & {*name} else short(name)
     target, number = place / name, 2
     while os.path.lexists(target):
         target = place / f"{number}-{name}"
@@ -197,19 +199,16 @@ def safe_ids(wanted: Sequence[str]) -> list[str]:
     """
     made = [safe_id(text) for text in wanted]
     times = Counter(id.casefold() for id in made)
-    keeps: dict[str, int] = {}  # of equal ids, the one that was not changed
-    for number, (text, id) in enumerate(zip(wanted, made, strict=True)):
-        if text == id:
-            keeps.setdefault(id.casefold(), number)
     used: set[str] = set()
-    for number, (text, id) in enumerate(zip(wanted, made, strict=True)):
-        fold = id.casefold()
-        if times[fold] > 1 and keeps.get(fold) != number:
-            made[number] = _marked(id, text)
-        while made[number].casefold() in used:
-            made[number] = _marked(id, f"{text}\0{number}")
+    for number in sorted(range(len(made)), key=lambda at: made[at] != wanted[at]):
+        text, id = wanted[number], made[number]
+        if text != id and times[id.casefold()] > 1:
+            id = _marked(id, text)
+        while id.casefold() in used:
+            id = _marked(made[number], text)
             text += "\0"
-        used.add(made[number].casefold())
+        used.add(id.casefold())
+        made[number] = id
     return made
 
 

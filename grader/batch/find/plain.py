@@ -27,7 +27,7 @@ from grader.batch.find.attempt import (
     read_time,
 )
 from grader.errors import UsageError
-from grader.message import Message, msg
+from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk, listed, shown
 from grader.submission.unpacking import is_archive
 
@@ -38,7 +38,6 @@ _OTHERS: Final = (".csv", ".json", ".md", ".ods", ".txt", ".xls", ".xlsx", ".yam
 _PACKAGE: Final = ("setup.py", "setup.cfg", "pyproject.toml", "package.xml", "CMakeLists.txt")
 #: Folders of a colcon workspace.
 _WORKSPACE: Final = {"src", "build", "install", "log"}
-MAX_LEVELS: Final = 4
 _MAX_DIGITS: Final = 9  # of the number of an attempt
 _WHOSE: Final = ("id", "name", "email")
 _FIELD: Final = re.compile(r"\{([^{}]*)\}")
@@ -61,23 +60,16 @@ def read(items: Sequence[Item]) -> Export:
     others = [item.name for item in items if not _may_be_one(item)]
     # of alice.py and alice.zip the first in this order is graded, and the other reported
     possible.sort(key=lambda item: (not item.is_folder, not is_archive(item.path)))
-    notes, whose = [], dict[str, Item]()
+    whose: dict[str, Item] = {}
     for item in possible:
-        name = stem(item)
-        if name in whose:
-            notes.append(
-                msg(
-                    "{file} is left out: {other} is of the same name.",
-                    file=shown(item.name),
-                    other=shown(whose[name].name),
-                )
-            )
-        else:
-            whose[name] = item
+        whose.setdefault(stem(item), item)
+    doubles = [item.name for item in possible if whose[stem(item)] is not item]
     attempts = [
         Attempt(name, (person(name),), (Piece(item.path, "" if item.is_folder else item.name),))
         for name, item in sorted(whose.items())
     ]
+    notes: list[Message] = []
+    add_note(notes, msg("Left out, since a folder or archive has the same name: {names}."), doubles)
     add_note(notes, msg("Left out, since they are no submissions: {names}."), others)
     return Export(LAYOUT, attempts, notes)
 
@@ -94,10 +86,6 @@ def _may_be_one(item: Item) -> bool:
     return item.is_folder or not item.name.lower().endswith(_OTHERS)
 
 
-class _Field(str):
-    """The name of a field, among the literal parts of a pattern."""
-
-
 class Pattern:
     """A parsed pattern.
 
@@ -108,24 +96,16 @@ class Pattern:
     def __init__(self, text: str) -> None:
         self.text = text
         self.levels = text.count("/") + 1
-        self._parts: list[str] = []
-        at = 0
-        for match in _FIELD.finditer(text):
-            if match.start() == at and self._parts:
-                raise self._refused(msg("two fields follow each other, with nothing between them"))
-            self._parts += [self._literal(text[at : match.start()]), self._field(match[1])]
-            at = match.end()
-        self._parts.append(self._literal(text[at:]))
-        if not set(_WHOSE) & self._fields:
-            raise self._refused(
-                msg("it does not say whose a file is: one of {{id}}, {{name}}, {{email}}")
+        #: literal texts, and at odd places the names of fields between them
+        self._parts = _FIELD.split(text)
+        literals, self._fields = self._parts[::2], list(filter(None, self._parts[1::2]))
+        if why := _fault(literals, self._fields):
+            raise UsageError(
+                "--pattern {pattern}: {why}. {advice}",
+                pattern=shown(text),
+                why=why,
+                advice=_ADVICE,
             )
-        if self.levels > MAX_LEVELS or "" in text.split("/"):
-            raise self._refused(msg("it has empty folders, or more than {most}", most=MAX_LEVELS))
-
-    @property
-    def _fields(self) -> set[str]:
-        return {str(part) for part in self._parts if isinstance(part, _Field)}
 
     def fields_of(self, path: Sequence[Item]) -> dict[str, str] | None:
         """Return the fields of a name with the folders above it; None if it does not match."""
@@ -149,7 +129,7 @@ class Pattern:
             if number == len(self._parts):
                 return [] if at == len(text) else None
             part = self._parts[number]
-            if not isinstance(part, _Field):
+            if number % 2 == 0:
                 fits = text.startswith(part, at)
                 return rest(number + 1, at + len(part)) if fits else None
             for end in range(at + 1, len(text) + 1):
@@ -157,7 +137,7 @@ class Pattern:
                 if last == "/" or (part == "attempt" and last not in "0123456789"):
                     break
                 if (found := rest(number + 1, end)) is not None:
-                    return [(str(part), text[at:end]), *found]
+                    return [(part, text[at:end]), *found]
             return None
 
         return rest(0, 0)
@@ -196,33 +176,24 @@ class Pattern:
             elif item.is_folder and not item.path.is_symlink():
                 yield from self._paths(items_of(item.path), path)
 
-    def _literal(self, text: str) -> str:
-        if "{" in text or "}" in text:
-            raise self._refused(msg("a brace has no partner"))
-        return text
 
-    def _field(self, name: str) -> _Field:
-        if not name:
-            return _Field()
+def _fault(literals: Sequence[str], fields: Sequence[str]) -> Message:
+    """Return what is wrong with a pattern; '' where nothing is."""
+    if any(sign in literal for literal in literals for sign in "{}"):
+        return msg("a brace has no partner")
+    if "" in literals[1:-1]:
+        return msg("two fields follow each other, with nothing between them")
+    for name in fields:
+        field = f"{{{shown(name)}}}"
         if not _WORD.fullmatch(name):
-            raise self._refused(
-                msg("{field} is no name for a field: expected one word", field=_braced(name))
-            )
-        if name in self._fields:
-            raise self._refused(msg("{field} stands in it twice", field=_braced(name)))
-        return _Field(name)
-
-    def _refused(self, why: Message) -> UsageError:
-        return UsageError(
-            "--pattern {pattern}: {why}. {advice}",
-            pattern=shown(self.text),
-            why=why,
-            advice=_ADVICE,
-        )
-
-
-def _braced(name: str) -> str:
-    return f"{{{shown(name)}}}"
+            return msg("{field} is no name for a field: expected one word", field=field)
+        if fields.count(name) > 1:
+            return msg("{field} stands in it twice", field=field)
+    if not set(_WHOSE) & set(fields):
+        return msg("it does not say whose a file is: one of {{id}}, {{name}}, {{email}}")
+    if "" in "*".join(literals).split("/"):
+        return msg("it has empty folders")
+    return NOTHING
 
 
 def _together(attempts: Sequence[Attempt]) -> list[Attempt]:

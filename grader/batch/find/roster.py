@@ -1,9 +1,8 @@
 """Read the members of a class from a CSV table: `roster.csv`, or a course system's export.
 
 Columns are recognised by their titles, whatever their order, case, spaces and hyphens: those of
-Moodle's grading worksheet and list of participants (English, German, French), Canvas's gradebook,
-Gradescope's roster, GitHub Classroom's `classroom_roster.csv`, Classroom 50's roster and its
-`scores.csv`. All columns are kept: an import may ask for them.
+Moodle (in English, German, French), Canvas, Gradescope, GitHub Classroom and Classroom 50. All
+columns are kept: an import may ask for them.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ import codecs
 import csv
 import io
 import re
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -41,12 +39,7 @@ _GROUPS: Final = ("group", "groups", "team", "groupname", "teamname", "gruppe", 
 #: A column of Classroom 50's `scores.csv`.
 _TAGS: Final = "submissiontag"
 _TIMES: Final = (
-    "at",
-    "handedinat",
-    "submittedat",
-    "submissiontime",
-    _TAGS,
-    "lastmodifiedsubmission",
+    *("at", "handedinat", "submittedat", "submissiontime", _TAGS, "lastmodifiedsubmission"),
 )
 #: "Participant 17", in whatever language: Moodle's number of a participant in one assignment.
 _PARTICIPANT: Final = re.compile(r"[^\d@]{5,} (\d+)")
@@ -56,7 +49,6 @@ _TAG: Final = re.compile(r"submit/(.+)")
 _NOBODY: Final = ("points possible", "student, test", "test student")
 MAX_BYTES: Final = 50_000_000
 _DELIMITERS: Final = ",;\t|"
-_UTF_16: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass(frozen=True)
@@ -67,12 +59,19 @@ class RosterMember:
         keys: everything that may identify this person in an export; compared by `folded`.
         groups: those of this person.
         at: when this person handed in, if the roster contains it.
+        unread: the text of that time, if it is none.
     """
 
     person: Person
     keys: tuple[str, ...]
     groups: tuple[str, ...] = ()
     at: datetime | None = None
+    unread: str = ""
+
+    @property
+    def id(self) -> str:
+        """The id of the person."""
+        return self.person.id
 
 
 @dataclass(frozen=True)
@@ -94,6 +93,11 @@ def folded(text: str) -> str:
     return text.strip().casefold()
 
 
+def letters(text: str) -> str:
+    """Return letters and digits alone, without case: Canvas's form of names, and that of titles."""
+    return re.sub(r"[\W_]+", "", text.casefold())
+
+
 def is_of_classroom50(path: Path) -> bool:
     """Whether a table is Classroom 50's `scores.csv`, and not another file of this name."""
     try:
@@ -104,7 +108,7 @@ def is_of_classroom50(path: Path) -> bool:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a roster.
+    """Read a roster; rows without an id and a name are left out.
 
     Raises:
         UsageError: it cannot be read, or no column identifies a person.
@@ -119,33 +123,36 @@ def read_roster(path: Path) -> Roster:
             name=shown(path.name),
             titles=listed(titles),
         )
-    everybody = (_Line(titles, line) for line in lines)
-    rows = [row for row in everybody if folded(row.name) not in _NOBODY]
-    keyed = [row for row in rows if row.filled(ids) or row.name]
-    notes = []
-    if nameless := len(rows) - len(keyed):
-        notes.append(
-            msg(
-                "{number} of the rows of {name} say neither an id nor a name.",
-                number=nameless,
-                name=shown(path.name),
-            )
-        )
+    rows = [_Row(titles, line) for line in lines]
+    rows = [
+        row for row in rows if folded(row.name) not in _NOBODY and (row.name or row.filled(ids))
+    ]
     # first the columns whose values all differ, then the others
-    ids.sort(key=lambda title: not _all_differ(row.cells[title] for row in keyed))
+    ids.sort(key=lambda title: not _all_differ([row.cells[title] for row in rows]))
     members: dict[str, RosterMember] = {}
     twice: list[str] = []
-    for row in keyed:
-        member = _member(row, ids)
-        same = folded(member.person.id)
+    for member in (_member(row, ids) for row in rows):
+        same = folded(member.id)
         if same not in members:
             members[same] = member
         elif _TAGS in there:  # one row for each attempt
             members[same] = max(members[same], member, key=lambda each: moment(each.at))
         else:
-            twice.append(member.person.id)
-    if unread := [row for row in keyed if row.time and not row.at]:
-        notes.append(_unread(path, [((*row.filled(ids), row.name)[0], row.time) for row in unread]))
+            twice.append(member.id)
+    notes = []
+    if unread := [each for each in members.values() if each.unread]:
+        notes.append(
+            msg(
+                "These times in {name} cannot be read, and count as unknown: {times}. "
+                "Expected one such as 2026-11-01T12:30:00+01:00, or Moodle's in English; without "
+                "a zone it is this machine's local time.",
+                name=shown(path.name),
+                times=listed(
+                    msg("{where}: {note}", where=shown(each.id), note=shown(each.unread))
+                    for each in unread
+                ),
+            )
+        )
     if twice:
         notes.append(
             msg(
@@ -157,74 +164,46 @@ def read_roster(path: Path) -> Roster:
     return Roster(path.name, list(members.values()), notes)
 
 
-class _Line:
+class _Row:
     """One row of a table.
 
     Attributes:
         columns: its cells by the titles of their columns.
         cells: its cells by the titles as `letters`; of equal titles the first counts.
+        name: of the person; '' where there is none.
     """
 
     def __init__(self, titles: Sequence[str], line: Sequence[str]) -> None:
         pairs = list(zip(titles, line, strict=True))
         self.columns = {title: cell for title, cell in pairs if title}
         self.cells = {letters(title): cell for title, cell in reversed(pairs)}
+        whole, *parts = ("".join(self.filled(each)[:1]) for each in (_NAMES, _FIRST, _LAST))
+        self.name = whole or " ".join(filter(None, parts))
 
     def filled(self, titles: Iterable[str]) -> list[str]:
         """Return the cells of these columns that are not empty."""
         return [cell for title in titles if (cell := self.cells.get(title))]
 
-    @property
-    def name(self) -> str:
-        """The name of the person; '' where there is none."""
-        whole = self._first(_NAMES)
-        return whole or " ".join(filter(None, (self._first(_FIRST), self._first(_LAST))))
 
-    def _first(self, titles: Iterable[str]) -> str:
-        return next((self.cells[title] for title in titles if title in self.cells), "")
-
-    @property
-    def time(self) -> str:
-        """The text of the time of submission; '' for none, which Moodle writes as a dash."""
-        return next((cell for cell in self.filled(_TIMES) if cell != "-"), "")
-
-    @property
-    def at(self) -> datetime | None:
-        """The time of submission, if `time` can be parsed."""
-        tag = _TAG.fullmatch(self.time)
-        return read_time(tag[1] if tag else self.time)
-
-
-def _member(row: _Line, ids: Sequence[str]) -> RosterMember:
-    known = row.filled(ids)
+def _member(row: _Row, ids: Sequence[str]) -> RosterMember:
+    known = row.filled(ids) or [row.name]
     numbers = [match[1] for value in known if (match := _PARTICIPANT.fullmatch(value))]
-    id = known[0] if known else row.name
-    if match := _PARTICIPANT.fullmatch(id) if known else None:
-        id = match[1]
-    parts = (part.strip() for cell in row.filled(_GROUPS) for part in re.split("[,;]", cell))
-    groups = sorted(set(parts) - {""})
-    keys = tuple(dict.fromkeys(filter(None, (id, *known, *numbers))))
-    return RosterMember(person(id, row.name, row.columns), keys, tuple(groups), row.at)
-
-
-def _unread(path: Path, times: Iterable[tuple[str, str]]) -> Message:
-    return msg(
-        "These times in {name} cannot be read, and count as unknown: {times}. "
-        "Expected one such as 2026-11-01T12:30:00+01:00, or Moodle's in English; without a zone it "
-        "is this machine's local time.",
-        name=shown(path.name),
-        times=listed(msg("{where}: {note}", where=shown(who), note=shown(at)) for who, at in times),
+    id = numbers[0] if _PARTICIPANT.fullmatch(known[0]) else known[0]
+    groups = {part.strip() for cell in row.filled(_GROUPS) for part in re.split("[,;]", cell)}
+    time = next((cell for cell in row.filled(_TIMES) if cell != "-"), "")  # Moodle's for none
+    tag = _TAG.fullmatch(time)
+    at = read_time(tag[1] if tag else time)
+    return RosterMember(
+        person(id, row.name, row.columns),
+        keys=tuple(dict.fromkeys((id, *known, *numbers))),
+        groups=tuple(sorted(groups - {""})),
+        at=at,
+        unread="" if at else time,
     )
 
 
-def _all_differ(values: Iterable[str]) -> bool:
-    found = [folded(value) for value in values]
-    return all(found) and len(set(found)) == len(found)
-
-
-def letters(text: str) -> str:
-    """Return letters and digits alone, without case: Canvas's form of names, and that of titles."""
-    return re.sub(r"[\W_]+", "", text.casefold())
+def _all_differ(values: Sequence[str]) -> bool:
+    return all(values) and len(set(map(folded, values))) == len(values)
 
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
@@ -245,44 +224,33 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
         raise UsageError(
             "cannot read the roster {path}: {why}", path=shown(path), why=str(error.strerror)
         ) from None
-    if len(raw) > MAX_BYTES:
-        raise UsageError(
-            "{name} has more than {size:g} MB: that is no roster", name=name, size=MAX_BYTES / 1e6
-        )
     text = _decoded(raw)
-    if "\0" in text:
+    if len(raw) > MAX_BYTES or "\0" in text:
         raise UsageError("{name} is no CSV file. Save the table as CSV, and name that.", name=name)
     first, _, rest = text.partition("\n")
     if first.strip().lower().startswith("sep="):
         delimiter, text = first.strip()[4:5] or ",", rest
     else:
-        delimiter = _delimiter(first)
+        delimiter = max(_DELIMITERS, key="".join(first.split('"')[::2]).count)
     try:
         lines = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter))
     except csv.Error as error:
         raise UsageError(
             "{name} is no table in CSV: {error}", name=name, error=str(error)
         ) from None
-    filled = [line for line in lines if any(cell.strip() for cell in line)]
+    filled = [[cell.strip() for cell in line] for line in lines if any(map(str.strip, line))]
     if not filled:
         raise UsageError(
             "{name} is empty: expected a first line with titles such as id,name", name=name
         )
-    titles = [cell.strip() for cell in filled[0]]
-    rows = [[cell.strip() for cell in line[: len(titles)]] for line in filled[1:]]
-    return titles, [row + [""] * (len(titles) - len(row)) for row in rows]
+    titles, *rows = filled
+    return titles, [[*row, *[""] * len(titles)][: len(titles)] for row in rows]
 
 
 def _decoded(raw: bytes) -> str:
-    if raw.startswith(_UTF_16):
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return raw.decode("utf-16", "replace")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         return raw.decode("cp1252", "replace")
-
-
-def _delimiter(line: str) -> str:
-    outside = "".join(line.split('"')[::2])
-    times = Counter(sign for sign in outside if sign in _DELIMITERS)
-    return max(_DELIMITERS, key=lambda sign: times[sign]) if times else ","

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import subprocess
 import zipfile
 from contextlib import ExitStack
 from pathlib import Path
@@ -37,31 +36,6 @@ def packed(files: dict[str, str | bytes]) -> bytes:
         for name, content in files.items():
             archive.writestr(name, content)
     return out.getvalue()
-
-
-def git(folder: Path, *arguments: str, at: str = "2026-11-01T12:00:00+0100") -> None:
-    """A command of git's, as a student gives it."""
-    subprocess.run(
-        ["git", "-c", "user.name=A", "-c", "user.email=a@b.c", *arguments],
-        cwd=folder,
-        env={
-            "PATH": "/usr/bin:/bin",
-            "HOME": str(folder),
-            "GIT_COMMITTER_DATE": at,
-            "GIT_AUTHOR_DATE": "2020-01-01T00:00:00Z",
-        },
-        check=True,
-        capture_output=True,
-    )
-
-
-def repository(folder: Path, at: str = "2026-11-01T12:00:00+0100") -> Path:
-    """A repository with one commit."""
-    lay(folder, {"node.py": NODE})
-    git(folder, "init", "-q", "-b", "main")
-    git(folder, "add", ".")
-    git(folder, "commit", "-q", "-m", "done", at=at)
-    return folder
 
 
 class Finder:

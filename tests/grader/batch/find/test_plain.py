@@ -48,7 +48,7 @@ def test_each_file_and_folder_is_a_student(tmp_path: Path, finder: Finder) -> No
 def test_of_two_with_one_name_the_archive_is_taken(tmp_path: Path, finder: Finder) -> None:
     found = finder(lay(tmp_path / "c", {"a.py": NODE, "a.zip": packed({"x.py": NODE})}))
     assert [each.filename for each in found.hand_ins] == ["a.zip"]
-    assert noted(found, "a.py is left out", "a.zip is of the same name")
+    assert noted(found, "a folder or archive has the same name: a.py")
 
 
 @pytest.mark.parametrize(
@@ -122,19 +122,6 @@ def test_names_of_strangers_are_made_harmless(tmp_path: Path, finder: Finder) ->
         assert not any(set(str(note)) & set("\n\x1b\x07\u202e") for note in found.notes)
     assert "ZOE" in ids  # of those that are alike the first keeps it
     assert "Ångström" in [each.name for each in found.hand_ins]
-
-
-def test_ten_thousand_entries_are_found(tmp_path: Path, finder: Finder) -> None:
-    folder = tmp_path / "c"
-    folder.mkdir()
-    lines = ["id,name"]
-    for number in range(10_000):
-        (folder / f"student{number}.py").touch()
-        lines.append(f"student{number},Some Body{number}")
-    lay(folder, {"roster.csv": "\n".join(lines)})
-    found = finder(folder)
-    assert len(found.hand_ins) == 10_000
-    assert found.hand_ins[0].name == "Some Body0"
 
 
 def test_the_files_of_a_hand_in_are_not_looked_at_through_links(
@@ -235,7 +222,6 @@ def test_a_file_gets_its_own_name_back(tmp_path: Path, finder: Finder) -> None:
         ("{id}_{a b}", "is no name for a field"),
         ("{id}_{name", "a brace has no partner"),
         ("{id}//x", "empty folders"),
-        ("{id}/a/b/c/d", "more than 4"),
     ],
 )
 def test_a_pattern_that_makes_no_sense_says_why(pattern: str, why: str) -> None:
