@@ -8,6 +8,7 @@ are sent. Dask gives the task of a worker that died to another one.
 
 from __future__ import annotations
 
+import logging
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
@@ -97,6 +98,7 @@ def work(
 def _connected(address: str) -> Iterator[Client]:
     from distributed import Client
 
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # it prints tracebacks
     try:
         client = Client(address, timeout=FIRST_S)
     except OSError as error:
