@@ -1,126 +1,151 @@
 """Builds the site: `make docs`.
 
-    python -m scripts.site [--no-gallery]
-
-In build/site, `pages/` is what scripts/site/ lays out (the repository's pages, the sheets of the
-exercises, the API, the gallery), and `html/` is the site that Zensical makes of it, checked.
+In build/site, `pages/` has the repository's pages, the sheets of the exercises, the API and the
+gallery; `html/` is the site that Zensical makes of them, which checks every link.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
+from markdown_it import MarkdownIt
 
-from scripts.site import api, check, exercises, gallery, pages
-from turtlesim_py.world import picture
+import grader
+from grader import cli, testing
+from grader.exercise.loading import load_exercise
+from grader.text import points
+from scripts.site import gallery
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 OUT = ROOT / "build" / "site"
-#: What colours a terminal: Zensical does so letter by letter, and everywhere.
+#: Where a link of a page leads: `](PATH#ANCHOR)`.
+LINK = re.compile(r"\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^()\s#:]+)(#[^()\s]*)?\)")
+MARKER = re.compile(r" *((?:[-*+]|\d+[.)]) +)")
+#: How Zensical colours what it tells, letter by letter.
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
-#: The empty corner of a table: it is no heading of anything.
-CORNER = re.compile(r"<th( [^>]*)?></th>")
-#: Four times the size at which it is shown [px].
-LOGO_PX = 96
+EXERCISES = """# Exercises
+
+Each page is what a student gets: `grader new DIR --exercise NAME` writes it, with the files to
+begin with, and `grader run DIR` grades by it. To change points, tolerances or the task, edit a
+copy; [how to write your own](../docs/write-an-exercise.md).
+
+| exercise | name | points |
+|---|---|---:|
+"""
+API = "# The Python API\n\nTo grade, to write checks, to try them: [how](docs/python-api.md).\n"
 
 
 def main() -> None:
     """Build, and tell what is wrong with what was built."""
     shutil.rmtree(OUT, ignore_errors=True)
-    laid_out, html = OUT / "pages", OUT / "html"
-    laid_out.mkdir(parents=True)
+    pages = OUT / "pages"
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    pages.lay_out(ROOT, laid_out)
-    exercises.lay_out(laid_out / "exercises", project["entry-points"]["grader.exercises"])
-    api.lay_out(laid_out / "api")
-    (laid_out / "assets").mkdir()
-    for name in ("site.css", "site.js"):
-        shutil.copy(HERE / name, laid_out / "assets")
-    turtle = Image.fromarray(picture.sprite("jazzy")).resize(
-        (LOGO_PX, LOGO_PX), Image.Resampling.NEAREST
-    )
-    turtle.save(laid_out / "assets" / "turtle.png")
-    if "--no-gallery" not in sys.argv:
-        gallery.lay_out(laid_out / "gallery")
-    settings = configuration(laid_out, project.get("urls", {}))
-    (OUT / "mkdocs.yml").write_text(json.dumps(settings, indent=1), encoding="utf-8")
-    build = [sys.executable, "-m", "zensical", "build", "--strict", "-f", str(OUT / "mkdocs.yml")]
-    made = subprocess.run(build, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    told = COLOURS.sub("", made.stdout).partition("Traceback")[0]
-    if made.returncode or "griffe:" in told:
-        sys.exit(told)
-    for page in html.rglob("*.html"):
-        text = page.read_text(encoding="utf-8")
-        page.write_text(CORNER.sub(r"<td\1></td>", text), encoding="utf-8")
-    if problems := check.problems(laid_out, html, settings.get("site_url", "/")):
-        sys.exit("\n".join([*problems, f"The site has {len(problems)} faults."]))
-    print(f"== the site is {html.relative_to(ROOT)}/index.html")
-
-
-def configuration(laid_out: Path, urls: dict[str, str]) -> dict[str, Any]:
-    """Return the settings of the site, with the navigation spelled out."""
-    text = (HERE / "zensical.toml").read_text("utf-8")
-    settings: dict[str, Any] = tomllib.loads(text)["project"]
-    settings |= {"docs_dir": laid_out.name, "site_dir": "html"}
-    settings["nav"] = navigation(settings["nav"], laid_out)
+    link = project.get("urls", {}).get("Repository")
+    for path in [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]:
+        text = for_python_markdown(path.read_text("utf-8"))
+        place = "index.md" if path.name == "README.md" else path.relative_to(ROOT)
+        write(pages / place, with_links(path, text, f"{link}/blob/main" if link else ""))
+    for path in (ROOT / "docs").glob("*.png"):
+        shutil.copy(path, pages / "docs")
+    names = list(project["entry-points"]["grader.exercises"])
+    write_sheets(pages / "exercises", names)
+    public = [f"{of.__name__}.{name}" for of in (grader, testing) for name in of.__all__]
+    write(pages / "api.md", API + "".join(f"\n::: {name}\n" for name in public))
+    gallery.write(pages / "gallery")
+    shutil.copytree(HERE, pages / "assets", ignore=shutil.ignore_patterns("*.py", "*.toml", "__*"))
+    settings: dict[str, Any] = tomllib.loads((HERE / "zensical.toml").read_text("utf-8"))["project"]
+    settings |= {"docs_dir": "pages", "site_dir": "html"}
     settings["plugins"]["mkdocstrings"]["handlers"]["python"]["paths"] = [str(ROOT)]
-    if "Documentation" in urls:
-        settings["site_url"] = urls["Documentation"]
-    if link := urls.get("Repository"):  # not as `repo_url`: pages would ask GitHub for its stars
-        social = {"icon": "lucide/folder-git-2", "name": "Repository", "link": link}
-        settings["extra"] = {"social": [social]}
-    return settings
+    (sheets,) = (entry["Exercises"] for entry in settings["nav"] if "Exercises" in entry)
+    sheets += [f"exercises/{name}.md" for name in names]
+    write(OUT / "mkdocs.yml", json.dumps(settings))
+    build = [sys.executable, "-m", "zensical", "build", "--strict", "-f", str(OUT / "mkdocs.yml")]
+    built = subprocess.run(build, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    told = COLOURS.sub("", built.stdout).partition("Traceback")[0]
+    if built.returncode or "griffe:" in told:
+        sys.exit(told)
+    print(f"== the site is {(OUT / 'html').relative_to(ROOT)}/index.html")
 
 
-def navigation(nav: list[Any], laid_out: Path) -> list[Any]:
-    """Return a navigation with each pattern replaced by the pages that stand nowhere else.
+def write(path: Path, text: str) -> None:
+    """Write a page, in a folder that need not be there."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
 
-    They come in the order in which the folder's own page lists them.
+
+def with_links(path: Path, text: str, files: str) -> str:
+    """Return a page whose links to files lead to the repository, or are but text without one."""
+
+    def led(found: re.Match[str]) -> str:
+        target = (path.parent / found[2]).resolve()
+        if target == ROOT / "README.md":
+            return f"[{found[1]}]({'../' * (path.parent != ROOT)}index.md{found[3] or ''})"
+        if target.suffix in (".md", ".png") and target.parent in (ROOT, ROOT / "docs"):
+            return found[0]
+        return f"[{found[1]}]({files}/{target.relative_to(ROOT)})" if files else found[1]
+
+    return LINK.sub(led, text)
+
+
+def for_python_markdown(text: str) -> str:
+    """Return a text with the same lists for Python-Markdown, which Zensical has, as for GitHub.
+
+    There what belongs to a list item is indented by four, and an empty line precedes a list, and
+    each item of one whose items have several paragraphs.
     """
-    placed = {page for page in _leaves(nav) if "*" not in page}
-
-    def spelled_out(entry: Any) -> Iterator[Any]:
-        if isinstance(entry, dict):
-            ((title, below),) = entry.items()
-            if isinstance(below, list):
-                below = [each for part in below for each in spelled_out(part)]
-            if below:
-                yield {title: below}
-        elif "*" in entry:
-            order = laid_out / entry.rpartition("/")[0] / "index.md"
-            listed = order.read_text("utf-8") if order.exists() else ""
-            names = {
-                page.relative_to(laid_out).as_posix()
-                for page in laid_out.glob(entry)
-                if not page.read_text("utf-8").startswith(pages.NOT_SEARCHED)
-            }
-            new = sorted(
-                names - placed, key=lambda name: (listed.find(f"({Path(name).name})"), name)
-            )
-            placed.update(new)
-            yield from new
-        else:
-            yield entry
-
-    return [each for entry in nav for each in spelled_out(entry)]
+    lines = text.split("\n")
+    further, preceded = [0] * len(lines), set[int]()
+    tokens = MarkdownIt("gfm-like", {"linkify": False}).parse(text)
+    for token, within in pairwise(tokens):
+        if token.map is None:
+            continue
+        first, end = token.map
+        if token.type == "list_item_open" and (marker := MARKER.match(lines[first])):
+            for number in range(first + 1, end):
+                further[number] += max(0, 4 - len(marker[1]))
+            if within.type == "paragraph_open" and not within.hidden:
+                preceded.add(first)
+        elif token.type.endswith("list_open") and token.level == 0:
+            preceded.add(first)
+    return "\n".join(
+        "\n" * (number in preceded and number > 0 and lines[number - 1] != "")
+        + (" " * further[number] + line if line else "")
+        for number, line in enumerate(lines)
+    )
 
 
-def _leaves(nav: Any) -> Iterator[str]:
-    if isinstance(nav, str):
-        yield nav
-    else:
-        for part in nav.values() if isinstance(nav, dict) else nav:
-            yield from _leaves(part)
+def write_sheets(folder: Path, names: Iterable[str]) -> None:
+    """Write the sheet of each exercise as students get it, and a page that lists them."""
+    rows = []
+    for name in names:
+        exercise = load_exercise(name)
+        write(folder / f"{name}.md", _sheet(name))
+        worth = points(exercise.max_score)
+        rows.append(f"| [{exercise.title!s}]({name}.md) | `{name}` | {worth} |\n")
+    write(folder / "index.md", EXERCISES + "".join(rows))
+
+
+def _sheet(name: str) -> str:
+    told = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
+            code = cli.main(["new", "my_solution", "--exercise", name, "--lang", "en"])
+        if code:
+            raise SystemExit(f"grader new --exercise {name}: {told.getvalue()}")
+        return Path("my_solution", "README.md").read_text(encoding="utf-8")
 
 
 if __name__ == "__main__":
