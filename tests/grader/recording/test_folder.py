@@ -156,7 +156,7 @@ def test_the_metadata_comes_last(recorded, folder, monkeypatch):
 
 
 # a turtle's window is its plan
-@pytest.mark.parametrize("stop_at", [name for name in FILES if name != "plan.png"])
+@pytest.mark.parametrize("stop_at", FILES)
 def test_a_save_that_is_cut_off_leaves_no_recording(recorded, tmp_path, monkeypatch, stop_at):
     rename = Path.replace
 
