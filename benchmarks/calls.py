@@ -28,11 +28,7 @@ class Cost:
 
 
 def grader_call(*words: str | Path) -> Cost:
-    """Call `grader` with these words and a new folder for `--out`.
-
-    Raises:
-        subprocess.CalledProcessError: it failed.
-    """
+    """Call `grader` with these words and a new folder for `--out`."""
     command = [sys.executable, "-m", "grader", *words]
     with tempfile.TemporaryDirectory() as out:
         start_s, start_cpu_s = time.perf_counter(), _children_cpu_s()

@@ -54,7 +54,6 @@ def graded() -> Cost:
 
 
 def main() -> None:
-    """Measure all."""
     runner = pyperf.Runner(processes=3, values=1, warmups=0, loops=1)
     wall = runner.bench_time_func(f"hand-in of a class, {JOBS} jobs", lambda _: graded().wall_s)
     runner.bench_time_func("hand-in of a class: CPU", lambda _: graded().cpu_s)

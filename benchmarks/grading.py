@@ -22,7 +22,6 @@ def cold() -> Cost:
 
 
 def main() -> None:
-    """Measure all."""
     runner = pyperf.Runner(processes=3, values=3, warmups=1, loops=1)
     runner.bench_time_func("grading, cold", lambda _: cold().wall_s)
     runner.bench_time_func("grading, cold: CPU", lambda _: cold().cpu_s)

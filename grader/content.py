@@ -18,11 +18,7 @@ from pathlib import Path
 
 
 def of_folder(folder: Path) -> str:
-    """Return the hash of all files in a folder and below, hexadecimal.
-
-    Raises:
-        OSError: one of them cannot be read.
-    """
+    """Return the hash of all files in a folder and below, hexadecimal."""
     found: dict[str, str] = {}
     for at, folders, files in os.walk(folder):
         links = (name for name in folders if Path(at, name).is_symlink())
@@ -41,11 +37,7 @@ def of_files(hashes: Mapping[str, str]) -> str:
 
 
 def of_file(path: Path) -> str:
-    """Return the hash of a file, hexadecimal.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Return the hash of a file, hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 

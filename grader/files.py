@@ -39,11 +39,7 @@ def cannot_write(path: Path, why: str | Message) -> UsageError:
 
 @contextlib.contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Turn what the system refuses while a path is written into an error that names the path.
-
-    Raises:
-        UsageError: the system refuses it.
-    """
+    """Turn what the system refuses while a path is written into an error that names the path."""
     try:
         yield
     except OSError as error:
@@ -56,9 +52,6 @@ def write(path: Path, content: str) -> None:
     A link stays a link. Devices and pipes are simply written to. The name of one of our
     descriptors (/dev/fd/3) is written by that descriptor: this also works where its file could not
     be opened again, because it is another user's.
-
-    Raises:
-        UsageError: it cannot be written; what was there before is still there.
     """
     data = content.encode("utf-8")
     with writing(path):
@@ -80,10 +73,6 @@ def check_writable(path: Path, schema: str | None = None, inputs: Iterable[Path]
             None for any file.
         inputs: what the call reads; folders do not count, since whatever lies in them has a
             schema of its own.
-
-    Raises:
-        UsageError: it cannot; or there is a file, neither empty nor of this schema, or it is one of
-            the inputs.
     """
     why_not: str | Message | None
     try:
@@ -130,11 +119,7 @@ def _check_schema(path: Path, schema: str) -> None:
 
 
 def check_is_no_input(path: Path, inputs: Iterable[Path]) -> None:
-    """Refuse to write over what a call reads.
-
-    Raises:
-        UsageError: the path is one of the inputs.
-    """
+    """Refuse to write over what a call reads."""
     with contextlib.suppress(OSError):  # what cannot be read is reported where it is read
         for one in inputs:
             if one.is_file() and path.exists() and path.samefile(one):
@@ -144,11 +129,7 @@ def check_is_no_input(path: Path, inputs: Iterable[Path]) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder, and those above it, where they are not there.
-
-    Raises:
-        UsageError: it cannot be made.
-    """
+    """Make a folder, and those above it, where they are not there."""
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
 
@@ -158,9 +139,6 @@ def filling(folder: Path) -> Iterator[Path]:
     """Yield a path for what fills a new or empty folder, whole or not at all.
 
     One in which only `.git` lies is empty.
-
-    Raises:
-        UsageError: the folder is a file, is not empty, or cannot be written.
     """
     with writing(folder):
         if folder.exists() and not folder.is_dir():
@@ -186,11 +164,7 @@ def filling(folder: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def sole_writer(folder: Path) -> Iterator[None]:
-    """Be the only grading that writes into a folder, as long as the context lasts.
-
-    Raises:
-        UsageError: another one writes into it.
-    """
+    """Be the only grading that writes into a folder, as long as the context lasts."""
     lock = scratch.lock_folder(folder)
     if lock is None:
         raise UsageError(
@@ -204,22 +178,14 @@ def sole_writer(folder: Path) -> Iterator[None]:
 
 
 def withdraw(path: Path) -> None:
-    """Remove what an earlier call has written to a path; a link, a device, a pipe stays.
-
-    Raises:
-        UsageError: it cannot be removed.
-    """
+    """Remove what an earlier call has written to a path; a link, a device, a pipe stays."""
     with writing(path):
         if _descriptor(path) is None and path.is_file():
             _target(path).unlink(missing_ok=True)
 
 
 def put(path: Path, content: bytes) -> None:
-    """Write a file of ours, whole or not at all, in place of whatever has its name.
-
-    Raises:
-        UsageError: it cannot be written.
-    """
+    """Write a file of ours, whole or not at all, in place of whatever has its name."""
     with writing(path):
         _write_beside(path, content)
 
@@ -228,9 +194,6 @@ def read_ours(path: Path, most_bytes: int) -> bytes:
     """Read a file of ours from a folder for results, which others may have changed.
 
     No link is followed and no pipe waited for.
-
-    Raises:
-        OSError: it cannot be read, is no ordinary file, or has more than `most_bytes`.
     """
     with open(path, "rb", opener=_open_unfollowed) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
@@ -251,9 +214,6 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     Args:
         schema, inputs: see `check_writable`; without a schema an older file of this name counts as
             ours.
-
-    Raises:
-        UsageError: it will not; or an older file is not ours.
     """
     mode = _mode(path)
     if mode is not None and stat.S_ISDIR(mode):
@@ -265,11 +225,7 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
 
 
 def check_can_fill(folder: Path) -> None:
-    """Find out whether a folder of ours can be made, or filled anew, after `clear`.
-
-    Raises:
-        UsageError: it cannot.
-    """
+    """Find out whether a folder of ours can be made, or filled anew, after `clear`."""
     mode = _mode(folder)
     if mode is not None and not (stat.S_ISDIR(mode) or stat.S_ISLNK(mode)):
         raise cannot_write(folder, msg("it is a file; expected a folder, or nothing"))
@@ -281,9 +237,6 @@ def check_leads_nowhere_else(folder: Path, submitted: Path) -> None:
 
     Args:
         submitted: a folder with submissions.
-
-    Raises:
-        UsageError: it does.
     """
     base = os.path.realpath(submitted)
     whole = Path(os.path.abspath(folder))  # noqa: PTH100  resolving would follow the link
@@ -300,11 +253,7 @@ def check_leads_nowhere_else(folder: Path, submitted: Path) -> None:
 
 
 def clear(path: Path) -> None:
-    """Remove what has a name of ours, unless it is a folder; of a link, the link.
-
-    Raises:
-        UsageError: it cannot be removed.
-    """
+    """Remove what has a name of ours, unless it is a folder; of a link, the link."""
     mode = _mode(path)
     if mode is not None and not stat.S_ISDIR(mode):
         with writing(path):

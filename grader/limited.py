@@ -176,7 +176,6 @@ class _Copy:
             yield body
 
     def close(self) -> None:
-        """End it."""
         os.close(self._answers)
         if not self._has_ended:  # else its process id may be in use again
             with suppress(ProcessLookupError):
@@ -185,7 +184,6 @@ class _Copy:
                 os.waitpid(self._pid, 0)
 
     def _read(self, size: int, deadline: float, is_stalled: Callable[[], bool]) -> bytes:
-        """Read so many bytes."""
         waiting = select.poll()
         waiting.register(self._answers, select.POLLIN)
         found = bytearray(size)

@@ -46,11 +46,7 @@ _libc: Any = ctypes.CDLL(None, use_errno=True)
 
 
 def call(function: str, *arguments: object) -> int:
-    """Call a function of the C library that returns less than 0 where it fails, with errno set.
-
-    Raises:
-        OSError: the system does not allow it, or does not know it; its `filename` is the function.
-    """
+    """Call a function of the C library that returns less than 0 where it fails, with errno set."""
     there = getattr(_libc, function, None)
     if there is None:
         raise OSError(errno.ENOSYS, "there is none here", function)
@@ -62,11 +58,7 @@ def call(function: str, *arguments: object) -> int:
 
 
 def system_call(number: int, *words: int | bytes | None, of: str = "syscall") -> int:
-    """Make a system call that the C library has no function for; `of` names it in errors.
-
-    Raises:
-        OSError: the system does not allow it, or does not know it; its `filename` is `of`.
-    """
+    """Make a system call that the C library has no function for; `of` names it in errors."""
     passed = [ctypes.c_ulong(word) if isinstance(word, int) else word for word in words]
     try:
         return call("syscall", ctypes.c_long(number), *passed)
@@ -75,11 +67,7 @@ def system_call(number: int, *words: int | bytes | None, of: str = "syscall") ->
 
 
 def unshare(kinds: int) -> None:
-    """Leave the namespaces that the calling thread shares with others.
-
-    Raises:
-        OSError: the system does not allow it; its `filename` names the kinds: "unshare (net)".
-    """
+    """Leave the namespaces that the calling thread shares with others."""
     try:
         call("unshare", kinds)
     except OSError as error:
@@ -94,9 +82,6 @@ def unshare_user(uid: int, proc: int, kinds: int = 0) -> None:
 
     Args:
         proc: a descriptor of this process's folder in a writable /proc.
-
-    Raises:
-        OSError: the system does not allow it.
     """
     user, group = os.getuid(), os.getgid()
     unshare(CLONE_NEWUSER | kinds)
@@ -111,41 +96,25 @@ def unshare_user(uid: int, proc: int, kinds: int = 0) -> None:
 
 
 def enter(namespace: int, kind: int) -> None:
-    """Move the calling thread into a namespace, given as an open descriptor.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
+    """Move the calling thread into a namespace, given as an open descriptor."""
     call("setns", namespace, kind)
 
 
 def mount(kind: str, target: str, flags: int, data: str = "", source: str = "none") -> None:
-    """Mount a file system that needs no device; or, with MS_BIND, a folder or file again.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
+    """Mount a file system that needs no device; or, with MS_BIND, a folder or file again."""
     words = (os.fsencode(source), os.fsencode(target), kind.encode())
     call("mount", *words, ctypes.c_ulong(flags), data.encode())
 
 
 def change_mount(target: str, added: int, removed: int = 0, *, below: bool = False) -> None:
-    """Add attributes to a mount and remove others; `below`: also for the mounts below it.
-
-    Raises:
-        OSError: the system does not allow it, or is older than Linux 5.12.
-    """
+    """Add attributes to a mount and remove others; `below`: also for the mounts below it."""
     attributes = bytes((ctypes.c_uint64 * 4)(added, removed, 0, 0))
     flags = AT_RECURSIVE if below else 0
     system_call(_MOUNT_SETATTR, AT_FDCWD, os.fsencode(target), flags, attributes, len(attributes))
 
 
 def change_root() -> None:
-    """Make the current folder, a mount, the root; the old root is detached.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
+    """Make the current folder, a mount, the root; the old root is detached."""
     number = _PIVOT_ROOT.get(os.uname().machine)
     if number is None:
         raise OSError(errno.ENOSYS, f"no pivot_root known for {os.uname().machine}")
@@ -174,32 +143,20 @@ def go_with_parent(parent: int, number: int) -> None:
 
 
 def forbid_new_privileges() -> None:
-    """Keep programs that are started from now on from gaining privileges.
-
-    Raises:
-        OSError: the system does not know this.
-    """
+    """Keep programs that are started from now on from gaining privileges."""
     if not control(PR_SET_NO_NEW_PRIVS, 1):
         raise OSError(errno.EINVAL, os.strerror(errno.EINVAL), "no_new_privs")
 
 
 def set_capabilities(permitted: int = 0) -> None:
-    """Set the capabilities to exactly these bits; none is inherited.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
+    """Set the capabilities to exactly these bits; none is inherited."""
     low, high = permitted & 0xFFFFFFFF, permitted >> 32
     header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION, 0)
     call("capset", header, (ctypes.c_uint32 * 6)(low, low, 0, high, high, 0))
 
 
 def raise_loopback() -> None:
-    """Bring up the loopback device of the calling thread's network namespace.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
+    """Bring up the loopback device of the calling thread's network namespace."""
     import fcntl  # here, because a submission's process has no need of them and is to start soon
     import socket
     import struct
@@ -226,11 +183,7 @@ def resource_limits() -> list[tuple[int, int, int]]:
 
 
 def set_limit(number: int, soft: int, hard: int) -> None:
-    """Set a limit of the calling process, if it is not this already.
-
-    Raises:
-        OSError, ValueError: the system does not allow it.
-    """
+    """Set a limit of the calling process, if it is not this already."""
     if resource.getrlimit(number) != (soft, hard):
         resource.setrlimit(number, (soft, hard))
 
@@ -303,11 +256,7 @@ def process_stat(pid: int) -> ProcessStat:
 
 
 def process_ids() -> set[int]:
-    """Return the ids of all processes that /proc shows.
-
-    Raises:
-        OSError: it cannot be listed.
-    """
+    """Return the ids of all processes that /proc shows."""
     return {int(name) for name in os.listdir("/proc") if name.isdigit()}  # noqa: PTH208
 
 
@@ -315,9 +264,6 @@ def descendants(ancestor: int) -> dict[int, ProcessStat]:
     """Return all processes below one, as /proc shows them: its children, theirs, and so on.
 
     A zombie counts: its threads may still run.
-
-    Raises:
-        OSError: /proc cannot be listed.
     """
     stats = {pid: process_stat(pid) for pid in process_ids()}
     return {pid: stats[pid] for pid in below({ancestor}, stats)}

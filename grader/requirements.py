@@ -40,9 +40,6 @@ def require(package: str, load: bool = True) -> None:
     Args:
         package: one of `OPTIONAL`.
         load: import it; else only search for it, which costs no time.
-
-    Raises:
-        GraderFailure: it is missing, or a package that it needs is.
     """
     module, use, requirement = OPTIONAL[package]
     try:
@@ -76,10 +73,6 @@ def missing_ros() -> UsageError | None:
 
 
 def require_ros() -> None:
-    """Check that ROS can be imported, before anything that needs it.
-
-    Raises:
-        UsageError: it cannot.
-    """
+    """Check that ROS can be imported, before anything that needs it."""
     if error := missing_ros():
         raise error

@@ -36,9 +36,6 @@ def home() -> Path:
     """Return the folder of this user's runs and locks: below the system's /tmp.
 
     Where another user has that name there: another place where only this user may write.
-
-    Raises:
-        GraderFailure: there is no such place.
     """
     refused = []
     for folder in _places():
@@ -72,11 +69,7 @@ def home_below(folder: Path) -> Path:
 
 
 def _make_private(folder: Path) -> None:
-    """Make a folder that only this user may write into, or check that it is one.
-
-    Raises:
-        OSError: it cannot be made, or is something else; the text names its owner.
-    """
+    """Make a folder that only this user may write into, or check that it is one."""
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700, parents=True)
     found = folder.lstat()
@@ -104,9 +97,6 @@ def make_folder() -> Iterator[Path]:
     """Make an empty folder, removed at the end of the context.
 
     A killed grader cannot remove its folder; its lock is free then, and the next grader does.
-
-    Raises:
-        GraderFailure: there is no place for it.
     """
     place = home()
     _clear(place)
@@ -163,9 +153,6 @@ def acquire_lock(name: str) -> IO[str] | None:
 
     Returns:
         None where another grading holds it, or where it cannot be opened.
-
-    Raises:
-        GraderFailure: there is no place for locks.
     """
     path = home() / f"{name}{LOCK}"
     for _ in range(2):
@@ -212,12 +199,7 @@ def lock_file(file: IO[str] | int) -> bool:
 
 
 def _open_lock(path: Path) -> IO[str]:
-    """Open the file of a lock, which is made if missing, and never changed.
-
-    Raises:
-        OSError: it cannot be opened, or is not an ordinary file of this user's: a link is not
-            followed, and a pipe not waited for.
-    """
+    """Open the file of a lock, which is made if missing, and never changed."""
     return open(path, "r+", opener=_open_private, encoding="utf-8")
 
 

@@ -121,12 +121,7 @@ def to_json(value: Any, bounds: Bounds = STRANGERS) -> Any:
 
 
 def from_json(kind: type[Made], data: Any, bounds: Bounds = STRANGERS) -> Made:
-    """Make a dataclass from JSON data.
-
-    Raises:
-        ValueError: it has another form, or something in it is too long; the text names it, and its
-            place.
-    """
+    """Make a dataclass from JSON data."""
     made: Made = _value(kind, data, bounds)
     return made
 
@@ -138,11 +133,7 @@ def line(value: Any) -> bytes:
 
 
 def of_line(kind: type[Made], data: bytes, bounds: Bounds = OURS) -> Made:
-    """Parse a dataclass that `line` has written.
-
-    Raises:
-        ValueError: it is none.
-    """
+    """Parse a dataclass that `line` has written."""
     try:
         return from_json(kind, loads(data.decode("ascii")), bounds)
     except RecursionError:
@@ -150,22 +141,14 @@ def of_line(kind: type[Made], data: bytes, bounds: Bounds = OURS) -> Made:
 
 
 def not_negative(number: Any) -> Any:
-    """For `Annotated`: a count, or a time [s].
-
-    Raises:
-        ValueError: it is below 0.
-    """
+    """For `Annotated`: a count, or a time [s]."""
     if not 0 <= number < math.inf:
         raise ValueError(f"expected 0 or more, found {number!r:.80}")
     return number
 
 
 def not_empty(entries: Any) -> Any:
-    """For `Annotated`: a list.
-
-    Raises:
-        ValueError: there is nothing in it.
-    """
+    """For `Annotated`: a list."""
     if not entries:
         raise ValueError("expected one or more, found none")
     return entries

@@ -30,7 +30,6 @@ def grader_version() -> str:
 
 
 def python_version() -> str:
-    """Return the version of Python."""
     return ".".join(map(str, sys.version_info[:3]))
 
 

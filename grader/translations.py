@@ -38,11 +38,7 @@ def current() -> str:
 
 
 def use(language: str) -> None:
-    """Choose the language of this process's user.
-
-    Raises:
-        ValueError: it is not among `LANGUAGES`.
-    """
+    """Choose the language of this process's user."""
     global _current
     if language not in LANGUAGES:
         raise ValueError(f"expected one of {', '.join(LANGUAGES)}, found {language!r}")

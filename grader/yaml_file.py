@@ -64,12 +64,7 @@ class YamlFile:
 
 
 def read_yaml(path: Path) -> YamlFile:
-    """Read a file.
-
-    Raises:
-        ExerciseError: it is no YAML, or a key stands in it twice.
-        OSError: it cannot be read.
-    """
+    """Read a file."""
     raw = path.read_bytes()
     try:
         text = raw.decode("utf-8-sig")

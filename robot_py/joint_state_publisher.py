@@ -100,11 +100,7 @@ class JointStatePublisher(Node):
         self.create_timer(1.0 / rate, self._on_timer)
 
     def _value(self, name: str) -> Any:
-        """Return a parameter's value; a number may be whole or not, as in the original.
-
-        Raises:
-            UnusableStart: it has another type, which the original treats as true, or crashes.
-        """
+        """Return a parameter's value; a number may be whole or not, as in the original."""
         value = self.get_parameter(name).value
         default = next(default for known, default, _ in PARAMETERS if known == name)
         fits = is_number(value) if is_number(default) else type(value) is type(default)

@@ -179,12 +179,10 @@ class _Reader(HTMLParser):
             self._open.append((tag, is_same))
 
     def handle_endtag(self, tag: str) -> None:
-        """Leave an element."""
         opened, _ = self._open.pop()
         assert opened == tag, f"<{opened}> is closed as </{tag}>"
 
     def handle_data(self, data: str) -> None:
-        """Collect a text."""
         if not self._is_same:
             self.found.append(data)
 

@@ -21,7 +21,6 @@ NOT_AT_LOWEST = ("check-jsonschema",)
 
 
 def read(path: Path) -> Any:
-    """Return what a pyproject.toml holds."""
     return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
@@ -40,7 +39,6 @@ def ros(release: str) -> list[str]:
 
 
 def main() -> list[str]:
-    """Return the requirements."""
     ours = read(ROOT / "pyproject.toml")
     groups = ours["dependency-groups"]
     if "release" in sys.argv:

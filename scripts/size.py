@@ -59,7 +59,6 @@ def is_double_of_ros(paths: list[PurePosixPath]) -> bool:
 
 
 def main(root: Path) -> None:
-    """Print everything."""
     texts = sources(root)
     trees = {path: ast.parse(text) for path, text in texts.items()}
     lines, modules = Counter[str](), Counter[str]()

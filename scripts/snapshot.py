@@ -146,7 +146,6 @@ def _pixels(found: re.Match[bytes]) -> bytes:
 
 
 def main() -> None:
-    """Take a snapshot."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--jobs", type=int, default=2)

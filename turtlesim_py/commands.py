@@ -21,7 +21,6 @@ def turtlesim() -> int:
 
 
 def turtlesim_node() -> int:
-    """Run the simulator."""
     return start("turtlesim_node", "turtlesim_py.ros.node")
 
 
@@ -36,5 +35,4 @@ def draw_square() -> int:
 
 
 def mimic() -> int:
-    """Let one turtle copy another."""
     return start("mimic", "turtlesim_py.programs.mimic")

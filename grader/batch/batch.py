@@ -91,16 +91,11 @@ class Planned:
 
     @property
     def hand_ins(self) -> int:
-        """The number of all hand-ins."""
         return sum(len(t.hand_ins) for t in self.tasks) + len(self.trivial) + len(self.done)
 
 
 def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
-    """Refuse to grade into the folder of another class; write class.json into a new one.
-
-    Raises:
-        UsageError: the folder holds another class, or is no folder of a class and not empty.
-    """
+    """Refuse to grade into the folder of another class; write class.json into a new one."""
     if not (store.out / CLASS).is_file():
         wanted.put(store.out)
         return
@@ -134,11 +129,7 @@ def _advice(differences: Mapping[str, Message], store: Store) -> Message:
 
 
 def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
-    """Plan what is to be done for these hand-ins, and record their number in class.json.
-
-    Raises:
-        UsageError: `again` names nobody.
-    """
+    """Plan what is to be done for these hand-ins, and record their number in class.json."""
     if order.again not in ("", "all", "failed", *(each.id for each in hand_ins)):
         raise UsageError("--again {again}: there is no hand-in of this name", again=order.again)
     by_key: dict[str, list[HandIn]] = {}
@@ -181,11 +172,7 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
 
 
 def _unusable(task: Task, order: Order) -> Message:
-    """Return why the files of a finished task cannot be used; '' where they can.
-
-    Raises:
-        UsageError: it was judged by another exercise than everything else.
-    """
+    """Return why the files of a finished task cannot be used; '' where they can."""
     for hand_in in task.hand_ins:
         try:
             entry = Entry.read(task.into / STUDENTS / hand_in.id)
@@ -269,9 +256,6 @@ def write_outputs(
 
     Returns:
         Notes for the teacher, as sentences.
-
-    Raises:
-        UsageError: a file cannot be written.
     """
     links = {tr("Gradebook"): CSV}
     for older in out.glob(html.FURTHER.format("*")):

@@ -69,21 +69,13 @@ class ClassFile:
     pseudonyms: str = ""
 
     def put(self, out: Path) -> None:
-        """Write class.json.
-
-        Raises:
-            UsageError: it cannot be written.
-        """
+        """Write class.json."""
         text = json_file.text({"schema": SCHEMA, **asdict(self)})
         files.put(out / CLASS, text.encode())
 
     @classmethod
     def read(cls, out: Path) -> Self:
-        """Read the class.json of a folder.
-
-        Raises:
-            UsageError: it is not the folder of a class.
-        """
+        """Read the class.json of a folder."""
         path = out / CLASS
         if not path.is_file():
             raise UsageError(

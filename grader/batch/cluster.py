@@ -75,9 +75,6 @@ def work(
         address: of the scheduler, in the form that Dask expects.
         notify: called with messages for people.
         least: the lowest level of isolation that may be; '' for any.
-
-    Raises:
-        UsageError: there is no scheduler, or a worker cannot grade this class.
     """
     require("distributed", load=False)
     with _connected(address) as client:
@@ -178,11 +175,7 @@ def _cannot_grade(worker: Message, why: object) -> UsageError:
 
 @lru_cache  # each process of a worker is asked once, also one that comes later
 def offer(terms: Terms) -> str:
-    """Return the level at which this worker isolates submissions.
-
-    Raises:
-        UsageError: it cannot grade on these terms.
-    """
+    """Return the level at which this worker isolates submissions."""
     from distributed import get_worker
 
     worker = msg("the worker at {address}", address=get_worker().address)

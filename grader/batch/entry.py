@@ -128,7 +128,6 @@ class Entry:
 
     @property
     def id(self) -> str:
-        """The id of the hand-in."""
         return self.hand_in.id
 
     @property
@@ -144,21 +143,13 @@ class Entry:
         return {} if self.result is None else {each.check: each for each in self.result.verdicts}
 
     def put(self) -> None:
-        """Write entry.json; result.json must be there already.
-
-        Raises:
-            UsageError: it cannot be written.
-        """
+        """Write entry.json; result.json must be there already."""
         data = {"schema": SCHEMA, **json_file.with_phrases(self)}
         files.put(self.folder / ENTRY, json_file.text(data).encode("utf-8"))
 
     @classmethod
     def read(cls, folder: Path) -> Self:
-        """Read the folder of a hand-in.
-
-        Raises:
-            UsageError: it is not finished, or the grader has not written it.
-        """
+        """Read the folder of a hand-in."""
         path = folder / ENTRY
         entry: Self = json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
         if entry.id != folder.name:
@@ -171,11 +162,7 @@ class Entry:
         return replace(entry, folder=folder)
 
     def _check_result(self, result: Result) -> None:
-        """Compare a result with entry.json.
-
-        Raises:
-            ValueError: it is that of another hand-in, or of another exercise.
-        """
+        """Compare a result with entry.json."""
         submitted, origin = result.handed_in, result.provenance
         if submitted is not None and submitted.id != self.id:
             raise ValueError(msg("is that of another hand-in"))

@@ -57,9 +57,6 @@ def keep(copy: Path, into: Path) -> None:
 
     Args:
         copy: the private copy of the submission; links out of it are not followed.
-
-    Raises:
-        OSError: a folder cannot be written, or a source cannot be read.
     """
     remove(into)
     into.mkdir(parents=True)
@@ -76,11 +73,7 @@ def keep(copy: Path, into: Path) -> None:
 
 
 def kept(folder: Path) -> list[File]:
-    """Return the files that `keep` has written, sorted by name; empty where there is no folder.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Return the files that `keep` has written, sorted by name; empty where there is no folder."""
     if folder.is_symlink():
         return []  # the grader makes no links
     paths = [path for path in folder.rglob("*.py") if path.is_file() and not path.is_symlink()]
@@ -118,12 +111,7 @@ def _free_name(path: Path, names: set[str]) -> str:
 
 
 def given_files(exercise: Exercise) -> list[File]:
-    """Return the files that everybody was given, named by their origin.
-
-    Raises:
-        ExerciseError: its mutants.yaml cannot be used.
-        OSError: one of them cannot be read.
-    """
+    """Return the files that everybody was given, named by their origin."""
     starter = exercise.starter_files("").items()
     found = [File(f"starter/{name}", data) for name, data in starter if name.endswith(".py")]
     solutions = read_solutions(exercise) if (exercise.folder / FILE_NAME).is_file() else ()
@@ -142,12 +130,7 @@ def _below(path: Path) -> list[File]:
 
 
 def write_exports(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
-    """Write both exports into the folder of a class; they contain ids, but no names.
-
-    Raises:
-        UsageError: they cannot be written, or sources cannot be read.
-        ExerciseError: the exercise's solutions cannot be used.
-    """
+    """Write both exports into the folder of a class; they contain ids, but no names."""
     with whole_files.writing(out / FOLDER):
         given = given_files(exercise)
         sources = [(entry, kept(entry.folder / SOURCE)) for entry in entries]
@@ -157,7 +140,6 @@ def write_exports(entries: Sequence[Entry], exercise: Exercise, out: Path) -> No
 
 
 def dolos(present: Sequence[tuple[Entry, list[File]]], given: Sequence[File]) -> bytes:
-    """Return the zip for Dolos."""
     members = {f"students/{entry.id}.py": _joined(files) for entry, files in present}
     rows = [_row(entry) for entry, _ in present]
     if given:

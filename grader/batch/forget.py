@@ -53,9 +53,6 @@ def plan(store: Store, student: str) -> Plan:
 
     Args:
         student: an id, a name or an address; in a class under pseudonyms the pseudonym.
-
-    Raises:
-        UsageError: this is nobody, or may be several.
     """
     kept = [*entries(store.out), *entries(store.out, ASIDE)]
     person = _find(student, kept)
@@ -75,11 +72,7 @@ def plan(store: Store, student: str) -> Plan:
 
 
 def carry_out(made: Plan, store: Store, exercise: Exercise, view: View, assignment: str) -> None:
-    """Do what is planned; `view` and `assignment` are those of `batch.write_outputs`.
-
-    Raises:
-        UsageError: something cannot be written; the same call goes on where this one ended.
-    """
+    """Do what is planned; `view` and `assignment` are those of `batch.write_outputs`."""
     batch.write_outputs(store.out, made.remaining, exercise, view, assignment)
     replace(ClassFile.read(store.out), hand_ins=len(made.remaining)).put(store.out)
     files.clear(store.out / CHANGES)  # has the student's row; a regrade makes it anew

@@ -194,11 +194,7 @@ def _without_path(submission: Submission) -> Submission:
 
 
 def _loaded(task: Task) -> Recordings | Message | None:
-    """Load an earlier run, or why there was none; None where there is nothing readable.
-
-    Raises:
-        RecordingError, UsageError: it cannot be read, and there is nothing to run instead.
-    """
+    """Load an earlier run, or why there was none; None where there is nothing readable."""
     if task.run is None:
         return None
     error = task.run / ERROR

@@ -74,11 +74,7 @@ def _filename(hand_in: HandIn) -> str:
 
 
 def of_class(key: Path, out: Path, submissions: Path, names: Path | None) -> Pseudonyms:
-    """Return the pseudonyms of a class by the file with the key, which is made for a new class.
-
-    Raises:
-        UsageError: the key or the folder for names cannot be used, or the class has names.
-    """
+    """Return the pseudonyms of a class by the file with the key, which is made for a new class."""
     if names is not None:
         _check_outside(names, (out, submissions), msg("what has names"))
     _check_outside(key, (out, submissions), msg("the key"))

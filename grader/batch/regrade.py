@@ -64,7 +64,6 @@ class Regrade:
 
     @property
     def headline(self) -> Message:
-        """The result in a line."""
         changed = [pair for pair in self.judged if words_of(*pair)]
         differences = [(after.score or 0.0) - (before.score or 0.0) for before, after in changed]
         return msg(
@@ -77,7 +76,6 @@ class Regrade:
 
     @property
     def table(self) -> str:
-        """The text of changes.csv."""
         words = {before.id: words_of(before, after) for before, after in self.judged}
         removed = (check for each in words.values() for check in each)
         checks = [*dict.fromkeys((*self.exercise.points, *removed, _LATE))]
@@ -115,10 +113,6 @@ def regrade(out: Path, exercise_path: str, jobs: int, store: Store | None = None
         out: the folder of the class.
         exercise_path: the edited exercise.yaml, or another name of an exercise.
         store: the opened class, if the regrade is to be applied: then the new files are made there.
-
-    Raises:
-        UsageError: it is no folder of a class, or the exercise is not that of the class.
-        ExerciseError: the exercise cannot be used.
     """
     of_class, exercise = ClassFile.read(out), load_exercise(exercise_path)
     if exercise.name != of_class.exercise:
@@ -169,9 +163,6 @@ def apply(found: Regrade, store: Store, view: View = "student", assignment: str 
     Args:
         store: the one that the regrade was made in, still locked.
         view, assignment: see `grader.batch.batch.write_outputs`.
-
-    Raises:
-        UsageError: something cannot be written; the same call goes on where this one ended.
     """
     for task in found.made:
         store.put(task.key, task.into)

@@ -50,11 +50,7 @@ class Store:
     @classmethod
     @contextmanager
     def opened(cls, out: Path) -> Iterator[Store]:
-        """Make the folder, if need be, lock it, and clear what an interrupted call has left.
-
-        Raises:
-            UsageError: it cannot be written, or another grading writes into it.
-        """
+        """Make the folder, if need be, lock it, and clear what an interrupted call has left."""
         _check_is_ours(out)
         is_new = not out.exists()
         files.make_folder(out)
@@ -85,11 +81,7 @@ class Store:
         return self.out / SUBMISSIONS / hand_in
 
     def set_aside(self, hand_ins: Iterable[str]) -> list[str]:
-        """Move the folders of all other hand-ins out of the class, and return their names.
-
-        Raises:
-            UsageError: one cannot be moved.
-        """
+        """Move the folders of all other hand-ins out of the class, and return their names."""
         ids = set(hand_ins)
         others = [path for path in (self.out / SUBMISSIONS).glob("*/") if path.name not in ids]
         try:
@@ -102,21 +94,13 @@ class Store:
         return sorted(path.name for path in others)
 
     def new_place(self) -> Path:
-        """Make an empty folder for a worker.
-
-        Raises:
-            UsageError: it cannot be made.
-        """
+        """Make an empty folder for a worker."""
         place = self.out / UNFINISHED / uuid.uuid4().hex[:12]
         files.make_folder(place)
         return place
 
     def take_out(self, folder: Path) -> None:
-        """Remove a folder, whole: what an interrupted call leaves of it, the next one removes.
-
-        Raises:
-            UsageError: it cannot be removed.
-        """
+        """Remove a folder, whole: what an interrupted call leaves of it, the next one removes."""
         place = self.new_place()
         with files.writing(folder):
             folder.rename(place / "gone")
@@ -124,11 +108,7 @@ class Store:
             raise files.cannot_write(folder, msg("not all of it can be removed"))
 
     def put(self, key: str, place: Path) -> None:
-        """Move the files of a worker into their places: the run first, then each hand-in.
-
-        Raises:
-            UsageError: it cannot be written.
-        """
+        """Move the files of a worker into their places: the run first, then each hand-in."""
         try:
             _flush(place)
             if (place / RUN).is_dir():
@@ -240,9 +220,6 @@ def of_hand_in(path: Path, filename: str) -> str:
     """Return the hash of a submission's names and contents.
 
     What nobody hands in by intention, as a .git, a __pycache__ or a venv, does not count.
-
-    Raises:
-        OSError: it cannot be read.
     """
     if path.is_dir():
         # no pipe, socket or device: they would be waited for

@@ -71,11 +71,7 @@ def _is_installed(name: str) -> bool:
 
 
 def _written(slot: Any) -> str:
-    """Return a field's type as readers of bags know it, which have no bounds and no wstring.
-
-    Raises:
-        NoType: they cannot know it.
-    """
+    """Return a field's type as readers of bags know it, which have no bounds and no wstring."""
     inner = value_type(slot)
     if hasattr(inner, "namespaces"):
         base = f"{inner.namespaces[0]}/{inner.name}"
@@ -91,11 +87,7 @@ def _written(slot: Any) -> str:
 
 
 def make(kind: Any, values: Any) -> Any:
-    """Make a message of plain data: fields with values, or of its only field the value.
-
-    Raises:
-        ValueError: it has no such field, or a value does not fit.
-    """
+    """Make a message of plain data: fields with values, or of its only field the value."""
     slots = dict(members(kind))
     if not isinstance(values, Mapping):
         if len(slots) != 1:

@@ -77,7 +77,6 @@ class Playing:
 
     @property
     def nodes(self) -> tuple[Any, ...]:
-        """Those of its peers."""
         return tuple(peer.node for peer in self._peers)
 
     @property
@@ -87,7 +86,6 @@ class Playing:
 
     @property
     def flags(self) -> tuple[Message, ...]:
-        """Remarks for the result."""
         return tuple(self._recorder.flags)
 
     def meet(self, endpoints: tuple[Any, ...]) -> None:

@@ -69,7 +69,6 @@ class CastRecorder:
 
     @property
     def is_full(self) -> bool:
-        """Whether nothing more is recorded."""
         return bool(self.flags)
 
     def meet(self, endpoints: Iterable[Any]) -> None:

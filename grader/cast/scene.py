@@ -51,7 +51,6 @@ class GraphSimulation(Simulation):
         return True
 
     def tick(self, now_ns: int | None = None) -> Reason:
-        """Let a tick pass."""
         if not self.records:
             return ""
         self.ticks += 1
@@ -74,11 +73,9 @@ class GraphSimulation(Simulation):
         send({"t": made.duration_ns / 1e9, **shown, "items": changed})
 
     def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
-        """Let a foreseen tick pass."""
         return self.tick(now_ns), ()
 
     def trace(self) -> CastTrace:
-        """Return what was exchanged."""
         made: CastTrace = self._cast.trace(self.ticks)
         return made
 
@@ -101,7 +98,6 @@ class GraphScene(Scene):
         return GraphSimulation(limits, hooks)
 
     def untouched(self, start: Start | None) -> Trace:
-        """Nothing."""
         return CastTrace()
 
     def message_definitions(self) -> Mapping[str, str]:
@@ -170,7 +166,6 @@ class GraphScene(Scene):
         return odd_traces()
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
-        """Events, always."""
         return [(trace.EVENTS, trace.STRING)]
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
@@ -179,7 +174,6 @@ class GraphScene(Scene):
         return trace.to_messages(made)
 
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
-        """Read a trace back."""
         return trace.from_channels(channels, duration_ns)
 
 

@@ -49,11 +49,7 @@ Template = Any
 
 
 def a_name(name: str) -> str:
-    """For `Annotated`: the name of a node, a topic, a service or an action.
-
-    Raises:
-        ValueError: it cannot be one.
-    """
+    """For `Annotated`: the name of a node, a topic, a service or an action."""
     if not _TOPIC.fullmatch(name):
         raise ValueError(f"expected a name such as chatter, found {name!r:.80}")
     return name
@@ -211,7 +207,6 @@ class PeerFrame:
 
     @property
     def topic(self) -> str:
-        """That it is broadcast on."""
         return "/tf" if self.rate else "/tf_static"
 
 

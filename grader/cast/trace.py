@@ -169,11 +169,7 @@ def _checked(event: Any) -> Event:
 
 
 def from_channels(channels: Sequence[Channel], duration_ns: int) -> CastTrace:
-    """Read a trace from the channels of a bag.
-
-    Raises:
-        ValueError, KeyError, TypeError, LookupError: `to_messages` makes no such channels.
-    """
+    """Read a trace from the channels of a bag."""
     by_topic = {channel.topic: channel for channel in channels}
     *listed, last = (strict_json.loads(string_of(e)) for e in by_topic.pop(EVENTS).messages())
     events = [_checked(event) for event in listed]

@@ -149,11 +149,7 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _named(found: Found, messages: Console) -> str:
-    """Return the one exercise that hand-ins name, else the default one.
-
-    Raises:
-        UsageError: they name several, or one that is not installed.
-    """
+    """Return the one exercise that hand-ins name, else the default one."""
     from grader import grading
     from grader.run.opening import marks_of
     from grader.submission.folder import listed

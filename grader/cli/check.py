@@ -115,11 +115,7 @@ def _show(
 
 
 def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) -> Exercise:
-    """Load the exercise of the call, else the one that the recording was made for.
-
-    Raises:
-        UsageError: that one is not installed.
-    """
+    """Load the exercise of the call, else the one that the recording was made for."""
     if asked is not None:
         return load_exercise(asked)
     origin = recordings.nominal.provenance

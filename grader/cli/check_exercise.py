@@ -57,7 +57,6 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _print(examination: Examination, console: Console) -> None:
-    """Print what was found."""
     table = Table(
         tr("check"),
         tr("catches"),

@@ -81,12 +81,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Write it, into a new or empty folder alone.
-
-    Raises:
-        UsageError: an option cannot be used, the folder is not empty, or cannot be written.
-        ExerciseError: there is no such exercise.
-    """
+    """Write it, into a new or empty folder alone."""
     kind = KINDS[args.kind]
     if any("," in name for name in args.exercises):
         raise UsageError(

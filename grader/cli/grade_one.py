@@ -214,9 +214,6 @@ def _withdraw(out: Path, args: argparse.Namespace) -> None:
     """Check that a result can be written, and remove an older one.
 
     An old result must not remain after a refused call or a failed run.
-
-    Raises:
-        UsageError: one of the paths cannot be written; then nothing has changed.
     """
     copy, path, read = args.json, args.submission, list(options.inputs(args))
     if args.out is None:

@@ -67,11 +67,7 @@ class Live:
     def open(
         self, exercise: Exercise, submission: str, plans: Sequence[Plan], messages: Console
     ) -> None:
-        """Serve the page, print its address, and wait for a viewer; later only show what is graded.
-
-        Raises:
-            UsageError: runs of this exercise cannot be shown, or not on this system.
-        """
+        """Serve the page, print its address, wait for a viewer; later only show what is graded."""
         self._plans = plans
         is_first = self._page is None
         if is_first:
@@ -146,7 +142,6 @@ class Live:
         self._change(score=score, judged=judged)
 
     def know(self, report: Report) -> None:
-        """Show the final verdicts."""
         self._change(
             score=tr("Score: {score}", score=report.score_text),
             first=report.first_line,

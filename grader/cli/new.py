@@ -33,11 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Copy the starter and write the sheet, into a new or empty folder alone.
-
-    Raises:
-        UsageError: the folder is not empty, or cannot be written.
-    """
+    """Copy the starter and write the sheet, into a new or empty folder alone."""
     folder: Path = args.folder
     exercise = load_exercise(args.exercise)
     called = folder.resolve().name

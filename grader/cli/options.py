@@ -65,7 +65,6 @@ class Parser(argparse.ArgumentParser):
     make_epilog: Callable[[], str] | None = None
 
     def format_help(self) -> str:
-        """Return the help."""
         self.epilog = self.make_epilog() if self.make_epilog else self.epilog
         return super().format_help()
 
@@ -90,7 +89,6 @@ def choose_language(words: Sequence[str]) -> None:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options."""
     _add_error_file(parser)
     parser.add_argument(
         LANG,
@@ -176,11 +174,7 @@ def inputs(args: argparse.Namespace) -> Iterator[Path]:
 
 
 def secret_of(args: argparse.Namespace) -> str:
-    """Return the secret that --seed-file holds; '' without one.
-
-    Raises:
-        UsageError: it cannot be read, or nobody would have to guess it.
-    """
+    """Return the secret that --seed-file holds; '' without one."""
     if args.seed_file is None:
         if args.seed_shown_from is not None:
             raise UsageError(msg("--seed-shown-from is for --seed-file"))
@@ -209,11 +203,7 @@ def hides_seed(args: argparse.Namespace) -> bool:
 
 
 def prepare(args: argparse.Namespace) -> None:
-    """Remove an old file of --error-json.
-
-    Raises:
-        UsageError: no new one could be written, or the file is not one of the grader's.
-    """
+    """Remove an old file of --error-json."""
     if args.error_json is not None:
         from grader.result.error import FAMILY
 
@@ -222,11 +212,7 @@ def prepare(args: argparse.Namespace) -> None:
 
 
 def write(error: GraderError, args: argparse.Namespace) -> None:
-    """Write an error to the file of --error-json, if there is one.
-
-    Raises:
-        UsageError: it cannot be written.
-    """
+    """Write an error to the file of --error-json, if there is one."""
     if args.error_json is not None:
         from grader.result.error import ErrorResult
 

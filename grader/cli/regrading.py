@@ -25,10 +25,6 @@ def run(args: Namespace, jobs: int, view: View) -> int:
 
     The table is also written into --out, or into the folder of the class. The exit code is 3 if
     some could not be judged again.
-
-    Raises:
-        UsageError: it is no folder of a class, is graded just now, or something cannot be written.
-        ExerciseError: the exercise cannot be used.
     """
     out, folder = Path(args.regrade), Path(args.out or args.regrade)
     messages, of_class = Console(stderr=True, highlight=False), ClassFile.read(out)

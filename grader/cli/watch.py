@@ -39,9 +39,6 @@ def each_save(submission: Path, out: Path | None = None) -> Iterator[None]:
 
     Args:
         out: a folder whose files are ignored, though it may be inside of the submission.
-
-    Raises:
-        UsageError: the folder to watch does not exist.
     """
     folder = (submission if submission.is_dir() else submission.parent).absolute()
     if not folder.is_dir():

@@ -50,11 +50,7 @@ class Template(string.Template):
 def write(
     folder: Path, name: str, kind: Kind, exercises: Sequence[Exercise], how: Settings
 ) -> None:
-    """Write the repository for the kind of this name into a folder that is not there yet.
-
-    Raises:
-        UsageError: a starter cannot be read.
-    """
+    """Write the repository for the kind of this name into a folder that is not there yet."""
     slugs = [(each, each.name.replace("_", kind.slug)) for each in exercises]
     for exercise, slug in slugs:
         place = folder / kind.starter.replace(EXERCISE, slug)

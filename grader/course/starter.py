@@ -50,9 +50,6 @@ def write(folder: Path, exercise: Exercise, given: str, called: str, ros: str | 
         given: the name or path of the exercise.
         called: what students know the folder as.
         ros: the ROS 2 release that it is for; none: as it comes.
-
-    Raises:
-        UsageError: it cannot be read, or no package can be named after the folder.
     """
     try:
         files = exercise.starter_files()
@@ -93,9 +90,6 @@ def _package_name(called: str, before: str, given: Iterable[str]) -> str:
         given: the paths of its files.
 
     Two packages in a workspace may not share one, and it hides no module that is there already.
-
-    Raises:
-        UsageError: the folder's name has no letter or digit for it.
     """
     if not before:
         return ""

@@ -82,7 +82,6 @@ class Case:
 
     @property
     def run(self) -> Run:
-        """Its outcome and circumstances."""
         return self.recording.run
 
     @property

@@ -355,7 +355,6 @@ def _near(end: End, near: Endpoint) -> str | Message:
 
 
 def _fix(end: End, near: Endpoint) -> Message:
-    """Say what to write instead."""
     package, kind, name = near.type.split("/")
     imported = f"`from {package}.{kind} import {name}`"
     if near.name == "/tf_static":

@@ -251,7 +251,6 @@ def ended_itself(case: Case) -> Diagnosis | None:
 
 
 def crashed(case: Case) -> Diagnosis | None:
-    """An exception that nobody caught."""
     raised = case.raised
     if case.run.outcome != "crashed" or raised is None or case.is_shut_down:
         return None

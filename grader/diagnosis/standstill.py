@@ -88,7 +88,6 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
 
 
 def endless_loop(case: Case) -> Diagnosis | None:
-    """The program computes without end."""
     stop = case.stop
     help_ = msg(
         "Nothing else of your node can happen while a loop runs. Let a timer "

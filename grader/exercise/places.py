@@ -53,7 +53,6 @@ class Place:
 
     @property
     def description(self) -> Path:
-        """Its exercise.yaml."""
         return self.folder / DESCRIPTION
 
 
@@ -68,11 +67,7 @@ def is_installed(name: str) -> bool:
 
 
 def installed(name: str) -> Place:
-    """Return the installed exercise of this name.
-
-    Raises:
-        ExerciseError: there is none, or there are two.
-    """
+    """Return the installed exercise of this name."""
     found = extensions.points(EXERCISES).get(name, [])
     if len(found) > 1:
         raise ExerciseError(
@@ -89,11 +84,7 @@ def installed(name: str) -> Place:
 
 
 def in_folder(folder: Path) -> Place:
-    """Return the exercise in a folder.
-
-    Raises:
-        ExerciseError: one of its two files is missing.
-    """
+    """Return the exercise in a folder."""
     if why := _wrong_with(folder):
         raise ExerciseError("{path} is not an exercise: {why}", path=str(folder), why=why)
     folder = folder.resolve()
@@ -130,9 +121,6 @@ def import_checks(place: Place) -> Checks:
     """Import the checks of an exercise; those of a folder are read anew every time.
 
     The files of a folder see each other as those of a package do: `from . import shape`.
-
-    Raises:
-        ExerciseError: there are none, or importing them fails; with file and line.
     """
     module: ModuleType
     if place.package:
@@ -165,11 +153,7 @@ def _imported_folder(package: str, place: Place) -> ModuleType:
 
 
 def locate(folder: Path, where: str) -> Path:
-    """Find a file that an exercise names: below a folder, or as PACKAGE/PATH in a package.
-
-    Raises:
-        ExerciseError: there is nothing.
-    """
+    """Find a file that an exercise names: below a folder, or as PACKAGE/PATH in a package."""
     if (folder / where).exists():
         return folder / where
     package, _, rest = where.partition("/")

@@ -50,11 +50,7 @@ class LatePolicy:
     most: float
 
     def deduction(self, at: datetime) -> Late:
-        """Return what a submission at some time costs.
-
-        Raises:
-            ValueError: the time has no zone.
-        """
+        """Return what a submission at some time costs."""
         if at.utcoffset() is None:
             raise ValueError(f"expected a time with its zone, found {at.isoformat()}")
         late = at - self.due

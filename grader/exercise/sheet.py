@@ -46,7 +46,6 @@ class Start:
 
 
 def sheet(exercise: Exercise, subject: Subject, start: Start) -> str:
-    """Return the sheet."""
     trial = subject.how_to_try(start.program, start.package)
     parts = (
         [f"# {translate(exercise.title)}", in_force(translate(exercise.task), exercise.tolerances)],

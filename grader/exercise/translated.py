@@ -30,12 +30,7 @@ OF_A_CHECK = ("title", "rubric")
 
 
 def read_translations(description: Path) -> dict[str, YamlFile]:
-    """Read the translations beside an exercise.yaml, or beside an edited copy: language -> file.
-
-    Raises:
-        ExerciseError: one is no YAML, or in a language that there is not.
-        OSError: one cannot be read.
-    """
+    """Read the translations beside an exercise.yaml, or beside an edited copy: language -> file."""
     languages = [code for code in LANGUAGES if code != ENGLISH]
     files = {}
     name = f"{glob.escape(description.stem)}.[a-z][a-z]{description.suffix}"

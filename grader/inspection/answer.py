@@ -123,11 +123,7 @@ class Inspection:
 
 
 def decode(data: bytes) -> Inspection:
-    """The inspection that bytes mean.
-
-    Raises:
-        ValueError: they mean none.
-    """
+    """The inspection that bytes mean."""
     made = trace.read(Inspection, data)
     trace.must_agree(made.trace)
     return made

@@ -21,7 +21,6 @@ _LONGEST = 160
 
 
 def tables(trace: PackageTrace) -> tuple[Table, ...]:
-    """One for each launch file."""
     return tuple(_table(trace, launch) for launch in trace.launches[:_MOST_TABLES])
 
 

@@ -57,7 +57,6 @@ class PackageSubject(Subject):
         return {_TYPE: "string data\n"}
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
-        """The one."""
         return [(_TOPIC, _TYPE)]
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
@@ -66,22 +65,16 @@ class PackageSubject(Subject):
         return [BagMessage(0, _TOPIC, _TYPE, data)]
 
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
-        """The trace of the one message.
-
-        Raises:
-            ValueError: there is another.
-        """
+        """The trace of the one message."""
         found = [(each.topic, each.msgtype, each.times_ns.tolist()) for each in channels]
         if found != [(_TOPIC, _TYPE, [0])]:
             raise ValueError(f"expected one message on {_TOPIC}, found {found!r:.80}")
         return self.decode(string_of(next(channels[0].messages())).encode("ascii"))
 
     def encode(self, made: Trace) -> bytes:
-        """The trace in JSON."""
         return encode(PackageTrace.of(made))
 
     def decode(self, data: bytes) -> Trace:
-        """The trace that bytes mean."""
         return decode(data)
 
     def view(self, made: Trace) -> View:

@@ -304,12 +304,10 @@ class PackageTrace:
 
     @property
     def duration_ns(self) -> int:
-        """No time passes."""
         return 0
 
     @property
     def ticks(self) -> int:
-        """None: there is no clock."""
         return 0
 
     def sha256(self) -> str:
@@ -324,22 +322,14 @@ def encode(made: object) -> bytes:
 
 
 def decode(data: bytes) -> PackageTrace:
-    """The trace that bytes mean.
-
-    Raises:
-        ValueError: they mean none.
-    """
+    """The trace that bytes mean."""
     trace = read(PackageTrace, data)
     must_agree(trace)
     return trace
 
 
 def read(kind: type[Made], data: bytes) -> Made:
-    """The dataclass that bytes mean.
-
-    Raises:
-        ValueError: they mean none.
-    """
+    """The dataclass that bytes mean."""
     if len(data) > MOST_BYTES:
         raise ValueError(f"a trace of {len(data)} bytes; expected {MOST_BYTES} at most")
     try:
@@ -349,11 +339,7 @@ def read(kind: type[Made], data: bytes) -> Made:
 
 
 def must_agree(trace: PackageTrace) -> None:
-    """Numbers of texts are of texts that there are.
-
-    Raises:
-        ValueError: they are not.
-    """
+    """Numbers of texts are of texts that there are."""
     values = (p for launch in trace.launches for node in launch.nodes for p in node.parameters)
     numbers = [
         *(each.text for each in values),

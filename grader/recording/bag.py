@@ -38,9 +38,6 @@ def write(trace: Trace, subject: Subject, folder: Path) -> Path:
     """Write a bag; returns its .mcap, which is named like the folder. Last comes metadata.yaml.
 
     The same trace gives the same bytes.
-
-    Raises:
-        OSError: it cannot be written, e.g. because the disk is full.
     """
     types = BagTypes(subject.definitions_of(trace))
     folder.mkdir(parents=True)
@@ -76,11 +73,7 @@ def write(trace: Trace, subject: Subject, folder: Path) -> Path:
 
 
 def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
-    """Read a bag that `write` has written; `duration_ns` is how long was recorded.
-
-    Raises:
-        RecordingError: it is damaged, or is another one.
-    """
+    """Read a bag that `write` has written; `duration_ns` is how long was recorded."""
     wrong = f"cannot read the bag in {mcap.parent}"
     try:
         channels = read_channels(mcap)

@@ -28,11 +28,9 @@ class Both:
 
     @property
     def ticks(self) -> int:
-        """The number of ticks."""
         return self.trace.ticks
 
     def sha256(self) -> str:
-        """A hash of both."""
         return hashlib.sha256(f"{self.trace.sha256()}{self.cast.sha256()}".encode()).hexdigest()
 
 
@@ -49,21 +47,17 @@ class CastKeeper(Subject):
         return self._scene.name
 
     def untouched(self, start: Start | None) -> Trace:
-        """Both, with nothing in them."""
         return Both(self._scene.untouched(start), self._cast.untouched(None))
 
     def message_definitions(self) -> Mapping[str, str]:
-        """Those of both."""
         return {**self._cast.message_definitions(), **self._scene.message_definitions()}
 
     def definitions_of(self, trace: Trace) -> Mapping[str, str]:
-        """Those of both traces."""
         assert isinstance(trace, Both)
         own = self._scene.definitions_of(trace.trace)
         return {**self._cast.definitions_of(trace.cast), **own}
 
     def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
-        """Those of both."""
         assert isinstance(trace, Both)
         others = self._cast.bag_topics(trace.cast)
         return [
@@ -72,7 +66,6 @@ class CastKeeper(Subject):
         ]
 
     def to_messages(self, trace: Trace) -> list[BagMessage]:
-        """Those of both, by time."""
         assert isinstance(trace, Both)
         others = self._cast.to_messages(trace.cast)
         made = self._scene.to_messages(trace.trace)
@@ -80,7 +73,6 @@ class CastKeeper(Subject):
         return sorted(made, key=lambda message: message.time_ns)
 
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
-        """Read both back."""
         prefix = f"{PREFIX}/"
         own = [each for each in channels if not each.topic.startswith(prefix)]
         others = [
@@ -100,5 +92,4 @@ def together(trace: Trace, cast: Trace | None, subject: Subject) -> tuple[Trace,
 
 
 def apart(kept: Trace) -> tuple[Trace, Trace | None]:
-    """Return the two again."""
     return (kept.trace, kept.cast) if isinstance(kept, Both) else (kept, None)

@@ -43,9 +43,6 @@ class Channel:
 
         Args:
             layout: of one message, with all of its bytes.
-
-        Raises:
-            ValueError: one of them has another length.
         """
         sizes = self.ends - self.begins
         other = sizes[sizes != layout.itemsize]

@@ -46,11 +46,7 @@ class McapWriter:
     """
 
     def __init__(self, path: Path) -> None:
-        """Create the file.
-
-        Raises:
-            OSError: it cannot be written; also from the methods.
-        """
+        """Create the file."""
         self._file = path.open("xb")
         self._file.write(MAGIC)
         self._record(HEADER, _string("ros2") + _string(LIBRARY))
@@ -172,9 +168,6 @@ def read_mcap(path: Path) -> list[Channel]:
     """Read a file of `McapWriter`'s; return its channels, in their order.
 
     All is in its chunks: what stands behind the data is for readers that want part of it.
-
-    Raises:
-        ValueError: it is damaged, or is another one.
     """
     data = path.read_bytes()
     if not (data.startswith(MAGIC) and data.endswith(MAGIC)):
@@ -210,7 +203,6 @@ class _Found:
         self._messages: list[tuple[int, int, int, int]] = []
 
     def add(self, content: bytes) -> None:
-        """Read a chunk."""
         (size,) = unpack_from("<Q", content, 16)
         compression, at = _text(content, 28)
         (length,) = unpack_from("<Q", content, at)

@@ -401,11 +401,7 @@ class Observations:
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
-        """Parse observations, which are not trusted.
-
-        Raises:
-            ValueError: it has another form, or is longer than it may be.
-        """
+        """Parse observations, which are not trusted."""
         observations = from_json(cls, data, STRANGERS)
         for end in observations.ends:
             if any(each.line >= len(end.lines) for each in end.sent):

@@ -67,21 +67,13 @@ _TRACE, _ERROR = b"=", b"!"
 
 
 def load(path: Path) -> Recording:
-    """Read a recording from its folder, or from that of any of its files.
-
-    Raises:
-        RecordingError: it is missing, damaged, or something else.
-    """
+    """Read a recording from its folder, or from that of any of its files."""
     (recording,) = _loaded([_read_header(_folder(path))])
     return recording
 
 
 def load_all(path: Path) -> Recordings:
-    """Read a nominal recording and the varied ones in it.
-
-    Raises:
-        RecordingError: one of them is missing, damaged, or something else.
-    """
+    """Read a nominal recording and the varied ones in it."""
     folder = _folder(path)
     first = _read_header(folder)
     found = varied_in(folder)
@@ -180,11 +172,7 @@ def _facts(folder: Path) -> dict[str, Any]:
 
 @contextmanager
 def _refusing(path: Path) -> Iterator[None]:
-    """Turn an error in a file or folder into one that names it.
-
-    Raises:
-        RecordingError: something is.
-    """
+    """Turn an error in a file or folder into one that names it."""
     try:
         yield
     except OSError as error:
@@ -211,7 +199,6 @@ class _Header:
 
     @property
     def kept(self) -> Subject:
-        """Who reads the bag."""
         return CastKeeper(self.subject) if self.facts.get("cast") else self.subject
 
 

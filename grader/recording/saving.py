@@ -41,9 +41,6 @@ def save_all(recordings: Recordings, folder: Path) -> None:
     """Write a nominal recording and its varied ones into a folder, in place of older ones.
 
     The folder is made if need be.
-
-    Raises:
-        OSError: they cannot be written.
     """
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)

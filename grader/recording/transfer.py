@@ -23,7 +23,6 @@ class NotRead(ValueError):
 
 
 def pack(trace: Trace, subject: Subject) -> bytes:
-    """Serialise a trace."""
     messages = subject.to_messages(trace)
     topics = [*subject.bag_topics(trace), *((each.topic, each.msgtype) for each in messages)]
     numbers = {each: number for number, each in enumerate(dict.fromkeys(topics))}
@@ -39,11 +38,7 @@ def pack(trace: Trace, subject: Subject) -> bytes:
 
 
 def unpack(packed: bytes, subject: Subject) -> Trace:
-    """Parse a trace.
-
-    Raises:
-        ValueError: the bytes are none; a `NotRead` where the subject says so.
-    """
+    """Parse a trace."""
     failure: type[ValueError] = ValueError
     try:
         (length,) = _LENGTH.unpack_from(packed)

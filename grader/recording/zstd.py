@@ -20,11 +20,7 @@ _LEVEL: Final = 3
 
 
 def compress(data: bytes) -> bytes:
-    """Compress data into one frame.
-
-    Raises:
-        GraderFailure: there is no zstd; also from `decompress`.
-    """
+    """Compress data into one frame."""
     if found := python():
         return bytes(found.compress(data))
     library = c_library()
@@ -34,11 +30,7 @@ def compress(data: bytes) -> bytes:
 
 
 def decompress(packed: bytes, size: int) -> bytes:
-    """Decompress a frame of so many bytes; nothing is made of one of more.
-
-    Raises:
-        ValueError: it is damaged, or of another size.
-    """
+    """Decompress a frame of so many bytes; nothing is made of one of more."""
     wrong = f"expected {size} bytes compressed by zstd"
     if found := python():
         unpacking = found.ZstdDecompressor()
@@ -71,11 +63,7 @@ def python() -> Any:
 
 @cache
 def c_library() -> Any:
-    """Return the C library.
-
-    Raises:
-        GraderFailure: there is none.
-    """
+    """Return the C library."""
     try:
         library = ctypes.CDLL(_LIBRARY)
     except OSError:

@@ -31,12 +31,7 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """Return the two lines with 0 points for each problem.
-
-    Raises:
-        UsageError: nothing was judged, or the problems are not known. For Autolab an autograder
-            has failed if its output does not end with scores.
-    """
+    """Return the two lines with 0 points for each problem."""
     if not report.is_judged:
         raise UsageError(
             "the format autolab cannot say that nothing was judged; end without scores "

@@ -23,11 +23,7 @@ _TYPES = ("individual", "group")
 
 
 def render(report: Report) -> str:
-    """Return the JSON document.
-
-    Raises:
-        UsageError: the environment is not that of a Classroom 50 autograder.
-    """
+    """Return the JSON document."""
     scores, max_scores = whole_points(report.verdicts)
     tests: list[dict[str, Any]] = [
         {
@@ -48,12 +44,7 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """Return a document with 0 points and one test, which has the reason.
-
-    Raises:
-        UsageError: as above, or nothing was judged. Classroom 50 expects an exit code other than 0
-            then, and no result.json.
-    """
+    """Return a document with 0 points and one test, which has the reason."""
     if not report.is_judged:
         raise UsageError(
             "the format classroom50 cannot say that nothing was judged; leave with an exit "

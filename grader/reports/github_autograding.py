@@ -15,7 +15,6 @@ from grader.translations import translate
 
 
 def render(report: Report) -> str:
-    """Return one line of base64."""
     passed = all(verdict.passed for verdict in report.verdicts) and not report.not_shown
     tests = [
         _test(

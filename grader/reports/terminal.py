@@ -44,7 +44,6 @@ def render_error(report: ErrorReport) -> str:
 
 
 def show_error(report: ErrorReport, console: Console) -> None:
-    """Print an error."""
     console.print(_text(tr("{title}.", title=report.title), "bold"), soft_wrap=True)
     for part in report.paragraphs:
         console.print()

@@ -46,19 +46,11 @@ class ErrorResult:
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
-        """Parse the error of a file.
-
-        Raises:
-            ValueError: it does not follow the schema.
-        """
+        """Parse the error of a file."""
         json_file.validate(data, "error", SCHEMA)
         values = {name: data[name] for name in ("whose", "message", "max_score")}
         return json_file.typed(cls, values, data.get("phrases"))
 
     def write(self, path: Path) -> None:
-        """Write the error file.
-
-        Raises:
-            UsageError: it cannot be written.
-        """
+        """Write the error file."""
         files.write(path, json_file.text(self.to_json()))

@@ -18,11 +18,7 @@ MOST_BYTES = 2**26
 
 
 def validate(data: object, name: str, version: str) -> None:
-    """Validate data by a schema.
-
-    Raises:
-        ValueError: it does not follow it.
-    """
+    """Validate data by a schema."""
     found = data.get("schema") if isinstance(data, dict) else None
     family = version.rpartition("/")[0]
     if isinstance(found, str) and found != version and found.startswith(f"{family}/"):
@@ -42,9 +38,6 @@ def read(path: Path, *, is_ours: bool = False) -> Any:
 
     Args:
         is_ours: whether the file has a name of the grader in a folder for results: see `read_ours`.
-
-    Raises:
-        UsageError: it cannot be read or is none.
     """
     try:
         # utf-8-sig: some editors put a mark at the start
@@ -80,9 +73,6 @@ def typed(kind: type[Made], data: Any, phrases: Any = None) -> Made:
 
     Args:
         phrases: serialised messages, by their English texts.
-
-    Raises:
-        ValueError: something in it is not of its field's type.
     """
     if not isinstance(phrases or {}, dict):
         raise ValueError(msg("is damaged: {why}", why="its phrases: expected an object"))
@@ -108,11 +98,7 @@ def kept(kind: type[Made], path: Path, most_bytes: int) -> Made | None:
 
 
 def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
-    """Apply a `from_json` to a file's data.
-
-    Raises:
-        UsageError: the data does not follow the schema; the text names the file.
-    """
+    """Apply a `from_json` to a file's data."""
     try:
         return make(data)
     except ValueError as error:

@@ -65,7 +65,6 @@ class _Field(NamedTuple):
         return f"{_short(self.base)}{bound}{self.array} {self.name}\n"
 
     def described(self) -> dict[str, Any]:
-        """Return its description."""
         number = _BOUNDED_STRING if self.longest else _IDS.get(self.base, 1)
         if self.array:
             number += _BOUNDED if "<" in self.array else _ARRAY if self.size else _UNBOUNDED
@@ -114,11 +113,7 @@ class BagTypes:
         return f"RIHS01_{hashlib.sha256(json.dumps(whole).encode()).hexdigest()}"
 
     def values(self, data: bytes, kind: str) -> Any:
-        """Return a message, in CDR, as plain data: objects with fields, lists, numbers, texts.
-
-        Raises:
-            ValueError: it is none; no more work is done than there are bytes.
-        """
+        """Return a message, in CDR, as plain data: objects with fields, lists, numbers, texts."""
         return self._reader(kind, 0)(CdrReader(data))
 
     def _parse(self, kind: str) -> tuple[list[str], list[_Field]]:
@@ -151,7 +146,6 @@ class BagTypes:
         return found
 
     def _reader(self, kind: str, depth: int) -> _Read:
-        """Return what reads a message."""
         if depth > _DEEPEST:
             raise ValueError(f"expected at most {_DEEPEST} messages within each other")
         if kind not in self._readers:

@@ -47,7 +47,6 @@ class CdrWriter:
             self._data += np.asarray(values, dtype.newbyteorder("<")).tobytes()
 
     def octets(self, value: bytes) -> None:
-        """Write a sequence of uint8."""
         self.number("I", len(value))
         self._data += value
 
@@ -89,20 +88,16 @@ class CdrReader:
         return encoded.removesuffix(b"\x00").decode("utf-8", errors)
 
     def numbers(self) -> tuple[float, ...]:
-        """Read a sequence of float64."""
         return tuple(self.array(self.count()).tolist())
 
     def array(self, count: int, dtype: np.dtype[Any] = _DOUBLE) -> npt.NDArray[Any]:
-        """Read so many numbers."""
         self._at += -self._at % dtype.itemsize if count else 0
         return np.frombuffer(self._read(dtype.itemsize * count), dtype.newbyteorder("<"))
 
     def texts(self) -> tuple[str, ...]:
-        """Read a sequence of strings."""
         return tuple(self.text() for _ in range(self.count()))
 
     def octets(self) -> bytes:
-        """Read a sequence of uint8."""
         return self._read(self.number("I"))
 
     def stamp_ns(self) -> int:
@@ -125,18 +120,13 @@ class CdrReader:
 
 
 def string(text: str) -> bytes:
-    """Serialise a std_msgs/String."""
     made = CdrWriter()
     made.text(text)
     return made.message()
 
 
 def string_of(data: bytes) -> str:
-    """Parse a std_msgs/String.
-
-    Raises:
-        ValueError: the bytes are none.
-    """
+    """Parse a std_msgs/String."""
     read = CdrReader(data)
     text = read.text()
     read.end()
@@ -212,11 +202,7 @@ def member_class(owner: Any, slot: Any) -> Any:
 
 
 def serialise(message: Any) -> bytes:
-    """Return the bytes of a message.
-
-    Raises:
-        ValueError: a field's value does not fit its type.
-    """
+    """Return the bytes of a message."""
     out = CdrWriter()
     try:
         _write_message(out, type(message), message)
@@ -226,11 +212,7 @@ def serialise(message: Any) -> bytes:
 
 
 def deserialise(data: bytes, kind: Any) -> Any:
-    """Return the message of a class that bytes are; more bytes behind it do not matter.
-
-    Raises:
-        ValueError: they are none. No more work is done than there are bytes.
-    """
+    """Return the message of a class that bytes are; more bytes behind it do not matter."""
     try:
         return _read_message(CdrReader(data), kind)
     except AssertionError as error:

@@ -128,11 +128,7 @@ class Definitions:
                 self._modules.setdefault(module_of(slot_of(name)), []).append(name)
 
     def type(self, name: str) -> Any:
-        """Return the class of a type, `my_interfaces/msg/Num`: one of these, else an installed one.
-
-        Raises:
-            ImportError, AttributeError: there is none.
-        """
+        """Return the class of a type, `my_interfaces/msg/Num`: of these, else an installed one."""
         return self.find(slot_of(name))
 
     def find(self, slot: Any) -> Any:
@@ -202,11 +198,7 @@ class Definitions:
     # whether they hold together ----------------------------------------------------------------
 
     def _extent(self, name: str, within: tuple[str, ...] = ()) -> tuple[int, int]:
-        """Return the extent of a definition.
-
-        Raises:
-            SubmissionError: it has a mistake, which is among the errors then.
-        """
+        """Return the extent of a definition."""
         if name in self.errors:
             raise self.errors[name]
         if name in self._extents:
@@ -309,9 +301,6 @@ def parse(name: str, text: str) -> Any:
     Returns:
         A Message, Service or Action of `rosidl_parser.definition`, with what `classes_of` expects;
         a member's annotation `line` has its line.
-
-    Raises:
-        SubmissionError: a mistake in its names or in a line.
     """
     named = _TYPE.fullmatch(name)
     if named is None or any(map(keyword.iskeyword, named.groups())):

@@ -78,11 +78,7 @@ class Plan:
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Parse what `to_json` has written.
-
-        Raises:
-            ValueError: the text is no plan.
-        """
+        """Parse what `to_json` has written."""
         return strict_json.from_json(cls, json.loads(text), strict_json.OURS)
 
 
@@ -116,12 +112,7 @@ def leave(
 
 
 def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]:
-    """Read the file from an open descriptor, in the grader's process.
-
-    Raises:
-        GraderFailure: it is not what `leave` writes; a `SceneFailure` where the scene cannot read
-            what it has written.
-    """
+    """Read the file from an open descriptor, in the grader's process."""
     try:
         data = read_bounded(file, RECORDING_BYTES)
         (length,) = _LENGTH.unpack_from(data)
@@ -138,12 +129,7 @@ def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]
 
 
 def read_bounded(file: int, most_bytes: int) -> bytes:
-    """Return the contents of an open file.
-
-    Raises:
-        ValueError: it is more than `most_bytes`.
-        OSError: it cannot be read.
-    """
+    """Return the contents of an open file."""
     with open(file, "rb", closefd=False) as opened:
         opened.seek(0)
         data = opened.read(most_bytes + 1)

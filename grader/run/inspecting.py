@@ -52,11 +52,7 @@ _LOST: Final = msg(
 
 
 def run(submission: Submission, plan: Plan, progress: Progress | None = None) -> Recording:
-    """Inspect a submission once, as its only run.
-
-    Raises:
-        GraderFailure: the process could not be started.
-    """
+    """Inspect a submission once, as its only run."""
     asked = submission.start.package if isinstance(submission.start, Whole) else ""
     order = {"package": asked, "inspectors": inspector.places(plan.inspections)}
     found, ending = _inspected(submission, order, plan.budget)
@@ -80,9 +76,6 @@ def inspect(
         program: the console script that is asked for.
         inspections: by which its package is inspected as by `inspect_beside`; None for not at all.
         given: values of launch arguments.
-
-    Raises:
-        GraderFailure: the process could not be started.
     """
     inspectors = None if inspections is None else inspector.places(inspections)
     asked: dict[str, object] = {"set_ups": list(folders), "program": program}
@@ -99,9 +92,6 @@ def inspect_beside(submission: Submission, plan: Plan) -> tuple[Trace, tuple[Mes
     Returns:
         What was found, and remarks for the result: what could not be found, and what launch files
         would have started otherwise.
-
-    Raises:
-        GraderFailure: the process could not be started.
     """
     found = submission.seen
     flags: tuple[Message, ...] = ()
@@ -157,11 +147,7 @@ def command(submission: Submission, asked: Mapping[str, object], leaves: int) ->
 
 
 def _wait(process: SubmissionProcess) -> int | None:
-    """Wait for the process; return its exit code, None where its own code has stopped it.
-
-    Raises:
-        GraderFailure: it does not end.
-    """
+    """Wait for the process; return its exit code, None where its own code has stopped it."""
     end = time.monotonic() + INSPECTION_S
     stopped = 0
     while (left_s := end - time.monotonic()) > 0:

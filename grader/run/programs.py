@@ -29,7 +29,6 @@ class RunningProgram(NamedTuple):
     account: EvidencePage
 
     def output(self) -> str:
-        """Return what it has printed."""
         return self.submission.with_original_paths(self.process.output())
 
 

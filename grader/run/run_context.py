@@ -100,9 +100,6 @@ def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
 
     Args:
         budget: of the grading; None for an unlimited one.
-
-    Raises:
-        GraderFailure: it cannot be isolated from other runs, or confined as was required.
     """
     with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         level = levels.best(isolated)

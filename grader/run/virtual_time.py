@@ -77,10 +77,6 @@ def run(
         progress: called now and then with the simulated time [s], if the run takes so long.
         patience: how long the submission's process is waited for, in real seconds.
         audience: receives the run live; changes nothing of what is recorded.
-
-    Raises:
-        GraderFailure: the simulator could not be started or died; a `SimulatorLost` where the
-            submission had sent it something; a `SceneFailure` where the scene is to blame.
     """
     recording, why = _try(submission, plan, patience, audience)
     if recording is not None:

@@ -102,9 +102,6 @@ def join_modules(entry: str, folders: Sequence[Path]) -> str:
 
     Args:
         folders: that modules are searched in, one after another.
-
-    Raises:
-        ValueError: a module is in none of them, or has another form of import or export.
     """
     parts = ['"use strict";', "const modules = {};"]
     _add(entry, folders, parts, [])

@@ -94,7 +94,6 @@ class LivePage(ABC):
         return self._has_been_seen.wait(patience_s)
 
     def ask(self, viewer: object) -> None:
-        """Deliver everything to a viewer."""
         with self._lock:
             content, canvas = self._everything()
             self._tell({**content, "grading": self._grading}, canvas, viewer)

@@ -61,9 +61,6 @@ def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -
     Args:
         into: an empty folder.
         report: see `safe_members.write`.
-
-    Raises:
-        SubmissionError: it is empty, damaged, encrypted or too large, or it reaches outside.
     """
     name = shown(archive.name)
     size = archive.stat().st_size
@@ -127,7 +124,6 @@ def _damaged(name: str, kind: str, why: Message) -> SubmissionError:
 
 @contextmanager
 def _opened_zip(archive: Path, limits: ArchiveLimits) -> Iterator[list[Member]]:
-    """Open a zip: its members."""
     most = limits.list_bytes
     why = msg("its list has more than {most:g} MB", most=most / 1e6)
     with Bounded(archive, most, why) as file, zipfile.ZipFile(file) as packed:

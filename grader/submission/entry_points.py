@@ -38,11 +38,7 @@ class Packages:
     faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
 
     def choose(self, executable: str | None) -> Choice | None:
-        """Choose the script asked for, else the usual one, else the only one; None without any.
-
-        Raises:
-            SubmissionError: several or none fit, or set-up files cannot be read and might.
-        """
+        """Choose the script asked for, else the usual one, else the only one; None without any."""
         every = [(package, script) for package in self.readable for script in package.scripts]
         wanted = executable or self.submitted.usual
         matching = [choice for choice in every if choice[1].name == wanted]
@@ -120,11 +116,7 @@ def find_packages(submitted: SubmissionFolder, set_ups: Sequence[SetUp]) -> Pack
 def find_module(
     submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript
 ) -> Module:
-    """Find the script's module in its package, and nowhere else.
-
-    Raises:
-        SubmissionError: it is not there, or surely does not define the function.
-    """
+    """Find the script's module in its package, and nowhere else."""
     inside = Path(*script.module.split("."))
     roots = package.roots(script.module)
     for root in roots:

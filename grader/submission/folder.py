@@ -64,11 +64,7 @@ class SubmissionFolder:
         return shown(path.relative_to(self.base))
 
     def must_hold(self, file: Path) -> None:
-        """Refuse a file that is a link to somewhere else: what lies there is not the student's.
-
-        Raises:
-            SubmissionError: it is one.
-        """
+        """Refuse a file that is a link to somewhere else: what lies there is not the student's."""
         if not Path(os.path.realpath(file)).is_relative_to(os.path.realpath(self.base)):
             raise SubmissionError(
                 "{file} is a link to a place outside of {name}. Hand in the file "
@@ -139,10 +135,6 @@ def files_below(top: Path) -> list[Path]:
 
     Left out: what is hidden, caches, virtual environments, colcon's build, install and log, and
     tests. Links to folders are not followed.
-
-    Raises:
-        SubmissionError: there are more than MAX_ENTRIES.
-        OSError: a folder cannot be read.
     """
     files: list[Path] = []
     seen = 0

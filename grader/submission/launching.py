@@ -97,7 +97,6 @@ class Launched:
 
     @property
     def found(self) -> Message:
-        """A sentence for the user."""
         names = listed({each.name: each.called for each in self.scripts}.values())
         return msg("{file}, which starts {names}", file=shown(self.file), names=names)
 
@@ -121,10 +120,6 @@ def find_launched(
 
     Args:
         is_needed: else there is none where one would have to be chosen.
-
-    Raises:
-        SubmissionError: there is no such file, or it starts nothing, or more than `MOST_PROGRAMS`,
-            or what is not in Python; or none is asked for and several start several.
     """
     launches, asked = inspection.trace.launches, submitted.launch
 
@@ -202,11 +197,7 @@ def _is_called(launch: LaunchFile, asked: str) -> bool:
 
 
 def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: str) -> LaunchFile:
-    """Return the launch file of a path or a name.
-
-    Raises:
-        SubmissionError: there is none, or several are; or it could not be evaluated.
-    """
+    """Return the launch file of a path or a name."""
     named = [each for each in launches if _is_called(each, asked)]
     if not named:  # by its path in all that was handed in
         ends = [each for each in launches if f"/{asked}".endswith(f"/{each.file}")]

@@ -63,11 +63,7 @@ class Manifest:
 
 
 def read_manifest(file: Path) -> Manifest | None:
-    """Read a package.xml; None where it is too large, or declares entities, to be read here.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Read a package.xml; None where it is too large, or declares entities, to be read here."""
     data = read_bounded(file)
     if data is None:
         return None
@@ -84,11 +80,7 @@ def read_manifest(file: Path) -> Manifest | None:
 
 
 def exercises_named(file: Path) -> tuple[str, ...]:
-    """Return the exercises that a package.xml or a Python file names.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Return the exercises that a package.xml or a Python file names."""
     if file.name == FILE:
         manifest = read_manifest(file)
         return manifest.exercises if manifest else ()

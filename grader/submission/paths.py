@@ -145,9 +145,6 @@ def unreached(steps: Iterable[LintFinding], ran: Iterable[RanFile]) -> Iterator[
     """Yield the step that was not taken, of each call that a run has not reached.
 
     Yields: findings of the kind `unreached`.
-
-    Raises:
-        ValueError, TypeError: a step has another form.
     """
     lines = {each.file: set(each.lines) for each in ran}
     values = {(each.file, at.line): at.text for each in ran for at in each.asked}

@@ -112,11 +112,6 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
         path: the submission.
         root: the folder to start it from; below `scratch` if it is a copy already.
         scratch: a folder for the copy, without links in its path.
-
-    Raises:
-        SubmissionError: it has too many files, or too large ones; or it is a file that is a link
-            to somewhere else.
-        OSError: something is wrong with the machine.
     """
     origin = path.resolve() if path.is_dir() else path.parent.resolve() / path.name
     if root.is_relative_to(scratch):
@@ -144,12 +139,7 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
 
 
 def copy_folder(top: Path, into: Path) -> tuple[Message, ...]:
-    """Copy a folder into a new one; return remarks on what was left out.
-
-    Raises:
-        SubmissionError: it has too many files, or too large ones.
-        OSError: something is wrong with the machine.
-    """
+    """Copy a folder into a new one; return remarks on what was left out."""
     into.mkdir(parents=True)
     copying = _Copying(top)
     copying.copy_all(into)
@@ -242,7 +232,6 @@ class _Copying:
         return tuple(found)
 
     def copy_alone(self, file: Path, into: Path) -> None:
-        """Copy one file."""
         real = file.resolve()
         if not real.is_relative_to(self.top):
             raise SubmissionError(

@@ -21,7 +21,6 @@ _DEGREES = (45, 90, 180, 270, 360)
 
 
 def find(source: Source, values: Values) -> Iterator[Found]:
-    """Yield findings in a file."""
     for rule in (_recursion, _idle, _late, _overrules, _defaults, _names_of_methods, _blocks):
         yield from rule(source)
     for rule_of_values in (_degrees, _texts, _factors):

@@ -175,11 +175,7 @@ def byte_faults(files: Iterable[Path], root: Path) -> list[Message]:
 
 
 def _declared(data: bytes) -> str:
-    """The encoding by the first two lines; their own bytes are not judged here.
-
-    Raises:
-        SyntaxError: there is no such encoding, or it contradicts the mark at the beginning.
-    """
+    """The encoding by the first two lines; their own bytes are not judged here."""
     mark = codecs.BOM_UTF8 if data.startswith(codecs.BOM_UTF8) else b""
     plain = data[len(mark) :].decode("ascii", "replace").encode("ascii", "replace")
     return tokenize.detect_encoding(io.BytesIO(mark + plain).readline)[0]

@@ -107,12 +107,7 @@ class _Answer:
         return cls(refused=error.message, whose=error.whose)
 
     def submission(self) -> Submission:
-        """Return the submission that was found.
-
-        Raises:
-            SubmissionError, UsageError, OSError, NotInspected: that was the answer.
-            GraderFailure: the copy has made a mistake.
-        """
+        """Return the submission that was found."""
         if self.whose in _REFUSALS:
             raise _REFUSALS[self.whose](self.refused)
         if self.unable:

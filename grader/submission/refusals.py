@@ -62,11 +62,7 @@ def missing(path: Path) -> UsageError:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Turn an OSError of one file of the submission into a SubmissionError.
-
-    Raises:
-        SubmissionError: such an error; it says which file cannot be read.
-    """
+    """Turn an OSError of one file of the submission into a SubmissionError."""
     try:
         yield
     except OSError as error:

@@ -217,7 +217,6 @@ def _grows(source: Source) -> Iterator[Found]:
 
 
 def _unstarted(source: Source) -> Iterator[Found]:
-    """Threads that nothing starts."""
     begun = {ast.unparse(call.func) for call in source.calls("start")}
     for node in source.nodes:
         match node:

@@ -171,9 +171,6 @@ def write(
     Args:
         report: called with each member that is no plain file, would be written elsewhere, or cannot
             be read or written.
-
-    Raises:
-        SubmissionError: there are too many, or none.
     """
     for path, member in _chosen(name, members, budget, report):
         target = into / path

@@ -66,7 +66,6 @@ class Source:
 
     @cached_property
     def all_calls(self) -> list[ast.Call]:
-        """All calls."""
         return [node for node in self.nodes if isinstance(node, ast.Call)]
 
     def calls(self, *names: str) -> Iterator[ast.Call]:

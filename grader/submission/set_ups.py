@@ -75,7 +75,6 @@ class PackageFolder:
 
     @property
     def declared(self) -> SetUpFacts | None:
-        """What its set-up files declare."""
         return self.set_up.told if self.set_up else None
 
     @property
@@ -110,12 +109,7 @@ class PackageFolder:
 
 
 def read_package(set_up: SetUp, submitted: SubmissionFolder) -> PackageFolder:
-    """Read the console scripts that the set-up files of a folder declare.
-
-    Raises:
-        SubmissionError: they have an entry that is no `name = module:function`, so that no tool
-            could install the package.
-    """
+    """Read the console scripts that the set-up files of a folder declare."""
     folder = submitted.base / set_up.folder
     scripts: dict[str, ConsoleScript] = {}
     for line in set_up.told.scripts:

@@ -31,11 +31,7 @@ class Unpacking:
         self._budget: Budget | None = None
 
     def unpack(self, archive: Path) -> Path:
-        """Unpack an archive; return the folder of its content.
-
-        Raises:
-            SubmissionError: it cannot be, or lies in too many others.
-        """
+        """Unpack an archive; return the folder of its content."""
         from grader.submission.archive import unpack  # here: most submissions are none
         from grader.submission.safe_members import Budget
 

@@ -25,11 +25,6 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
     Args:
         package: chooses among them, by name.
         scratch: an empty folder, for what has to be unpacked.
-
-    Raises:
-        SubmissionError: there is none, or none of this name.
-        UsageError: there is no such path.
-        OSError: a file cannot be read.
     """
     submitted, files = opened(path, scratch, lambda file: file.name in _MARKS)
     name = submitted.name
@@ -67,10 +62,6 @@ def opened(
     Args:
         scratch: an empty folder, for what has to be unpacked.
         is_part: whether a file is one of a submission; where none is, the one archive is it.
-
-    Raises:
-        SubmissionError: it is neither a folder nor an archive, or cannot be unpacked.
-        UsageError: there is no such path.
     """
     name = shown(path.name or path.resolve().name)
     if not path.exists():

@@ -56,7 +56,6 @@ class RobotInspector(Inspector):
         )
 
     def words(self, trace: PackageTrace) -> Sequence[Message]:
-        """Return what robot that is."""
         from grader_robots.scene import described
 
         return (described.words(trace),)

@@ -38,7 +38,6 @@ class HeardJointState(NamedTuple):
 
     @property
     def is_taken(self) -> bool:
-        """Whether robot_state_publisher takes it."""
         return len(self.names) == len(self.positions)
 
 
@@ -65,11 +64,7 @@ class Transform(NamedTuple):
 
 
 def joint_states(tick: int, data: bytes) -> HeardJointState:
-    """A sensor_msgs/JointState.
-
-    Raises:
-        ValueError: the bytes are none.
-    """
+    """A sensor_msgs/JointState."""
     read = CdrReader(data)
     stamp_ns, _ = read.stamp_ns(), read.text()
     names, positions = read.texts(), read.numbers()
@@ -79,11 +74,7 @@ def joint_states(tick: int, data: bytes) -> HeardJointState:
 
 
 def transforms(tick: int, data: bytes, number: int, topic: str, publisher: str) -> list[Transform]:
-    """Those of a tf2_msgs/TFMessage.
-
-    Raises:
-        ValueError: the bytes are none.
-    """
+    """Those of a tf2_msgs/TFMessage."""
     read = CdrReader(data)
     found = []
     for _ in range(read.number("I")):

@@ -53,7 +53,6 @@ def drive(controller: Controller, ticks: int, description: str) -> RobotTrace:
 
 
 def joint_state(stamp_ns: int, names: Sequence[str], positions: Sequence[float]) -> Said:
-    """A message on /joint_states."""
     from sensor_msgs.msg import JointState
 
     message = JointState(name=names, position=positions)

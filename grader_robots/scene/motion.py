@@ -48,7 +48,6 @@ class Odometry:
 
     @classmethod
     def of(cls, transforms: list[Transform]) -> Self:
-        """Of transforms in their order."""
         return cls(
             np.array([each.tick for each in transforms], dtype=np.int64),
             np.array([each.translation for each in transforms], dtype=np.float64).reshape(-1, 3),

@@ -47,7 +47,6 @@ class RobotScene(Scene):
     the_thing = msg("the robot")
 
     def wrong_setting(self, setting: str) -> Message:
-        """Whether robot_state_publisher takes it."""
         try:
             Robot.of(setting)
         except RefusedDescription as error:
@@ -56,7 +55,6 @@ class RobotScene(Scene):
         return NOTHING
 
     def how_to_try(self, program: str, package: str) -> str:
-        """Beside robot_state_publisher."""
         run = tr(
             "From the folder above this one, in one terminal `robot_state_publisher` with the "
             "robot's description, in another your node:\n\n"
@@ -100,7 +98,6 @@ class RobotScene(Scene):
         return RobotSimulation(limits, hooks, setting)
 
     def untouched(self, start: Start | None) -> Trace:
-        """Nothing."""
         return RobotTrace(0)
 
     def message_definitions(self) -> Mapping[str, str]:
@@ -137,11 +134,9 @@ class RobotScene(Scene):
         }
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
-        """Those of its node."""
         return ENDPOINTS
 
     def pictures(self, made: Trace) -> Pictures:
-        """Its way from above."""
         return Pictures(view.plan(RobotTrace.of(made)))
 
     def view(self, made: Trace) -> View:
@@ -149,7 +144,6 @@ class RobotScene(Scene):
         return view.view(RobotTrace.of(made))
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        """What odd nodes publish."""
         return driving.odd_traces(setting)
 
 

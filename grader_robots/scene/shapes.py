@@ -125,7 +125,6 @@ def name_of(name: str) -> str:
 
 
 def named(names: Sequence[str], most: int = 6) -> Message:
-    """Some names in a row."""
     few = ", ".join(map(name_of, names[:most]))
     if len(names) <= most:
         return plain_text(few)

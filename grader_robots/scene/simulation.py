@@ -53,7 +53,6 @@ class RobotSimulation(Simulation):
 
     @property
     def ticks(self) -> int:
-        """How many ticks were recorded."""
         return self._recorder.ticks
 
     def tick(self, now_ns: int | None = None) -> Reason:
@@ -86,7 +85,6 @@ class RobotSimulation(Simulation):
         return self._pass(), ()
 
     def trace(self) -> RobotTrace:
-        """Everything recorded up to now."""
         return self._recorder.trace()
 
 

@@ -102,11 +102,7 @@ class RobotTrace:
 
     @cached_property
     def robot(self) -> Robot | None:
-        """What the description says; None where there is none.
-
-        Raises:
-            RefusedDescription (of robot_py): no exercise has such a one.
-        """
+        """What the description says; None where there is none."""
         return Robot.of(self.description) if self.description else None
 
     @cached_property
@@ -184,7 +180,6 @@ class RobotRecorder:
         return self._state.robot.fixed("", now_ns)
 
     def trace(self) -> RobotTrace:
-        """Everything up to now."""
         return RobotTrace(self.ticks, tuple(self._messages))
 
 
@@ -204,11 +199,7 @@ def to_messages(trace: RobotTrace) -> list[BagMessage]:
 
 
 def from_channels(channels: Sequence[Channel], ticks: int) -> RobotTrace:
-    """The trace that a bag's channels say, each of them with a topic of its own.
-
-    Raises:
-        ValueError, KeyError, TypeError: they are not what `to_messages` makes.
-    """
+    """The trace that a bag's channels say, each of them with a topic of its own."""
     by_topic = {channel.topic: channel for channel in channels}
     names = _publishers(by_topic.pop(PUBLISHERS))
     found: list[tuple[int, Heard]] = []
@@ -237,11 +228,7 @@ def _publishers(channel: Channel) -> dict[str, str]:
 
 
 def _check(trace: RobotTrace) -> None:
-    """See whether a trace that comes from outside can be one.
-
-    Raises:
-        ValueError: something in it cannot have been recorded; the text says what.
-    """
+    """See whether a trace that comes from outside can be one."""
     before = 0
     for tick, topic, _, data in trace.messages:
         # what comes after the last tick would have taken effect in the next one

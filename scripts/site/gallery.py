@@ -40,7 +40,6 @@ class Gallery:
         self._page = browser.new_page(viewport=SIZE, locale="en-US")
 
     def grader(self, *words: str | Path) -> None:
-        """Call the grader."""
         subprocess.run(
             [sys.executable, "-m", "grader", *words, "--lang", "en"],
             cwd=self.work,

@@ -63,7 +63,6 @@ class Graph:
             await asyncio.sleep(_PAUSE_S)
 
     def close(self) -> None:
-        """Leave the graph."""
         self._polling.cancel()
         self._executor.shutdown()
         if rclpy.ok():
@@ -165,7 +164,6 @@ class Graph:
         return _shown(self.node.get_topic_names_and_types())
 
     def services(self) -> dict[str, str]:
-        """Service -> its type."""
         return _shown(self.node.get_service_names_and_types())
 
     def publishers(self, topic: str) -> list[str]:

@@ -95,7 +95,6 @@ def fields_of(message_type: Any) -> list[Field]:
 
 
 def to_json(message: Any) -> dict[str, Any]:
-    """Return a message as JSON."""
     return {f.name: _field_to_json(getattr(message, f.name), f) for f in fields_of(message)}
 
 

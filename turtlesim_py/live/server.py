@@ -126,11 +126,7 @@ class LiveServer:
         self._thread = threading.Thread(target=self._run, name="live", daemon=True)
 
     def start(self, source: Source) -> None:
-        """Listen, and show the news of a source.
-
-        Raises:
-            OSError: that is not possible, as where the port is in use.
-        """
+        """Listen, and show the news of a source."""
         self._source = source
         self._thread.start()
         self._begun.wait(PATIENCE_S)
@@ -212,11 +208,7 @@ class LiveServer:
             session.close()
 
     def _open_graph(self) -> Graph:
-        """Return the ROS graph, made at its first use: to watch needs none.
-
-        Raises:
-            Rejected: viewers have none.
-        """
+        """Return the ROS graph, made at its first use: to watch needs none."""
         if not self._settings.has_graph:
             raise Rejected("there are no topics and services to be seen here")
         if self._graph is None:

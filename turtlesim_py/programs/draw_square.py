@@ -129,7 +129,6 @@ class DrawSquare(RclcppNode):
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run until SIGINT or SIGTERM."""
     return program.run("draw_square", DrawSquare, program.spin, argv, ABOUT)
 
 

@@ -39,7 +39,6 @@ class MimicNode(RclcppNode):
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run until SIGINT or SIGTERM."""
     return program.run("mimic", MimicNode, program.spin, argv, ABOUT)
 
 

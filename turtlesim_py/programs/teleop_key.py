@@ -197,7 +197,6 @@ class TeleopTurtle(RclcppNode):
             self._goal.add_done_callback(lambda goal: goal.result().cancel_goal_async())
 
     def destroy_node(self) -> None:
-        """Leave the graph."""
         self._rotation.destroy()  # rclpy forgets actions
         super().destroy_node()
 

@@ -129,7 +129,6 @@ class TurtlesimNode(RclcppNode):
         self._window.open()
 
     def destroy_node(self) -> None:
-        """Leave the graph."""
         if self.live is not None:
             self.live.stop()
         self._drop_endpoints(set(self._endpoints))  # rclpy forgets actions

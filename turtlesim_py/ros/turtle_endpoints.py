@@ -31,7 +31,6 @@ RESULT_TIMEOUT_S = 10
 
 
 def pose_bytes(pose: Pose) -> bytes:
-    """Serialise a pose as CDR."""
     return POSE_BYTES.pack(CDR, *pose)
 
 
@@ -159,7 +158,6 @@ class TurtleEndpoints:
         self._color_publisher.publish(COLOR_BYTES.pack(CDR, *reading.color))
 
     def destroy(self) -> None:
-        """Remove everything from the graph."""
         self.action.destroy()
         for service in self._services:
             self._node.destroy_service(service)

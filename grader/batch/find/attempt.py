@@ -107,11 +107,7 @@ class Layout(Protocol):
 
 
 def items_of(folder: Path) -> list[Item]:
-    """Return the items of a folder, sorted by name, without the junk of a system or a browser.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Return the items of a folder, sorted by name, without the junk of a system or a browser."""
     with os.scandir(folder) as entries:
         found = [
             Item(Path(entry.path), entry.is_dir(follow_symlinks=False), composed(entry.name))

@@ -36,11 +36,7 @@ _DAMAGED: Final = msg("is damaged, and kept as far as it goes")
 
 
 def unpack(archive: Path, into: Path) -> list[Message]:
-    """Unpack the archive of a class into `into`, a folder to be made; return notes.
-
-    Raises:
-        UsageError: it is damaged as a whole, or too large.
-    """
+    """Unpack the archive of a class into `into`, a folder to be made; return notes."""
     odd: dict[Message, list[str]] = defaultdict(list)
 
     def report(member: Member, error: Exception) -> None:

@@ -59,10 +59,6 @@ def find(
         pattern: of the names, where they are not recognised: see `plain.py`.
         roster: the class as a CSV file; else `roster.csv` in the folder, if there is one.
         place: an empty folder for what is unpacked; None: one of this machine's own.
-
-    Raises:
-        UsageError: there are no hand-ins, or pattern or roster cannot be used.
-        GraderFailure: there is no place for files.
     """
     names = None if pattern is None else Pattern(pattern)
     with nullcontext(place) if place else make_folder() as scratch:

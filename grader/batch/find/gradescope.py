@@ -104,12 +104,7 @@ def _metadata(item: Item | None, notes: list[Message]) -> dict[str, dict[str, An
 
 
 def _parsed(item: Item) -> dict[str, dict[str, Any]]:
-    """Parse the metadata.
-
-    Raises:
-        yaml.YAMLError: they are no YAML.
-        ValueError: they are too large, or no mapping.
-    """
+    """Parse the metadata."""
     if item.path.stat().st_size > MAX_METADATA_BYTES:
         raise ValueError(msg("it has more than {size:g} MB", size=MAX_METADATA_BYTES / 1e6))
     with item.path.open("rb") as file:

@@ -127,9 +127,6 @@ def _assembled(attempt: Attempt, place: Path) -> Piece | None:
 
     Args:
         place: a folder to be made, if one is needed; its files are links or copies.
-
-    Raises:
-        OSError: something cannot be read or copied.
     """
     pieces = [piece for piece in attempt.pieces if not _is_empty(piece.path)]
     if len(pieces) == 1:

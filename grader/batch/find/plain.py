@@ -143,11 +143,7 @@ class Pattern:
         return rest(0, 0)
 
     def read(self, items: Sequence[Item]) -> Export:
-        """Read the attempts in a folder.
-
-        Raises:
-            UsageError: no name matches.
-        """
+        """Read the attempts in a folder."""
         attempts, others, notes = list[Attempt](), list[str](), list[Message]()
         for path in self._paths(items, ()):
             fields = self.fields_of(path)

@@ -70,7 +70,6 @@ class RosterMember:
 
     @property
     def id(self) -> str:
-        """The id of the person."""
         return self.person.id
 
 
@@ -108,11 +107,7 @@ def is_of_classroom50(path: Path) -> bool:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a roster; rows without an id and a name are left out.
-
-    Raises:
-        UsageError: it cannot be read, or no column identifies a person.
-    """
+    """Read a roster; rows without an id and a name are left out."""
     titles, lines = read_table(path)
     there = set(map(letters, titles))
     ids = [title for title in _IDS if title in there]
@@ -212,9 +207,6 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
     The encoding is UTF-8, with or without a byte order mark; UTF-16 with one, as in Excel's
     "Unicode text"; else Windows-1252. The delimiter is the most frequent of comma, semicolon, tab
     and bar in the first line, outside of quotes, unless the file begins with Excel's `sep=;`.
-
-    Raises:
-        UsageError: there is no such file, or it is no table.
     """
     name = shown(path.name)
     try:

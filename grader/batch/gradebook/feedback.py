@@ -54,7 +54,6 @@ class Feedback:
         return self.page(entry) if suffix in (".html", ".htm") else self.markdown(entry)
 
     def page(self, entry: Entry) -> bytes:
-        """Return a self-contained HTML page."""
         return render("html", [self._report(entry)]).encode("utf-8")
 
     def markdown(self, entry: Entry) -> bytes:
@@ -104,7 +103,6 @@ class _WithoutRecordings(Beside):
 
     @property
     def recordings(self) -> Mapping[int, Recording | Message]:
-        """No recordings."""
         return {}
 
     @property

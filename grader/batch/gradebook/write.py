@@ -61,9 +61,6 @@ def write(
 
     Returns:
         Sentences on what an import lacks and who is left out.
-
-    Raises:
-        UsageError: one of them cannot be written.
     """
     everybody = grades(entries)
     name = translate(title)
@@ -93,9 +90,6 @@ def write_pseudonyms(out: Path, entries: Sequence[Entry]) -> None:
 
     Args:
         entries: of a class under pseudonyms, with names; see `grader.batch.pseudonyms`.
-
-    Raises:
-        UsageError: it cannot be written.
     """
     rows = [
         [cell(text) for text in (entry.folder.name, person.id, person.name)]

@@ -90,11 +90,7 @@ def _check_fit(
     known: KnownTypes,
     at: tuple[str, ...],
 ) -> None:
-    """Check that there is what something is expected of, and that values fit its type.
-
-    Raises:
-        Mistake: there is no such thing, or a value does not fit.
-    """
+    """Check that there is what something is expected of, and that values fit its type."""
     by, nodes = getattr(wanted, "by", ""), {name for peers in casts for name in peers}
     what = "expected a node of the cast, {nodes}; found {found}"
     expect(by.lstrip("/") in {"", *nodes}, (*at, "by"), what, by, nodes=_listed(sorted(nodes)))

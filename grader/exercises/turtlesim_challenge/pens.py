@@ -141,11 +141,7 @@ def demanded(tolerances: Tolerances) -> dict[int, Color]:
 
 
 def check_demanded(asked: Any) -> None:
-    """Validate the colours that an exercise asks for.
-
-    Raises:
-        ValueError: it is no mapping of quadrants, 1 to 4, to different colours.
-    """
+    """Validate the colours that an exercise asks for."""
     if not isinstance(asked, dict):
         raise ValueError(msg("expected quadrants with colours, found {found}", found=repr(asked)))
     for quadrant, color in asked.items():

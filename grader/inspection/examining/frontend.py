@@ -192,7 +192,6 @@ def _node(element: ElementTree.Element, take: _Attributes, more: dict[str, Any])
 
 
 def _process(element: ElementTree.Element, take: _Attributes) -> dict[str, Any]:
-    """What every process may have."""
     from launch.actions import Shutdown
 
     made: dict[str, Any] = {"cwd": take("cwd"), "prefix": take("launch-prefix")}

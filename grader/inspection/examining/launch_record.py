@@ -212,7 +212,6 @@ class LaunchRecord:
         self._time.handler(handler)
 
     def let_time_pass(self) -> None:
-        """Do what waits."""
         self._time.let_pass()
 
     def skipped(self, node: dict[str, Any]) -> None:
@@ -233,7 +232,6 @@ class LaunchRecord:
         }
 
     def visited(self, kind: str) -> None:
-        """An action of whatever kind."""
         if kind not in FOLLOWED:
             self.ignored(kind)
 
@@ -274,11 +272,9 @@ class LaunchRecord:
         return self._source(os.path.abspath(script[0])), tuple(script[1:])
 
     def declared(self, name: str) -> None:
-        """An argument."""
         self._add("declared", name)
 
     def remark(self, remark: Message) -> None:
-        """What works, and need not."""
         self._add("remarks", remark)
 
     def executable(self, package: str, name: str) -> None:
@@ -400,7 +396,6 @@ class LaunchRecord:
     # Files ----------------------------------------------------------------------------------------
 
     def run(self, path: str) -> None:
-        """Evaluate a launch file."""
         from launch._core import walk
 
         read = self.path(path)

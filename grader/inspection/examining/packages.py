@@ -40,7 +40,6 @@ class SourcePackage:
 
     @property
     def is_cmake(self) -> bool:
-        """Whether CMake builds it."""
         if self.build_type:
             return self.build_type != "ament_python"
         is_python = (self.folder / "setup.py").is_file()

@@ -23,11 +23,7 @@ def is_folder(path: Path) -> bool:
 
 
 def read(path: Path, most: int) -> bytes:
-    """The first bytes of a file.
-
-    Raises:
-        OSError: it is not there, or it is a pipe or a device, which might have no end.
-    """
+    """The first bytes of a file."""
     found = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
     with open(found, "rb") as file:
         if not stat.S_ISREG(os.fstat(found).st_mode):

@@ -205,11 +205,7 @@ def attempt(work: Callable[[], Made], file: str = "", line: int = 0) -> Made:
 
 
 def _read(answer: bytes) -> Obstacle | tuple[Any]:
-    """An answer, which the stranger's code could have written itself.
-
-    Raises:
-        ValueError, RecursionError: it is none.
-    """
+    """An answer, which the stranger's code could have written itself."""
     answered = json.loads(answer.decode("ascii"))
     if not isinstance(answered, dict) or answered.keys() not in ({"made"}, {"problem"}):
         raise ValueError(str(NONSENSE))
@@ -260,7 +256,6 @@ def start_of(text: str, most: int) -> str:
 
 
 def end_of(text: str, most: int) -> str:
-    """The same at its start."""
     return start_of(text[-most - 1 :][::-1], most)[::-1]
 
 

@@ -105,7 +105,6 @@ class RunView(Drawing):
 
 
 def render(report: Report) -> str:
-    """Return the page."""
     plane = report.subject.plane
     numbers = range(len(report.varied_runs) + 1)
     on_paper = _faulty_runs(report).intersection(numbers) or {0}

@@ -54,7 +54,6 @@ class DrawnTree:
 
 
 def drawn(tree: Tree) -> DrawnTree:
-    """Lay out a tree."""
     nodes: list[DrawnNode] = []
     last: dict[int, tuple[int, int]] = {}  # by depth, the dot of the node above
     for row, node in enumerate(tree.nodes):

@@ -269,7 +269,6 @@ def _work(
 
 
 def _tasks(executor: Any, nodes: list[Any]) -> Iterator[Work]:
-    """Yield the tasks in progress."""
     with executor._tasks_lock:
         tasks = list(executor._tasks)
     for task, entity, node in _in_order(tasks):

@@ -86,7 +86,6 @@ class SimulatorSockets:
         return packet
 
     def send(self, packet: Packet) -> None:
-        """Send a packet."""
         try:
             for piece in pieces(encode(packet)):
                 self._connection.send(piece)
@@ -94,7 +93,6 @@ class SimulatorSockets:
             real.leave(1)
 
     def receive(self) -> Packet:
-        """Wait for a packet."""
         data: bytes | None = None
         while data is None:
             try:

@@ -62,7 +62,6 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Release the lock."""
         if not self._locked:
             as_python_does(RuntimeError("release unlocked lock"))
         self._locked = False
@@ -70,7 +69,6 @@ class Lock:
             SCHEDULER.wake(self._waiting.popleft())
 
     def locked(self) -> bool:
-        """Whether a thread holds it."""
         return self._locked
 
     def __enter__(self) -> bool:
@@ -149,11 +147,9 @@ class ThreadHandle:
         self._alive = Lock()
 
     def begin(self) -> None:
-        """Note that the thread starts."""
         self._alive.acquire()
 
     def is_done(self) -> bool:
-        """Whether the thread has ended."""
         return not self._alive.locked()
 
     def _set_done(self) -> None:

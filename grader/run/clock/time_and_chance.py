@@ -146,7 +146,6 @@ class _VirtualDatetime(_datetime.datetime, metaclass=_LikeOriginal):
 
     @classmethod
     def now(cls, tz: Any = None) -> _datetime.datetime:  # type: ignore[override]
-        """Return the time now."""
         now: _datetime.datetime = pass_on(cls.fromtimestamp, time.time(), tz)
         return now
 
@@ -166,7 +165,6 @@ class _VirtualDate(_datetime.date, metaclass=_LikeOriginal):
 
     @classmethod
     def today(cls) -> _datetime.date:  # type: ignore[override]
-        """Return the date now."""
         return cls.fromtimestamp(time.time())
 
 

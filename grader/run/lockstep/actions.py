@@ -123,7 +123,6 @@ class ActionClient(_Action, _rclpy.ActionClient):
     take_goal_response, take_cancel_response, take_result_response = map(_pops_response, SERVICES)
 
     def is_action_server_available(self) -> bool:
-        """As in rclpy."""
         if not self.is_valid():
             return bool(pass_on(_ActionClient.is_action_server_available, self))
         registry = endpoints.REGISTRY
@@ -187,7 +186,6 @@ class ActionServer(_Action, _rclpy.ActionServer):
     send_goal_response, send_cancel_response, send_result_response = map(_sends_response, SERVICES)
 
     def publish_feedback(self, message: Any) -> None:
-        """As in rclpy."""
         self.connect(_ActionServer.publish_feedback, message)
         endpoints.REGISTRY.publish(self.feedback, serialized(message))
 
@@ -212,7 +210,6 @@ class ActionServer(_Action, _rclpy.ActionServer):
         self._first_expiry_ns = min(self._first_expiry_ns, expiry_ns)
 
     def expire_goals(self, most: int) -> Any:
-        """As in rclpy."""
         self._first_expiry_ns = NEVER
         return _ActionServer.expire_goals(self, most)
 

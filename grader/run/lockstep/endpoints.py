@@ -95,11 +95,7 @@ def serialized(message: Any) -> bytes:
 
 
 def deserialized(data: bytes, kind: Any) -> Any:
-    """Deserialise a message of a class from CDR.
-
-    Raises:
-        RMWError (of rclpy): the bytes are no such message.
-    """
+    """Deserialise a message of a class from CDR."""
     if is_made(kind):
         try:
             return deserialise(data, kind)
@@ -142,7 +138,6 @@ class Registered:
         REGISTRY.respond(writer, to.request, serialized(response))
 
     def destroy_when_not_in_use(self) -> None:
-        """As in rclpy."""
         REGISTRY.remove(self.endpoints)
         super().destroy_when_not_in_use()  # type: ignore[misc]
 
@@ -167,19 +162,16 @@ class Publisher(Registered, _rclpy.Publisher):
         self.register(node, self.writer)
 
     def get_subscription_count(self) -> int:
-        """As in rclpy."""
         if not self.is_valid():
             return int(pass_on(_Publisher.get_subscription_count, self))
         REGISTRY.before_question()
         return REGISTRY.count_readers(self.writer)
 
     def publish(self, message: Any) -> None:
-        """As in rclpy."""
         self.connect(_Publisher.publish, message)
         REGISTRY.publish(self.writer, serialized(message))
 
     def publish_raw(self, message: bytes) -> None:
-        """Publish serialized bytes."""
         self.connect(_Publisher.publish_raw, message)
         REGISTRY.publish(self.writer, message)
 
@@ -196,14 +188,12 @@ class Subscription(Registered, _rclpy.Subscription):
         self.register(node, self.reader)
 
     def get_publisher_count(self) -> int:
-        """As in rclpy."""
         if not self.is_valid():
             return int(pass_on(_Subscription.get_publisher_count, self))
         REGISTRY.before_question()
         return REGISTRY.count_writers(self.reader)
 
     def set_content_filter(self, *args: Any) -> None:
-        """As in rclpy, since 7.1.8."""
         self._refuse_filter()
         pass_on(_Subscription.set_content_filter, self, *args)
 
@@ -277,14 +267,12 @@ class Client(Registered, _rclpy.Client):
         self.register(node, self.writer, self.reader)
 
     def service_server_is_available(self) -> bool:
-        """As in rclpy."""
         if not self.is_valid():
             return bool(pass_on(_Client.service_server_is_available, self))
         REGISTRY.before_question()
         return REGISTRY.count_readers(self.writer) > 0
 
     def send_request(self, request: Any) -> int:
-        """As in rclpy."""
         self.connect(_Client.send_request, request)
         return REGISTRY.ask(self.writer, self.reader, serialized(request))
 
@@ -314,7 +302,6 @@ class Service(Registered, _rclpy.Service):
         return deserialized(item.data, self.reader.message), header(item)
 
     def service_send_response(self, response: Any, to: Any) -> None:
-        """As in rclpy."""
         self.respond(self.writer, to, response)
 
 

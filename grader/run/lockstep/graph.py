@@ -105,7 +105,6 @@ def _names(found: Iterable[Endpoint]) -> NamesAndTypes:
 
 
 def _split(full: str) -> tuple[str, str]:
-    """Return name and namespace."""
     space, _, name = full.rpartition("/")
     return name, space or "/"
 

@@ -211,7 +211,6 @@ Packet = Table | Advance | Reply | Mail | Note
 
 
 def encode(packet: Packet) -> bytes:
-    """Encode a packet."""
     match packet:
         case Advance(target_ns, listens, reached, now_ns, has_mailed):
             return _HEAD.pack(b"A", target_ns, listens, reached, now_ns, has_mailed)

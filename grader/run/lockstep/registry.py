@@ -136,7 +136,6 @@ class Reader(Endpoint):
             self.items = deque(maxlen=max(1, self.qos.depth))
 
     def pop(self) -> Arrived | None:
-        """The oldest item, or None."""
         return self.items.popleft() if self.items else None
 
 
@@ -360,11 +359,7 @@ def _unfit(offered: QoSProfile, requested: QoSProfile) -> QoSPolicyKind:
 
 
 def other_endpoint(entry: EndpointInfo) -> Endpoint:
-    """Return a node, reader or writer of another process, from its entry in a table.
-
-    Raises:
-        ValueError: it has no quality of service.
-    """
+    """Return a node, reader or writer of another process, from its entry in a table."""
     qos = QoSProfile(
         depth=min(max(1, entry.depth), MOST_DEPTH),
         reliability=QoSReliabilityPolicy(entry.reliability),

@@ -72,7 +72,6 @@ class GuardCondition(_rclpy.GuardCondition):
     is_triggered = False
 
     def trigger_guard_condition(self) -> None:
-        """Raise the flag."""
         self.is_triggered = True
         WAITER.poke(self)
 
@@ -84,7 +83,6 @@ class Timer(_rclpy.Timer):
     is_gone = False
 
     def destroy_when_not_in_use(self) -> None:
-        """As in rclpy."""
         self.is_gone = True
         _Timer.destroy_when_not_in_use(self)
 
@@ -93,17 +91,14 @@ class Timer(_rclpy.Timer):
         pass_on(_Timer.__init__, self, clock, *args)
 
     def reset_timer(self) -> None:
-        """As in rclpy."""
         _Timer.reset_timer(self)
         WAITER.poke(self)
 
     def cancel_timer(self) -> None:
-        """As in rclpy."""
         _Timer.cancel_timer(self)
         WAITER.poke(self)
 
     def change_timer_period(self, period_ns: int) -> None:
-        """As in rclpy."""
         pass_on(_Timer.change_timer_period, self, period_ns)
         WAITER.poke(self)
 
@@ -158,7 +153,6 @@ class EventHandle(_rclpy.EventHandle):
         return (self._endpoint.unfit, 0) if self._counts_unfit else (0, 0)
 
     def take_event(self) -> Any:
-        """As in rclpy."""
         before, self._reported = self._reported, self._counted()
         status: Any
         if self._counts_matches:
@@ -189,7 +183,6 @@ class WaitSet:
         self.clear_entities()
 
     def clear_entities(self) -> None:
-        """Start anew."""
         self.readers: list[Reader] = []
         self.guards: list[GuardCondition] = []
         self.timers: list[Timer] = []
@@ -213,30 +206,24 @@ class WaitSet:
         return len(self._readers)
 
     def add_subscription(self, handle: Any) -> int:
-        """As in rclpy."""
         return self._add("subscription", handle)
 
     def add_client(self, handle: Any) -> int:
-        """As in rclpy."""
         return self._add("client", handle)
 
     def add_service(self, handle: Any) -> int:
-        """As in rclpy."""
         return self._add("service", handle)
 
     def add_guard_condition(self, handle: Any) -> int:
-        """As in rclpy."""
         self.guards.append(handle)
         return len(self.guards) - 1
 
     def add_timer(self, handle: Any) -> int:
-        """As in rclpy."""
         self.timers.append(handle)
         self._kinds[handle] = "timer"
         return len(self.timers) - 1
 
     def add_event(self, handle: Any) -> int:
-        """As in rclpy."""
         self._events.append(handle)
         return len(self._events) - 1
 

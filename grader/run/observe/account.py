@@ -61,7 +61,6 @@ def read(page: int) -> tuple[bytes, bool]:
 
 
 def dumped(page: int) -> bytes:
-    """Return what faulthandler has written."""
     return os.pread(page, DUMP_BYTES, DUMP).partition(b"\0")[0]
 
 

@@ -40,7 +40,6 @@ class Frame:
 
     @property
     def name(self) -> str:
-        """The function without its class."""
         return self.function.rpartition(".")[2]
 
     @property

@@ -83,7 +83,6 @@ def deadlock(threads: Sequence[Thread]) -> tuple[str, Thread] | None:
 
 
 def is_spinning(thread: Thread) -> bool:
-    """Whether a thread just spins."""
     return any(frame.name == "spin" and frame.library in SPINS for frame in thread)
 
 

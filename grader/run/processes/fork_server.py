@@ -70,7 +70,6 @@ class ProcessReport:
         return True
 
     def close(self) -> None:
-        """Close the pipe."""
         if self._descriptor >= 0:
             os.close(self._descriptor)
         self._descriptor = -1
@@ -119,7 +118,6 @@ class Branch:
         self.pidfd = -1
 
     def kill(self) -> None:
-        """Kill it."""
         with suppress(ProcessLookupError):
             if self.pidfd >= 0:
                 signal.pidfd_send_signal(self.pidfd, signal.SIGKILL)
@@ -201,7 +199,6 @@ class ForkServer:
 
     @property
     def pid(self) -> int:
-        """Its process id."""
         return self._process.pid
 
     def preloaded(self) -> frozenset[str]:

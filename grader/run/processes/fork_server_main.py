@@ -281,9 +281,6 @@ def become(order: ForkOrder, fds: Sequence[int], server: int, report: int) -> No
     Args:
         fds: the descriptors of the order: its output, its namespaces, and those that it inherits.
         report: a descriptor that is kept beside those.
-
-    Raises:
-        OSError, ValueError, KeyError: the system refuses something, or the order is wrong.
     """
     os.setsid()
     output, *rest = (_out_of_the_way(fd, order) for fd in fds)

@@ -231,22 +231,13 @@ def only(level: str) -> None:
 
 
 def here(level: str = "") -> Level:
-    """Return the level that a run would have here; see `best`.
-
-    Raises:
-        GraderFailure, NotOffered, NotNow: see `best`.
-    """
+    """Return the level that a run would have here; see `best`."""
     with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         return best(isolated, level)
 
 
 def require(level: str) -> None:
-    """Require at least this level, here and for every run from now on.
-
-    Raises:
-        UsageError: it is not available; the text names the best level, what is missing, and how to
-            get it.
-    """
+    """Require at least this level, here and for every run from now on."""
     global _least
     there = here()
     if not there.is_at_least(level):

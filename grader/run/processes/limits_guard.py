@@ -80,7 +80,6 @@ class LimitsGuard:
         self._family.add(ancestor)
 
     def stop(self) -> None:
-        """Stop measuring."""
         self._is_over.set()
         self._thread.join()
 

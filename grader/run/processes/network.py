@@ -100,9 +100,6 @@ def reserve_domain() -> Iterator[int]:
     """Hold a domain id that no other grader on this machine holds.
 
     The lock belongs to the open file, so that it vanishes with the process, however that ends.
-
-    Raises:
-        GraderFailure: all of them are taken, or there is no place for locks.
     """
     for domain in random.sample(DOMAINS, len(DOMAINS)):
         if lock := scratch.acquire_lock(f"domain-{domain}"):

@@ -64,7 +64,6 @@ class Refusal(NamedTuple):
         return cls(0, "", line)
 
     def to_line(self) -> str:
-        """Serialise it, for another process."""
         step = " ".join(self.step.replace(": ", " ").split())
         return f"{self.number} {step}: {self.words}"
 

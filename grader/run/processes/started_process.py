@@ -143,7 +143,6 @@ class StartedProcess:
 
     @property
     def pid(self) -> int:
-        """The process id."""
         return self._child.pid
 
     def poll(self) -> int | None:
@@ -186,7 +185,6 @@ class StartedProcess:
         )
 
     def kill(self) -> None:
-        """End it now, without waiting."""
         self._signal(signal.SIGKILL)
 
     @contextmanager
@@ -294,11 +292,7 @@ class SubmissionProcess(StartedProcess):
 
     @property
     def pid(self) -> int:
-        """The process id of the command itself.
-
-        Raises:
-            GraderFailure, NotConfined: it could not be started.
-        """
+        """The process id of the command itself."""
         if not self._report.await_fact("pid", START_S) or "pid" not in self._report.facts:
             self.wait(0.0)
             raise GraderFailure(

@@ -43,9 +43,6 @@ def confine(order: Mapping[str, Any] | None, refused: OSError | None) -> None:
     Args:
         order: see `grader.run.sandbox.confinement`; None: only other processes are hidden.
         refused: why there is no process namespace for it; None where there is one.
-
-    Raises:
-        OSError: it cannot be confined as ordered.
     """
     level = None if order is None else order["level"]
     if level == confinement.NAMESPACES and refused is not None:

@@ -37,11 +37,7 @@ SECURE = 0xEF
 
 
 def confine(order: Mapping[str, Any]) -> None:
-    """Carry out an order completely.
-
-    Raises:
-        OSError: the system refuses something; then this process must not go on.
-    """
+    """Carry out an order completely."""
     if order["level"] == LIMITS:
         _limit(order)
         linux.forbid_new_privileges()

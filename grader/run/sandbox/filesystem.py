@@ -47,9 +47,6 @@ def enter(steps: Sequence[Sequence[str]]) -> None:
 
     Args:
         steps: parents come before their contents.
-
-    Raises:
-        OSError: the system does not allow it; then this process must not go on.
     """
     folder = os.getcwd()
     linux.unshare(linux.CLONE_NEWNS)
@@ -66,11 +63,7 @@ def enter(steps: Sequence[Sequence[str]]) -> None:
 
 
 def share(meeting: int, others: int) -> None:
-    """Hand this process's view to so many others at the other end of a socket; close this end.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
+    """Hand this process's view to so many others at the other end of a socket; close this end."""
     view = os.open("/proc/self/ns/mnt", os.O_RDONLY | os.O_CLOEXEC)
     with socket.socket(fileno=meeting) as ours:
         for _ in range(others):
@@ -79,11 +72,7 @@ def share(meeting: int, others: int) -> None:
 
 
 def join(meeting: int) -> None:
-    """Wait for the view that another process shares, and change to it; see `share`.
-
-    Raises:
-        OSError: the other has ended before; or the system does not allow it.
-    """
+    """Wait for the view that another process shares, and change to it; see `share`."""
     folder = os.getcwd()
     with socket.socket(fileno=meeting) as ours:
         _, views, _, _ = socket.recv_fds(ours, 1, 1)
@@ -126,9 +115,6 @@ def copy_tree(source: str, target: str, owner: int = -1) -> None:
 
     Args:
         owner: the user that is to own all of it; -1: the process's user.
-
-    Raises:
-        OSError: something cannot be copied.
     """
     with os.scandir(source) as entries:
         for entry in entries:

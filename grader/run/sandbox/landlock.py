@@ -75,9 +75,6 @@ def restrict(
         write: in these anything may be done, but for making devices.
         listed: folders in which, and below which, names may be listed and nothing opened for it.
         max_abi: act like a kernel with this ABI at most.
-
-    Raises:
-        OSError: the system has no Landlock or does not allow it.
     """
     version = min(abi(), max_abi)
     if version < 1:

@@ -216,9 +216,6 @@ def install(*, is_apart: bool = True) -> None:
         is_apart: it has a network and a file system of its own, so that sockets lead nowhere
             else. If not, it gets none by which it could reach other programs' (TCP, or Unix's by
             path) beside the UDP that DDS needs.
-
-    Raises:
-        OSError: the system does not allow it, or is none that this knows.
     """
     if not is_there():
         raise OSError(errno.ENOSYS, f"no system call filters on this {os.uname().machine}")

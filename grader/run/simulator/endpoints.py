@@ -67,11 +67,7 @@ class SimulatorEndpoints(EndpointRegistry):
     # What the student's side reads and publishes ----------------------------------------------
 
     def note(self, table: Table, member: int = 1) -> None:
-        """Note what a program reads and publishes now.
-
-        Raises:
-            ValueError: it has no such numbers, or there is no such quality of service.
-        """
+        """Note what a program reads and publishes now."""
         numbers = [*(each.id for each in table.added), *table.removed]
         if any(number >> SHIFT != member for number in numbers):
             raise ValueError("numbers of another process")

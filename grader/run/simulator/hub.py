@@ -255,7 +255,6 @@ class Hub:
         self._registry.tap(topic, kind, message)
 
     def heard(self) -> list[tuple[str, str, int, bytes, int]]:
-        """Return what was recorded since."""
         return [
             (topic, kind, time_ns - EPOCH_NS, data, number)
             for topic, kind, time_ns, data, number in self._registry.pop_heard()
@@ -354,11 +353,7 @@ class Hub:
         return Table(tuple(each.info() for each in known), now_ns=self._time_ns)
 
     def _note(self, member: LinkedProgram, table: Table) -> None:
-        """Note what a program has, and has no more.
-
-        Raises:
-            ValueError: it is none of ours that says so.
-        """
+        """Note what a program has, and has no more."""
         self._registry.note(table, member.number)
         if self._cast is not None:
             self._cast.meet(self._registry.theirs)

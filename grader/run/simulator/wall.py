@@ -76,7 +76,6 @@ class WallWire:
         self._taps.append((topic, kind, made))
 
     def heard(self) -> Iterator[tuple[str, str, int, bytes, int]]:
-        """Yield what was recorded since."""
         now_ns = self.now_ns
         for topic, kind, tap in self._taps:
             while (found := tap.handle.take_message(tap.msg_type, True)) is not None:

@@ -53,7 +53,6 @@ class AfterImport:
         self._calls = calls
 
     def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
-        """Load as usual, then call."""
         if name not in self._calls:
             return None
         spec = importlib.machinery.PathFinder.find_spec(name, path)

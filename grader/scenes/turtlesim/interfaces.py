@@ -26,9 +26,6 @@ def choose(surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
     """Return the package that a submission imports, always or perhaps; else the usual one.
 
     A package that is not installed is not chosen: the import then fails, as in every ROS like this.
-
-    Raises:
-        SubmissionError: it always imports both.
     """
     if surely.keys() >= set(NAMES):
         raise SubmissionError(

@@ -149,11 +149,7 @@ def _stamp(made: CdrWriter, tick: int) -> None:
 
 
 def from_channels(channels: Sequence[Channel], ticks: int) -> TurtleTrace:
-    """Parse the channels of a bag, each with a different topic, into a trace.
-
-    Raises:
-        ValueError, KeyError, TypeError: `to_messages` makes no such channels.
-    """
+    """Parse the channels of a bag, each with a different topic, into a trace."""
     by_topic = {channel.topic: channel for channel in channels}
     events: list[tuple[int, Event]] = []
     logs: list[tuple[int, Log]] = []

@@ -148,7 +148,6 @@ class Turtlesim(Scene):
         return Pictures(trace.window, {"path": trace.canvas})
 
     def view(self, made: Trace) -> View:
-        """Return tracks, pens and curves."""
         return view.view(TurtleTrace.of(made))
 
     @property

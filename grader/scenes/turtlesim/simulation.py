@@ -55,7 +55,6 @@ class TurtlesimSimulation(Simulation):
 
     @property
     def ticks(self) -> int:
-        """The number of recorded ticks."""
         return self._recorder.ticks
 
     def tick(self, now_ns: int | None = None) -> Reason:

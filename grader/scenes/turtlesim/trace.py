@@ -120,11 +120,7 @@ def stands_still(command: CmdVel) -> bool:
 
 
 def check(trace: TurtleTrace) -> None:
-    """Refuse a trace that no recorder writes.
-
-    Raises:
-        ValueError: something in it cannot have been recorded; the text names it.
-    """
+    """Refuse a trace that no recorder writes."""
     for event in trace.events:
         _check_event(event, trace.ticks)
     for name, way in trace.trajectories.items():

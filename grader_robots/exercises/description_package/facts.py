@@ -58,7 +58,6 @@ class PackageFacts:
 
     @property
     def launches(self) -> Sequence[LaunchFile]:
-        """Its launch files."""
         return self.trace.launches
 
     @property
@@ -77,7 +76,6 @@ class PackageFacts:
         ]
 
     def text(self, number: int) -> str:
-        """A text by its number."""
         return self.trace.texts[number] if number >= 0 else ""
 
     @property
@@ -100,7 +98,6 @@ class PackageFacts:
 
 
 def is_rviz(node: LaunchedNode) -> bool:
-    """Whether a node is RViz."""
     return "rviz2" in (node.package, node.executable)
 
 
@@ -123,7 +120,6 @@ def of_package(judge: Callable[[PackageFacts, Tolerances], Finding]) -> CheckFun
 
 
 def unjudged(why: Message, help: Message) -> Finding:
-    """Of what nobody can tell."""
     return Finding(0, why, help, judged=False)
 
 

@@ -77,7 +77,6 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
 
 
 def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
-    """What one launch file shows."""
     if (stopped := starts_nothing(facts, launch)) is not None:
         return stopped
     for text in filter(str.strip, handed_on(facts, launch)):
@@ -181,7 +180,6 @@ def is_publisher(node: LaunchedNode) -> bool:
 
 
 def handed_on(facts: PackageFacts, launch: LaunchFile) -> list[str]:
-    """What robot_state_publisher gets as descriptions."""
     nodes = filter(is_publisher, launch.nodes)
     return [facts.text(p.text) for n in nodes for p in n.parameters if is_description(p.name)]
 

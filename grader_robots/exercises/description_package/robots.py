@@ -161,7 +161,6 @@ _HELP: Final = {
 
 
 def faults(model: Model) -> Iterator[Message]:
-    """What urdfdom does not notice."""
     children = Counter(joint.child for joint in model.joints.values())
     for child, count in children.items():
         if count > 1:

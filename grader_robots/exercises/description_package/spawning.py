@@ -54,7 +54,6 @@ def spawn(facts: PackageFacts, tolerances: Tolerances) -> Finding:
 
 
 def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
-    """Whether the model gets there."""
     if facts.starts_nothing:
         return nothing_started()
     if facts.descriptions and not readable(facts):

@@ -55,7 +55,6 @@ def wheels(facts: PackageFacts, tolerances: Tolerances) -> Finding:
 
 
 def _driven(model: Model | None) -> Finding:
-    """Whether a robot can drive."""
     if model is None:
         return no_robot(msg("Not judged: there is no robot that could drive."))
     frames = kinematics.forward(model, {})

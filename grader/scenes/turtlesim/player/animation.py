@@ -63,7 +63,6 @@ class Animation:
             self._ops.append([frame, number, changed])
 
     def wipe(self, frame: int) -> None:
-        """Remove all paint."""
         self._paint[:] = 0
         self._ops.append([frame, WIPED, 0])
 

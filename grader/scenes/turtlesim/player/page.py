@@ -26,11 +26,7 @@ _OF_THE_NODE = frozenset(("clear", "reset", "spawn", "kill"))
 
 
 def render(playback: Playback) -> str:
-    """Return the page, with an animation of each run in it.
-
-    Raises:
-        RecordingError: a run cannot be played.
-    """
+    """Return the page, with an animation of each run in it."""
     data = {
         "sprites": {SPRITE: base64.b64encode(picture.sprite(SPRITE).tobytes()).decode()},
         "sprite": SPRITE,

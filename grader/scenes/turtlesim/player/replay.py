@@ -34,9 +34,6 @@ def animate(trace: TurtleTrace, start: Start | None) -> dict[str, Any]:
 
     Args:
         start: where turtle1 began; None for the centre.
-
-    Raises:
-        RecordingError: it is too long.
     """
     if trace.ticks > MOST_TICKS:
         raise RecordingError(
