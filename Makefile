@@ -113,7 +113,7 @@ demo: install
 bench: install
 	@scripts/install.sh bench
 	@mkdir -p build && rm -f build/bench.json
-	@for each in node grading class; do $(BIN)/python benchmarks/$$each.py --append build/bench.json $(ARGS); done
+	@for each in node grading; do $(BIN)/python benchmarks/$$each.py --append build/bench.json $(ARGS); done
 
 # ROS and PYTHON: only for these
 release: export ROS := $(GIVEN_ROS)

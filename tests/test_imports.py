@@ -92,9 +92,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("turtlesim_py", "__init__", "world", "scenario", "ros", "live"),
     # scripted peers, which any scene may have beside it
     "grader.cast": GROUND
-    | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined", "rosidl")
-    | {"grader.cast.live"},
-    "grader.cast.live": GROUND | below("grader", "cast.replay", "scenes.live"),
+    | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined", "rosidl"),
     # a package is inspected in the submission's process, which sees little of ours
     "grader.inspection": GROUND | below("grader", "recording", "inspection", "rosidl.cdr"),
     "grader.inspection.trace": below("grader", "strict_json", "message"),

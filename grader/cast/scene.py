@@ -130,14 +130,14 @@ class GraphScene(Scene):
 
     def live_page(self, port: int) -> LivePage:
         """Serve a page that shows the timeline as it grows."""
-        from grader.cast.live import TimelinePage
+        from grader.cast.pages import TimelinePage
 
         return TimelinePage.serve(port)
 
     @property
     def player(self) -> Callable[[Playback], str]:
         """The function that renders the page that plays runs."""
-        from grader.cast.replay import render
+        from grader.cast.pages import render
 
         return render
 

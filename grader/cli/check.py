@@ -17,9 +17,9 @@ from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
 from grader.message import Message, msg
-from grader.recording.folder import WINDOW_PICTURE
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
+from grader.recording.saving import WINDOW_PICTURE
 from grader.reports import Report
 from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
 from grader.text import for_terminal

@@ -15,7 +15,16 @@ from grader.limited import WorkLimits
 from grader.message import Message, msg
 from grader.recording import bag, transfer
 from grader.recording.beside import CastKeeper, apart
-from grader.recording.folder import (
+from grader.recording.observations import Observations
+from grader.recording.recording import (
+    OwnInterfaces,
+    Provenance,
+    PublishedTopic,
+    Recording,
+    Recordings,
+    Run,
+)
+from grader.recording.saving import (
     BAG,
     CIRCUMSTANCES,
     CIRCUMSTANCES_FILE,
@@ -28,15 +37,6 @@ from grader.recording.folder import (
     RUN,
     SCHEMA,
     varied_in,
-)
-from grader.recording.observations import Observations
-from grader.recording.recording import (
-    OwnInterfaces,
-    Provenance,
-    PublishedTopic,
-    Recording,
-    Recordings,
-    Run,
 )
 from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import (

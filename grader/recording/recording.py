@@ -1,6 +1,6 @@
 """What really happened in a run, recorded inside the simulator; judged and re-judged from disk.
 
-`grader.recording.folder` describes a recording on disk.
+`grader.recording.saving` describes a recording on disk.
 """
 
 from __future__ import annotations

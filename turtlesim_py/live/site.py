@@ -21,7 +21,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from turtlesim_py.world import picture
-from turtlesim_py.world.sprite import NAMES
+from turtlesim_py.world.turtle import SPRITES
 
 #: What this machine calls itself.
 _LOCAL: Final = frozenset(("localhost", "127.0.0.1", "::1"))
@@ -122,7 +122,7 @@ def is_loopback(address: str) -> bool:
 
 def _sprites() -> bytes:
     """Serialise name -> the pixels of a turtle's picture, RGBA, row after row, in base64."""
-    pictures = {name: base64.b64encode(picture.sprite(name).tobytes()).decode() for name in NAMES}
+    pictures = {name: base64.b64encode(picture.sprite(name).tobytes()).decode() for name in SPRITES}
     return json.dumps(pictures).encode()
 
 

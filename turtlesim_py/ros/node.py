@@ -26,8 +26,7 @@ from turtlesim_py.ros.turtle_endpoints import TurtleEndpoints
 from turtlesim_py.world.arena import BY_NAME, PARAMETERS, Arena
 from turtlesim_py.world.events import GoalFeedback, GoalResult, LogLine, Notice
 from turtlesim_py.world.floats import printf_f
-from turtlesim_py.world.sprite import NAMES
-from turtlesim_py.world.turtle import Reading
+from turtlesim_py.world.turtle import SPRITES, Reading
 
 if TYPE_CHECKING:
     from turtlesim_py.live.feed import Feed
@@ -190,14 +189,14 @@ class TurtlesimNode(RclcppNode):
     # Parameters -------------------------------------------------------------------------------
 
     def _declare_sprite(self) -> str:
-        expected = f"one of {', '.join(NAMES)}"
+        expected = f"one of {', '.join(SPRITES)}"
         sprite = self.declare(
             "turtle_image",
             "",
             f"Picture of every turtle, {expected}; empty: a random one",
             read_only=True,
         )
-        if sprite and sprite not in NAMES:
+        if sprite and sprite not in SPRITES:
             raise UnusableParameter("turtle_image", sprite, expected)
         return sprite
 

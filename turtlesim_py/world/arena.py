@@ -12,8 +12,7 @@ from turtlesim_py.world import events
 from turtlesim_py.world.canvas import Canvas
 from turtlesim_py.world.events import LogLine, Notice, Severity
 from turtlesim_py.world.floats import float32, printf_f
-from turtlesim_py.world.sprite import NAMES, Sprite
-from turtlesim_py.world.turtle import METER_PX, SIZE_M, Reading, Teleport, Turtle
+from turtlesim_py.world.turtle import METER_PX, SIZE_M, SPRITES, Reading, Sprite, Teleport, Turtle
 
 #: A tick's length on the arena's clock [ns].
 TICK_NS = 16_000_000
@@ -263,7 +262,7 @@ class Arena:
     def _spawn(self, x: float, y: float, theta: float, name: str) -> str:
         where = f"x=[{printf_f(x)}], y=[{printf_f(y)}], theta=[{printf_f(theta)}]"
         self._log("INFO", f"Spawning turtle [{name}] at {where}")
-        sprite = self.sprite or random.choice(NAMES)
+        sprite = self.sprite or random.choice(SPRITES)
         self.turtles[name] = Turtle(name, x, y, theta, self.now_ns, self._emit, sprite)
         return name
 

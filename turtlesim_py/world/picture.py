@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from turtlesim_py.world.canvas import Canvas
 from turtlesim_py.world.floats import PI
-from turtlesim_py.world.sprite import NAMES, Sprite
+from turtlesim_py.world.turtle import SPRITES, Sprite
 
 Color = tuple[int, int, int]
 Mask = NDArray[np.bool_]
@@ -261,8 +261,8 @@ def sprite(name: str) -> NDArray[np.uint8]:
     Raises:
         KeyError: no picture has this name.
     """
-    if name not in NAMES:
-        raise KeyError(f"no turtle picture is named {name!r}, expected one of {', '.join(NAMES)}")
+    if name not in SPRITES:
+        raise KeyError(f"no turtle picture is named {name!r}, expected one of {', '.join(SPRITES)}")
     pixels = _draw(_APPEARANCES[name])
     pixels.setflags(write=False)
     return pixels

@@ -33,6 +33,11 @@ TICK_S = 0.001 * 16
 COMMAND_TIMEOUT_NS = 1_000_000_000
 #: A rotation goal is reached when less than this is left [rad].
 GOAL_TOLERANCE_RAD = 0.02
+#: The names of the turtles' pictures, in the original's order.
+SPRITES = (
+    *("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic", "humble"),
+    *("iron", "jazzy", "rolling"),
+)
 
 
 class Pose(NamedTuple):
@@ -50,6 +55,24 @@ class Reading(NamedTuple):
 
     pose: Pose
     color: tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Sprite:
+    """A turtle as the window shows it.
+
+    Attributes:
+        x_px, y_px: its centre on the canvas, y down. Where one is not finite, the edge of the
+            turtle's picture lies on the edge of the window, as in the original.
+        heading_rad: 0 is to the right, positive turns to the left. A turtle whose heading is
+            not finite is invisible, as in the original.
+        name: one of `SPRITES`.
+    """
+
+    x_px: float
+    y_px: float
+    heading_rad: float
+    name: str
 
 
 class Teleport(NamedTuple):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -11,16 +13,18 @@ from typing import Final
 from grader import message
 from grader.batch.class_file import CLASS
 from grader.batch.entry import HandIn
-from grader.batch.find import canvas, class_archive, clones, gradescope, moodle, newest, plain
+from grader.batch.find import canvas, clones, gradescope, moodle, newest, plain
 from grader.batch.find.attempt import Export, Item, Layout, items_of
 from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR, joined
 from grader.batch.find.plain import Pattern
 from grader.batch.find.roster import Roster, is_of_classroom50, read_roster
 from grader.batch.store import STORE, UNFINISHED
-from grader.errors import UsageError
+from grader.errors import SubmissionError, UsageError
 from grader.message import Message, msg, msg_many
 from grader.scratch import make_folder
-from grader.submission.folder import shown
+from grader.submission.archive import unpack
+from grader.submission.folder import listed, shown
+from grader.submission.safe_members import ArchiveLimits, Budget, Member, TooMuch
 from grader.submission.unpacking import is_archive
 
 #: The members of the class, if beside the submissions; the second is Classroom 50's.
@@ -30,6 +34,21 @@ _TABLES: Final = (ROSTER, SCORES)
 #: The first layout that a folder matches is used; a plain folder matches none.
 LAYOUTS: Final[tuple[Layout, ...]] = (gradescope, moodle, canvas, clones)
 _MAX_WRAPPERS: Final = 3  # folders in a folder that an archive was packed from
+LIMITS: Final = ArchiveLimits(
+    most_bytes=50_000_000_000, most_files=500_000, list_bytes=20_000_000, headers=500_000
+)
+_INSTEAD: Final = msg("Unpack it yourself, and give the folder.")
+#: Of a member whose name or place does not suit this system: of no other, as a full disk is.
+_UNWRITABLE: Final = (
+    *(errno.EINVAL, errno.EILSEQ, errno.ENAMETOOLONG),
+    *(errno.ENOTDIR, errno.EISDIR, errno.EEXIST),
+)
+_REFUSED: Final = msg(
+    "is encrypted, a link, no ordinary file or would be written outside of its folder, and is left "
+    "out"
+)
+_CANNOT_BE_WRITTEN: Final = msg("cannot be written here")
+_DAMAGED: Final = msg("is damaged, and kept as far as it goes")
 
 
 @dataclass(frozen=True)
@@ -119,13 +138,57 @@ def _folder(submissions: Path, scratch: Path) -> tuple[Path, list[Message]]:
         )
     if is_archive(submissions) and submissions.is_file():
         folder = scratch / "class"
-        return folder, class_archive.unpack(submissions, folder)
+        return folder, _unpack(submissions, folder)
     if submissions.suffix == ".py":
         raise _is_one(submissions, msg("it is a Python file"))
     raise UsageError(
         "{path} is neither a folder of submissions nor a .zip or .tar.gz of one.",
         path=shown(submissions),
     )
+
+
+def _unpack(archive: Path, into: Path) -> list[Message]:
+    """Unpack the archive of a class into `into`, a folder to be made; return notes.
+
+    A course's server made it, with names and contents from students. A member that cannot be used
+    is left out and reported: one student must not keep the others from being graded. The students'
+    archives inside of it are not unpacked here.
+    """
+    odd: dict[Message, list[str]] = defaultdict(list)
+
+    def report(member: Member, error: Exception) -> None:
+        if isinstance(error, SubmissionError):
+            odd[_REFUSED].append(member.name)
+        elif isinstance(error, OSError) and error.errno in _UNWRITABLE:
+            odd[_CANNOT_BE_WRITTEN].append(member.name)
+        elif isinstance(error, OSError) and error.errno is not None:
+            raise error
+        else:
+            odd[_DAMAGED].append(member.name)
+
+    into.mkdir()
+    try:
+        unpack(archive, into, Budget(LIMITS), report)
+    except TooMuch:
+        raise UsageError(
+            "{name} unpacks to more than {size:g} GB, or {files:,} files, the limit for a class. "
+            "{instead}",
+            name=shown(archive.name),
+            size=LIMITS.most_bytes / 1e9,
+            files=LIMITS.most_files,
+            instead=_INSTEAD,
+        ) from None
+    except SubmissionError as error:
+        raise UsageError(error.message.given(pack_again=_INSTEAD)) from None
+    return [
+        msg(
+            "Of what {name} holds, some {what}: {names}.",
+            name=shown(archive.name),
+            what=what,
+            names=listed(names),
+        )
+        for what, names in odd.items()
+    ]
 
 
 def _top(

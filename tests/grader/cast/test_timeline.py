@@ -6,7 +6,7 @@ import pytest
 
 import grader
 from grader.cast import timeline
-from grader.cast.live import TimelinePage
+from grader.cast.pages import TimelinePage
 from grader.cast.trace import ROSOUT, CastTrace
 from grader.recording.recording import Recording, Recordings
 from grader.reports import playback

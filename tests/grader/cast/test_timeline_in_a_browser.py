@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 
 from grader.cast import timeline
-from grader.cast.live import TimelinePage
-from grader.cast.replay import render
+from grader.cast.pages import TimelinePage, render
 from grader.cast.trace import CastTrace
 from grader.cli import main
 from grader.exercise.loading import load_exercise

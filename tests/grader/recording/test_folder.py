@@ -19,9 +19,9 @@ from grader.errors import RecordingError
 from grader.inspection.trace import PackageTrace
 from grader.message import msg
 from grader.recording import bag, reading, saving
-from grader.recording.folder import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.observations import End, Observations, SourceLine, Standstill
 from grader.recording.recording import OwnInterfaces, Provenance, Recording, Recordings
+from grader.recording.saving import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA
 from grader.scenes.turtlesim.trace import Log
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive

@@ -15,7 +15,7 @@ from tests.grader.run.conftest import LIMITS
 from tests.runs import SUBMISSIONS
 from turtlesim_py.live.feed import News
 from turtlesim_py.world import picture
-from turtlesim_py.world.sprite import Sprite
+from turtlesim_py.world.turtle import Sprite
 
 
 class Onlooker:

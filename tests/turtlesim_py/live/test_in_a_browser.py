@@ -28,7 +28,7 @@ from tests.tiers import others_are_more
 from tests.turtlesim_py.live.conftest import Page
 from turtlesim_py.world import picture
 from turtlesim_py.world.canvas import Canvas, Pen
-from turtlesim_py.world.sprite import Sprite
+from turtlesim_py.world.turtle import Sprite
 
 pytestmark = needs_browser
 

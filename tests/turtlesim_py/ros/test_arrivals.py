@@ -11,8 +11,7 @@ from turtlesim.action import RotateAbsolute
 
 from tests.graph import Graph, wait_for_arrival
 from tests.turtlesim_py.ros.test_executor import Served, send, served
-from turtlesim_py.ros.arrivals import Arrivals
-from turtlesim_py.ros.executor import QUIET_SPINS
+from turtlesim_py.ros.executor import QUIET_SPINS, Arrivals
 
 __all__ = ["served"]
 

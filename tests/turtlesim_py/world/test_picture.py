@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from turtlesim_py.world.canvas import Canvas, Pen
 from turtlesim_py.world.floats import PI
 from turtlesim_py.world.picture import render, sprite
-from turtlesim_py.world.sprite import NAMES, Sprite
+from turtlesim_py.world.turtle import SPRITES, Sprite
 
 BLUE = (69, 86, 255)
 MIDDLE = 250.5  # a picture of 45 pixels lies on whole pixels around it
@@ -55,7 +55,7 @@ def test_the_canvas_stays_as_it_is():
     assert (canvas.rgba()[..., 3] == 0).all()
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SPRITES)
 @pytest.mark.parametrize(("heading_rad", "quarter_turns"), [(0.0, -1), (-PI, 1), (-PI / 2.0, 2)])
 def test_a_turtle_looks_along_its_heading(name, heading_rad, quarter_turns):
     """To the right, to the left, down: the pictures look up, and `np.rot90` turns to the left."""
@@ -118,7 +118,7 @@ def test_a_turtle_without_a_heading_is_invisible_as_in_the_original(heading_rad)
     assert not changed(window(Sprite(MIDDLE, MIDDLE, heading_rad, "iron"))).any()
 
 
-@given(st.floats(), st.floats(), st.floats(), st.sampled_from(NAMES))
+@given(st.floats(), st.floats(), st.floats(), st.sampled_from(SPRITES))
 def test_any_turtle_can_be_shown(x_px, y_px, heading_rad, name):
     canvas = Canvas()
     picture = render(canvas, BLUE, [Sprite(x_px, y_px, heading_rad, name)])

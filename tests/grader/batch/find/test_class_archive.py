@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.batch.find import class_archive
+from grader.batch.find import finding
 from grader.errors import UsageError
 from tests.grader.batch.find.exports import NODE, Finder, content, noted, packed
 
@@ -126,7 +126,7 @@ def test_a_class_has_limits(
 ) -> None:
     archive = tmp_path / "class.zip"
     archive.write_bytes(packed({f"student{number}.py": "#" * 500 for number in range(5)}))
-    monkeypatch.setattr(class_archive, "LIMITS", replace(class_archive.LIMITS, **limit))
+    monkeypatch.setattr(finding, "LIMITS", replace(finding.LIMITS, **limit))
     with pytest.raises(UsageError, match=why):
         finder(archive)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from grader.batch.entry import Entry, HandIn, Person, State
 from grader.batch.page import html
-from grader.batch.page.students import Student, students
+from grader.batch.page.html import Student, students
 from grader.message import Message, as_message, msg
 from grader.result.result import Result
 from tests.grader.reports import samples

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from datetime import UTC, datetime
 
-from grader.batch.page.students import evenly, students
+from grader.batch.page.html import evenly, students
 from grader.result.result import SubmissionInfo
 from tests.grader.batch.page.classes import entry, result, student
 

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from grader.cast import replay
+from grader.cast import pages
 from grader.scenes import joined
 from grader.translations import ENGLISH, catalogue
 
 #: Of each page its name, its first module, and the folders of its modules before those of others.
 PAGES = [
     ("player.html", "player", [joined.PLAYER]),
-    ("replay.html", "replay", [replay.PAGE, replay.PAGE / "live", joined.PLAYER]),
+    ("replay.html", "replay", [pages.PAGE, pages.PAGE / "live", joined.PLAYER]),
 ]
 
 
