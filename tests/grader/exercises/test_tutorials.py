@@ -34,20 +34,21 @@ MOST_FOR_NOTHING = 20
 
 
 def mutant(name, key):
-    """The path of a mutant, which is a file, or the official solution with passages replaced."""
-    path = FOLDER / name / "mutants" / key
-    changes = LISTS[name][key].get("changes")
-    if changes is None:
-        return path
+    """The path of a mutant: the official solution, a file or a folder, with passages replaced."""
+    changes = LISTS[name][key]["changes"]
+    official = RIGHT[name, "official"]
+    hand_in = f"{key}{official.suffix}"
 
     def make(folder):
-        made = shutil.copytree(FOLDER / name / "right" / "official", folder / "hand_in")
-        for file, old, new in changes:
-            text = (made / file).read_text()
-            assert text.count(old) == 1, (file, old)
-            (made / file).write_text(text.replace(old, new))
+        made = folder / hand_in
+        shutil.copytree(official, made) if official.is_dir() else shutil.copy(official, made)
+        for *file, old, new in changes:
+            path = made.joinpath(*file)
+            text = path.read_text()
+            assert text.count(old) == 1, (path, old)
+            path.write_text(text.replace(old, new))
 
-    return once.folder(make, "tutorial", name, key, str(changes)) / "hand_in"
+    return once.folder(make, "tutorial", name, key, str(changes)) / hand_in
 
 
 def lost(name, key):
