@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import shutil
-
 import pytest
-import yaml
 
 import grader
 from grader.cli import main
 from grader.exercise.loading import load_exercise
 from grader.testing.solutions import FILE_NAME, read_solutions
-from tests import once, runs
+from tests import runs
 
-FOLDER = runs.SUBMISSIONS / "tutorials"
+FOLDER = runs.TUTORIALS
 NAMES = sorted(path.name for path in FOLDER.iterdir() if path.is_dir())
 RIGHT = {
     (name, path.stem): path
@@ -23,43 +20,24 @@ RIGHT = {
 }
 #: Those that come with a reference and mutants of their own.
 WHOLE = [name for name in NAMES if (load_exercise(name).folder / FILE_NAME).is_file()]
-LISTS = {name: yaml.safe_load((FOLDER / name / "mutants.yaml").read_text()) for name in NAMES}
-MUTANTS = [(name, key) for name in NAMES for key in LISTS[name]]
+MUTANTS = [(name, key) for name in NAMES for key in runs.mutants_of(name)]
 #: What stands for the others in `make test`; `make test-more` grades all.
-FIRST = [(name, next(iter(LISTS[name]))) for name in NAMES]
+FIRST = [(name, next(iter(runs.mutants_of(name)))) for name in NAMES]
 #: One part of the mutants may slip through: those that only another seed would show.
 MOST_MISSED = 0.03
 #: What the name of a node, or a definition that is given, is worth [points].
 MOST_FOR_NOTHING = 20
 
 
-def mutant(name, key):
-    """The path of a mutant: the official solution, a file or a folder, with passages replaced."""
-    changes = LISTS[name][key]["changes"]
-    official = RIGHT[name, "official"]
-    hand_in = f"{key}{official.suffix}"
-
-    def make(folder):
-        made = folder / hand_in
-        shutil.copytree(official, made) if official.is_dir() else shutil.copy(official, made)
-        for *file, old, new in changes:
-            path = made.joinpath(*file)
-            text = path.read_text()
-            assert text.count(old) == 1, (path, old)
-            path.write_text(text.replace(old, new))
-
-    return once.folder(make, "tutorial", name, key, str(changes)) / hand_in
-
-
 def lost(name, key):
     """The checks in which a mutant loses points."""
-    result = grader.grade(mutant(name, key), name)
+    result = grader.grade(runs.mutant(name, key), name)
     return {verdict.check for verdict in result.verdicts if verdict.status != "passed"}
 
 
 def must_lose(name, key):
     known = {check.name for check in load_exercise(name).checks}
-    return set(LISTS[name][key]["loses"]) & known
+    return set(runs.mutants_of(name)[key]["loses"]) & known
 
 
 @pytest.mark.parametrize("name", NAMES)
