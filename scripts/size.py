@@ -21,7 +21,7 @@ STUDENTS = {"starter", "reference", "right"}
 #: Rooms of grader/ that are not the core.
 AROUND_THE_CORE = {"grader/exercises", "grader/batch"}
 #: Folders whose classes have the names of ROS's.
-DOUBLES = ("tf2/", "robot_py/ros/")
+DOUBLES = ("tf2/",)
 
 
 def sources(root: Path) -> dict[PurePosixPath, str]:

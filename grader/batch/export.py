@@ -5,7 +5,7 @@
     export/jplag/base/...py           what everybody was given
     export/dolos.zip                  students/ID.py, starter.py, info.csv
 
-    compare50 export/jplag/students/* -d export/jplag/base -o REPORT
+    compare50 export/jplag/students/* -d export/jplag/base/* -o REPORT
     java -jar jplag.jar -l python3 export/jplag/students -bc export/jplag/base
     dolos run -l python export/dolos.zip
 

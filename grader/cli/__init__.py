@@ -53,7 +53,7 @@ VERBS = {
     "course": msg(
         "Write the repository of a course that is graded on GitHub, Gradescope or another system."
     ),
-    "batch": msg("Grade a class: find the submissions, grade them in parallel, and compare them."),
+    "batch": msg("Grade a class: find the submissions, and grade them in parallel."),
     "forget": msg("Forget a student: remove what is kept of one from the folder of a class."),
     "check-exercise": msg(
         "Try an exercise on its right solutions and mutants: what each check catches, and what "

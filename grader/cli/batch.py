@@ -1,4 +1,4 @@
-"""Grade a class: find the submissions, grade them in parallel, and compare them."""
+"""Grade a class: find the submissions, and grade them in parallel."""
 
 from __future__ import annotations
 

@@ -36,7 +36,8 @@ def main(args: argparse.Namespace) -> int:
     from grader.exercise.loading import load_exercise
 
     console = Console(highlight=False)
-    exercise = load_exercise(args.exercise or ClassFile.read(args.out).exercise)
+    of_class = ClassFile.read(args.out)
+    exercise = load_exercise(args.exercise or of_class.exercise)
     with Store.opened(args.out) as store:
         plan = forget.plan(store, args.student)
         say(console, f"{plan.person.id} {plan.person.name}".strip(), "bold")
@@ -44,6 +45,12 @@ def main(args: argparse.Namespace) -> int:
             say(console, msg("- goes: {folder}", folder=folder))
         for entry, _ in plan.groups:
             say(console, msg("- stays without this member: {folder}", folder=entry.folder))
+        if exercise.sha256 != of_class.exercise_sha256:
+            note = msg(
+                "Note: the class was judged by another version of this exercise, and its pages "
+                "will be made by this one: give that one with --exercise"
+            )
+            say(console, note)
         if not args.yes:
             say(console, msg("Nothing was changed. To do it: the same call with --yes"))
             return JUDGED

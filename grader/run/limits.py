@@ -8,7 +8,7 @@ run is over (`grader.run.processes.supervisor`). A course may bound the processo
 as a whole (`CpuBudget`).
 
 A step of an inspection (`grader.inspection.examining.steps`), the link of virtual time
-(`grader.run.lockstep.protocol`) and the reading of a submission (`grader.submission.reader_main`)
+(`grader.run.lockstep.protocol`) and the reading of a submission (`grader.submission.reader`)
 have limits of their own.
 """
 

@@ -137,6 +137,21 @@ def test_a_call_that_was_cut_off_is_finished_by_the_next(
     assert not (out / "changes.csv").exists()
 
 
+def test_a_class_that_was_regraded_by_an_edited_exercise_asks_for_it(
+    out: Path, tmp_path: Path, small_class: Class, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = small_class.exercise
+    edited = Path(shutil.copytree(own.parent, tmp_path / "edited")) / own.name
+    text = own.read_text(encoding="utf-8")
+    edited.write_text(
+        text.replace("points:", "late: {due: 2026-11-30T23:59:00+01:00, per_day: 1}\npoints:", 1),
+        encoding="utf-8",
+    )
+    for path, is_noted in ((own, False), (edited, True)):
+        assert main(["forget", "zm4711", "--from", str(out), "--exercise", str(path)]) == 0
+        assert ("another version of this exercise" in capsys.readouterr().out) is is_noted
+
+
 def test_nothing_changes_without_yes(
     out: Path, call: Call, capsys: pytest.CaptureFixture[str]
 ) -> None:
