@@ -29,10 +29,13 @@ SCHEMAS = {
     "error": ROOT / "grader" / "result" / "error.schema.json",
     "recording": ROOT / "grader" / "recording" / "recording.schema.json",
 }
-#: Folder of a result -> the exercise.yaml by which it was judged; empty: an installed one's.
+#: Folder of a result -> the rubric by which it was judged, in its archive or beside it: the
+#: points of an installed exercise may change.
 RESULTS = {
-    "spiral": "spiral.yaml",
-    **dict.fromkeys(("programs", "package", "robot", "peers", "cases", "real_time"), ""),
+    **{
+        name: f"{name}/rubric.yaml"
+        for name in ("spiral", "programs", "package", "robot", "peers", "cases", "real_time")
+    },
     **dict.fromkeys((f"class/submissions/{who}" for who in ("anna", "ben", "chen")), "before.yaml"),
 }
 
@@ -41,6 +44,8 @@ RESULTS = {
 def unpacked(tmp_path_factory) -> Path:
     """All that was kept; read it, or copy it."""
     folder = tmp_path_factory.mktemp("kept")
+    for rubric in KEPT.glob("*.yaml"):
+        shutil.copy(rubric, folder)
     for archive in KEPT.glob("*.tar.xz"):
         with tarfile.open(archive) as packed:
             packed.extractall(folder, filter="data")
@@ -71,9 +76,9 @@ def judged(path: Path) -> dict[str, Any]:
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_it_is_judged_as_it_was_then(name, unpacked, tmp_path):
-    words = ["--exercise", str(KEPT / RESULTS[name])] if RESULTS[name] else []
-    again = tmp_path / "again.json"
-    assert main(["check", str(unpacked / name), "--json", str(again), *words]) == 0
+    exercise, again = str(unpacked / RESULTS[name]), tmp_path / "again.json"
+    words = ["--exercise", exercise, "--json", str(again)]
+    assert main(["check", str(unpacked / name), *words]) == 0
     assert judged(again) == judged(unpacked / name / "result.json")
 
 
