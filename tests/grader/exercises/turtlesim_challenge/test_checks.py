@@ -13,21 +13,12 @@ from grader.strict_json import to_json
 from grader.testing import drive, pen, twist
 from tests.grader.driving import CENTRE, RED, WHITE, Spiral
 
-FULL = {
-    "moves": 5,
-    "spiral": 30,
-    "steady_rate": 5,
-    "edge_stop": 25,
-    "pen_per_quadrant": 20,
-    "picture": 5,
-    "no_redundant_calls": 10,
-}
 
-
-def scores(recording: Recording) -> dict[str, float]:
+def shares(recording: Recording) -> dict[str, float]:
+    """The share of its points that each check gives."""
     exercise = load_exercise("turtlesim_challenge")
     verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
-    return {verdict.check: verdict.score for verdict in verdicts}
+    return {verdict.check: verdict.score / verdict.max_score for verdict in verdicts}
 
 
 class Clockwise(Spiral):
@@ -113,7 +104,7 @@ class PausesOnItsWay(Spiral):
 
 @pytest.mark.parametrize("controller", [Spiral, Clockwise, OtherColoursAndWidth])
 def test_a_right_solution_gets_every_point(controller):
-    assert scores(drive(controller())) == FULL
+    assert set(shares(drive(controller())).values()) == {1}
 
 
 @pytest.mark.parametrize(
@@ -129,28 +120,27 @@ def test_a_right_solution_gets_every_point(controller):
     ],
 )
 def test_a_spoiled_solution_loses_points_where_it_is_spoiled_and_nowhere_else(controller, lost):
-    found = scores(drive(controller()))
-    assert {name for name in FULL if found[name] < FULL[name]} == lost
+    found = shares(drive(controller()))
+    assert {name for name, share in found.items() if share < 1} == lost
 
 
 def test_a_circle_keeps_the_points_for_start_and_turns_only():
-    found = scores(drive(Circle()))
-    assert 0 < found["spiral"] < FULL["spiral"]
+    found = shares(drive(Circle()))
+    assert 0 < found["spiral"] < 1
     assert found["edge_stop"] == 0
 
 
 def test_late_colours_lose_pen_points():
-    found = scores(drive(PenALongTimeLate()))
-    assert found["pen_per_quadrant"] < FULL["pen_per_quadrant"]
-    assert found["spiral"] == FULL["spiral"]
+    found = shares(drive(PenALongTimeLate()))
+    assert found["pen_per_quadrant"] < found["spiral"] == 1
 
 
 def test_half_the_colours_earn_half_the_pen_points():
-    assert scores(drive(TwoColours()))["pen_per_quadrant"] == pytest.approx(10, abs=0.5)
+    assert shares(drive(TwoColours()))["pen_per_quadrant"] == pytest.approx(0.5, abs=0.025)
 
 
 def test_a_turtle_that_never_moves_earns_nothing():
-    assert set(scores(drive(StandsStill(), ticks=900)).values()) == {0}
+    assert set(shares(drive(StandsStill(), ticks=900)).values()) == {0}
 
 
 def test_an_empty_recording_says_that_no_command_came():
@@ -171,8 +161,8 @@ def test_a_path_that_starts_elsewhere_loses_the_start_only():
         elif tick > 2:
             spiral(tick, pose, arena)
 
-    found = scores(drive(controller))
-    assert found["spiral"] == pytest.approx(24)
+    found = shares(drive(controller))
+    assert found["spiral"] == pytest.approx(0.8)
 
 
 class SendsNotANumber(Spiral):
@@ -194,7 +184,7 @@ def test_a_turtle_that_is_never_anywhere_is_judged_without_a_fault():
     def nowhere(tick, pose, arena):
         twist(arena, float("nan"))
 
-    assert set(scores(drive(nowhere, ticks=300)).values()) == {0}
+    assert set(shares(drive(nowhere, ticks=300)).values()) == {0}
 
 
 def test_a_right_solution_is_right_wherever_it_starts_and_counting_steps_is_not():
@@ -219,6 +209,6 @@ def test_the_evidence_of_a_needless_call_names_tick_and_place():
     exercise = load_exercise("turtlesim_challenge")
     recording = drive(PenOnEveryPose())
     verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
-    evidence = verdicts[-1].evidence[0]
+    (evidence, *_) = next(v.evidence for v in verdicts if v.check == "no_redundant_calls")
     assert evidence.tick > 0
     assert evidence.time_s == pytest.approx(evidence.tick * 0.016)
