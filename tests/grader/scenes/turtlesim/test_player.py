@@ -19,9 +19,8 @@ from grader.recording.subject import Start
 from grader.scenes import joined
 from grader.scenes.turtlesim.driving import drive
 from grader.scenes.turtlesim.player import page
-from grader.scenes.turtlesim.player.animation import WIPED
 from grader.scenes.turtlesim.player.page import first_difference
-from grader.scenes.turtlesim.player.replay import MOST_TICKS, animate
+from grader.scenes.turtlesim.player.replay import MOST_TICKS, WIPED, animate
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import pen, twist
 from tests.grader.driving import Spiral
