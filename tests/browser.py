@@ -27,14 +27,23 @@ WIDTHS = (320, 375, 640, 1280)
 
 @contextmanager
 def open_browser() -> Iterator[Any]:
-    """A browser without a window; pages of it are opened with `new_page`."""
+    """A browser without a window; pages of it are opened with `new_page`, and may throw nothing."""
     from playwright.sync_api import sync_playwright
+
+    thrown: list[str] = []
+
+    def new_page(**options: Any) -> Any:
+        page = opened(**options)
+        page.on("pageerror", lambda error: thrown.append(str(error)))
+        return page
 
     with sync_playwright() as playwright:
         arguments = ["--no-sandbox", "--disable-gpu"]
         browser = playwright.chromium.launch(executable_path=BROWSER, args=arguments)
+        opened, browser.new_page = browser.new_page, new_page
         yield browser
         browser.close()
+    assert thrown == []
 
 
 def obstacles(page: Any) -> list[str]:

@@ -18,13 +18,13 @@
   let matching = new Set(row.keys());
 
   function find() {
-    const words = folded(by("find").value).split(/\s+/).filter(Boolean);
+    const wanted = folded(by("find").value).split(/\s+/).filter(Boolean);
     matching = new Set();
     for (const [of, element] of row) {
       if (!texts.has(of)) {
         texts.set(of, folded([...element.cells].map((cell) => cell.textContent).join(" ")));
       }
-      const found = words.every((word) => texts.get(of).includes(word));
+      const found = wanted.every((word) => texts.get(of).includes(word));
       if (found) matching.add(of);
       element.hidden = !found;
       const thumb = thumbs.get(of);

@@ -62,6 +62,19 @@ def test_hidden_names_are_nowhere(page):
     assert dom.count('aria-disabled="true"') == 2
 
 
+def test_what_is_found_is_counted_and_a_chosen_name_is_hidden_too(page):
+    with open_browser() as browser:
+        there = browser.new_page()
+        there.goto(page.as_uri())
+        there.fill("#find", "zoe")
+        assert there.inner_text("#found") == "1 of 3"
+        there.fill("#find", "")
+        there.hover("tr[data-of] >> nth=0")
+        there.click("#hide")
+        assert there.url.endswith("#names-hidden")
+        assert not any(name in there.inner_text("main") for name in ("Zoë", "Bob", "Kim"))
+
+
 def test_names_that_are_hidden_stay_so_on_the_next_page(tmp_path, monkeypatch):
     monkeypatch.setattr(html, "MOST_ROWS", 1)
     monkeypatch.setattr(html, "ROWS", 1)
