@@ -14,6 +14,8 @@ from grader.result.result import Result
 from grader.translations import translate
 
 _LONGEST_LINE = 400
+#: Whether it is about the run as a whole, and not about the check.
+_Line = tuple[bool, Message]
 
 
 @dataclass(frozen=True)
@@ -23,8 +25,8 @@ class CheckRow:
     Attributes:
         count, passed: how many it concerned, and how many of them passed.
         mean: what they earned on average [points].
-        first_line: what most of those who did not pass have to fix first, as one of them reads
-            it; '' where all passed.
+        first_line: what most of those who failed have to fix first, as one of them reads it; ''
+            where nobody failed.
         alike: how many of them read the same, but for its values.
     """
 
@@ -45,16 +47,16 @@ def check_rows(results: Sequence[Result], points: Mapping[str, float]) -> list[C
         points: check -> points, of the exercise.
     """
     verdicts: dict[str, list[Verdict]] = {check: [] for check in points}
-    lines: dict[str, list[Message]] = {check: [] for check in points}
+    lines: dict[str, list[_Line]] = {check: [] for check in points}
     for result in results:
         for verdict in result.verdicts:
             verdicts.setdefault(verdict.check, []).append(verdict)
-            if not verdict.passed:
+            if verdict.status == "failed":
                 lines.setdefault(verdict.check, []).append(_first_line(result, verdict))
     return [_row(found, lines.get(check, [])) for check, found in verdicts.items() if found]
 
 
-def _row(verdicts: Sequence[Verdict], lines: Sequence[Message]) -> CheckRow:
+def _row(verdicts: Sequence[Verdict], lines: Sequence[_Line]) -> CheckRow:
     first_line, alike = _most_frequent(lines)
     return CheckRow(
         check=verdicts[0].check,
@@ -68,26 +70,32 @@ def _row(verdicts: Sequence[Verdict], lines: Sequence[Message]) -> CheckRow:
     )
 
 
-def _first_line(result: Result, verdict: Verdict) -> Message:
+def _first_line(result: Result, verdict: Verdict) -> _Line:
     """Return the first line of a report, unless that is about another check."""
     diagnosis = result.diagnosis
     if diagnosis is not None and diagnosis.check in ("", verdict.check):
-        return diagnosis.cause
-    return verdict.rationale
+        return not diagnosis.check, diagnosis.cause
+    return False, verdict.rationale
 
 
-def _most_frequent(lines: Sequence[Message]) -> tuple[str, int]:
-    """Return the most frequent line and how many are alike; of equals the first by alphabet."""
-    by_kind: dict[Hashable, Counter[str]] = {}
-    for line in lines:
+def _most_frequent(lines: Sequence[_Line]) -> tuple[str, int]:
+    """Return the most frequent line and how many are alike.
+
+    Of equals it is one of the check itself, and of those the first by alphabet.
+    """
+    by_kind: dict[tuple[bool, Hashable], Counter[str]] = {}
+    for is_of_run, line in lines:
         shown = text.clip(text.one_line(text.plain(translate(line))), _LONGEST_LINE)
-        by_kind.setdefault(_kind(line), Counter())[shown] += 1
+        by_kind.setdefault((is_of_run, _kind(line)), Counter())[shown] += 1
     if not by_kind:
         return "", 0
     most = max(each.total() for each in by_kind.values())
-    alike = (each for each in by_kind.values() if each.total() == most)
-    examples = (min(each, key=lambda shown: (-each[shown], shown)) for each in alike)
-    return min(examples), most
+    _, example = min(
+        (is_of_run, min(each, key=lambda shown: (-each[shown], shown)))
+        for (is_of_run, _), each in by_kind.items()
+        if each.total() == most
+    )
+    return example, most
 
 
 def _kind(line: Message) -> Hashable:

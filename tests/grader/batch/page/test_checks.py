@@ -48,6 +48,13 @@ def test_what_a_run_shows_by_itself_comes_before_a_check_s_own_reason():
     assert row(of_another).first_line == "It is 1 m off."
 
 
+def test_of_equals_the_check_s_own_line_is_shown_and_who_was_not_judged_has_none():
+    crashed, off = result(BAD, diagnosis=diagnosis()), result(BAD, msg("You are off."))
+    assert row(crashed, off).first_line == row(off, crashed).first_line == "You are off."
+    waits = replace(off, verdicts=tuple(replace(v, status="not_judged") for v in off.verdicts))
+    assert (row(waits).first_line, row(waits).alike) == ("", 0)
+
+
 def test_the_line_is_what_most_are_told_whatever_its_values():
     assert said(*(OFF.given(metres=m) for m in (3, 2, 2)), msg("Gone.")) == (3, "It is 2 m off.")
     assert said(msg("b"), msg("a")) == said(msg("a"), msg("b")) == (1, "a")
