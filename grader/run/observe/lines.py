@@ -17,6 +17,7 @@ from importlib.machinery import SourceFileLoader
 from types import CodeType, FrameType, MemberDescriptorType
 from typing import Any
 
+from grader.run.lockstep.faults import pass_on
 from grader.run.observe.files import Row, SubmissionFiles
 
 #: Larger files get no marks [bytes]; so many conditions are asked for values, exceptions kept.
@@ -56,7 +57,7 @@ class LineMarks:
             return self.marked(code, loader.get_data(file), file)
 
         def compile_program(source: Any, file: str, mode: str) -> CodeType:
-            code: CodeType = compile(source, file, mode)
+            code: CodeType = pass_on(compile, source, file, mode)  # a SyntaxError is the file's
             return self.marked(code, source, file)
 
         SourceFileLoader.get_code = get_code  # type: ignore[assignment, method-assign]

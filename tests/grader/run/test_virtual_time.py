@@ -16,6 +16,7 @@ from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
+from tests import runs
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 
@@ -35,6 +36,12 @@ def test_every_style_of_waiting_is_followed(recorded: Recorded, style: str) -> N
     run = recording.run
     assert (run.time, run.outcome, run.flags) == ("virtual", "finished", ())
     assert len(recording.trace.of_kind(CmdVel)) > 10
+
+
+def test_a_file_that_python_cannot_read_is_run_in_virtual_time_and_is_no_fault_of_ours() -> None:
+    run = runs.graded(runs.written("import rclpy\ndef main(:\n    pass\n")).run
+    assert (run.time, run.outcome) == ("virtual", "crashed")
+    assert not any("virtual time itself" in str(flag) for flag in run.flags)
 
 
 @pytest.mark.parametrize("style", others_are_more("the most different styles", STYLES, *TWICE))
