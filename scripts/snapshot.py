@@ -39,7 +39,7 @@ FORMATS = (
 #: Folders of programs beside peers; of the tutorials, right ones of one file are graded.
 WITH_PEERS = ("tutorials", "hostile_casts")
 #: Files beside the fixtures that are none.
-HELPERS = ("beginners.py", "mutants.py", "packages.py")
+HELPERS = ("beginners.py", "mangled.py", "mutants.py", "packages.py")
 #: The file of a recording that differs between equal runs.
 CIRCUMSTANCES = "circumstances.json"
 
