@@ -42,6 +42,11 @@ class Beside:
         """`canvas_path` if the picture has to be read from the file, else None."""
         return None if self._made is not None else self.canvas_path
 
+    @property
+    def solid_words(self) -> str:
+        """What only a page could draw, in words, where no recording is kept; '' for nothing."""
+        return ""
+
     @cached_property
     def scene(self) -> str:
         """The name of the scene; the default one where there is no recording."""

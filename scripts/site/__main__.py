@@ -220,9 +220,10 @@ def _parts(gallery: Gallery) -> Iterator[str]:
     yield "## What a teacher sees\n\n    grader batch hand_ins --out class"
     gallery.grader("batch", "hand_ins", "--out", "class")
     yield gallery.picture("class/index.html", "class", "The class: scores, and how each check went")
-    for file in (gallery.work / "class").glob("submissions/*/report.html"):  # which it leads to
+    below = gallery.work / "class"
+    for file in (*below.glob("submissions/*/report.html"), below / "gradebook.csv"):  # its links
         there = gallery.folder / file.relative_to(gallery.work)
-        there.parent.mkdir(parents=True)
+        there.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(file, there)
     yield "## What the simulator draws\n\n    python -m turtlesim_py.scenario spiral.json --out ."
     for name in DRAWN:

@@ -15,6 +15,7 @@ from pathlib import PurePath
 from grader import files, text
 from grader.batch.entry import Entry
 from grader.batch.gradebook.grade import LONGEST, Grade, out_of
+from grader.batch.page.thumb import Thumb
 from grader.message import Message, msg
 from grader.recording.recording import Recording
 from grader.reports import ErrorReport, Report, render
@@ -99,11 +100,16 @@ class Feedback:
 
 
 class _WithoutRecordings(Beside):
-    """Picture and output alone, without recordings."""
+    """Picture and output alone, without recordings; of what has no picture, words."""
 
     @property
     def recordings(self) -> Mapping[int, Recording | Message]:
         return {}
+
+    @property
+    def solid_words(self) -> str:
+        thumb = Thumb.read(self.folder)
+        return "" if thumb is None else thumb.words
 
     @property
     def output(self) -> str:

@@ -7,6 +7,7 @@ import re
 
 import pytest
 
+from grader.batch.gradebook.feedback import Feedback
 from grader.batch.page.thumb import THUMB, Thumb, thumb
 from grader.inspection.trace import (
     Description,
@@ -24,6 +25,7 @@ from grader.reports.page import html
 from grader.reports.page.parts import DEEPEST, WIDTH, drawn
 from grader_robots.scene.driving import drive
 from grader_robots.scene.trace import RobotTrace
+from tests.grader.batch.page.classes import entry, result
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import evidence, verdict
 from tests.grader_robots.scene.robots import walks
@@ -151,6 +153,14 @@ def test_where_nothing_was_found_the_page_says_so_and_works(trace, scene, tmp_pa
 def test_without_the_recording_the_picture_beside_the_result_is_shown(tmp_path):
     page = html.render(samples.report(verdict("a")))
     assert "<canvas" not in page and 'class="still"' not in page
+
+
+def test_feedback_which_has_no_recording_says_what_a_picture_would_show(tmp_path):
+    run = Run(trace_sha256=package_trace().sha256())
+    recording = Recording(package_trace(), run, scene="package")
+    (tmp_path / THUMB).write_bytes(thumb(Recordings(recording)))
+    of_class = entry("zoe", result({"a": 10.0}), folder=tmp_path)
+    assert "The robot arm with 1 link: base" in Feedback().page(of_class).decode()
 
 
 def test_a_page_of_turtles_has_nothing_of_it():
