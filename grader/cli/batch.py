@@ -104,7 +104,9 @@ def main(args: argparse.Namespace) -> int:
         from grader.cli import regrading
 
         return regrading.run(args, _jobs_of(args), view)
-    if not args.scheduler:
+    if args.scheduler:  # a worker works in another folder
+        args.submissions, args.out = args.submissions.absolute(), args.out.absolute()
+    else:
         require_ros()
     if args.isolation and not args.scheduler:
         from grader.run.processes import levels
@@ -138,8 +140,8 @@ def main(args: argparse.Namespace) -> int:
         _grade(args, order, found, store, messages)
         graded = entries(args.out)
         written = batch.write_outputs(args.out, graded, exercise, view, args.assignment)
-        if args.names:
-            written = _write_names(args, graded, named, exercise, view)
+        if args.names and pseudonyms is not None:
+            written = _write_names(args, graded, named, pseudonyms, exercise, view)
         elif pseudonyms is not None:
             written = [msg("Gradebook and imports with names, for a course system: --names")]
         for note in written:
@@ -193,6 +195,7 @@ def _write_names(
     args: argparse.Namespace,
     graded: Sequence[Entry],
     named: Mapping[str, HandIn],
+    pseudonyms: Pseudonyms,
     exercise: Exercise,
     view: View,
 ) -> list[Message]:
@@ -211,7 +214,7 @@ def _write_names(
     before = os.umask(0o077)
     try:
         notes = write.write(args.names, entries, exercise.title, view, args.assignment)
-        write.write_pseudonyms(args.names, entries)
+        write.write_pseudonyms(args.names, entries, pseudonyms.of)
     finally:
         os.umask(before)
     return [*notes, msg("Gradebook and imports with names: {folder}", folder=args.names)]

@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from grader.cli import JUDGED, options, say
+from grader.errors import UsageError
 from grader.message import msg
 from grader.result.visible import View
 from grader.translations import tr
@@ -38,6 +39,13 @@ def main(args: argparse.Namespace) -> int:
     console = Console(highlight=False)
     of_class = ClassFile.read(args.out)
     exercise = load_exercise(args.exercise or of_class.exercise)
+    if exercise.name != of_class.exercise:
+        raise UsageError(
+            "{out} was graded for the exercise {then!r}, not for {now!r}. Nothing was changed.",
+            out=args.out,
+            then=of_class.exercise,
+            now=exercise.name,
+        )
     with Store.opened(args.out) as store:
         plan = forget.plan(store, args.student)
         say(console, f"{plan.person.id} {plan.person.name}".strip(), "bold")

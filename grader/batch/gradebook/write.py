@@ -13,7 +13,7 @@ bytes, in each language.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -85,18 +85,19 @@ def write(
     return lacking
 
 
-def write_pseudonyms(out: Path, entries: Sequence[Entry]) -> None:
-    """Write who has which pseudonym: that of a group is the group's.
+def write_pseudonyms(out: Path, entries: Sequence[Entry], of: Callable[[str], str]) -> None:
+    """Write who has which pseudonym, and in which hand-in, which may be a group's.
 
     Args:
         entries: of a class under pseudonyms, with names; see `grader.batch.pseudonyms`.
+        of: returns the pseudonym of a student's id.
     """
     rows = [
-        [cell(text) for text in (entry.folder.name, person.id, person.name)]
+        [cell(text) for text in (of(person.id), person.id, person.name, entry.folder.name)]
         for entry in entries
         for person in entry.hand_in.people
     ]
-    text = table([("pseudonym", "id", "name"), *rows])
+    text = table([("pseudonym", "id", "name", "hand_in"), *rows])
     files.put(out / PSEUDONYMS, (BYTE_ORDER_MARK + text).encode("utf-8"))
 
 

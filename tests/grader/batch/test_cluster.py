@@ -100,8 +100,8 @@ def test_two_workers_grade_as_one_machine_does_also_if_one_dies_in_the_middle(
     small_class: Class, graded: Path, dask: Dask, tmp_path: Path
 ) -> None:
     first = dask.start_worker()
-    command = small_class.command(tmp_path / "out", "--scheduler", dask.address)
-    with subprocess.Popen(command, env=ENV, stderr=subprocess.PIPE) as call:
+    command = small_class.command(Path("out"), "--scheduler", dask.address)
+    with subprocess.Popen(command, env=ENV, cwd=tmp_path, stderr=subprocess.PIPE) as call:
         until(lambda: grading(first) or call.poll() is not None)
         first.kill()
         dask.start_worker()

@@ -150,6 +150,8 @@ def test_a_class_that_was_regraded_by_an_edited_exercise_asks_for_it(
     for path, is_noted in ((own, False), (edited, True)):
         assert main(["forget", "zm4711", "--from", str(out), "--exercise", str(path)]) == 0
         assert ("another version of this exercise" in capsys.readouterr().out) is is_noted
+    assert main(["forget", "zm4711", "--from", str(out), "--exercise", "square", "--yes"]) == 2
+    assert "not for 'square'. Nothing was changed." in capsys.readouterr().err.replace("\n", " ")
 
 
 def test_nothing_changes_without_yes(
@@ -213,4 +215,6 @@ def test_under_pseudonyms_a_student_is_named_by_that(
     assert "under pseudonyms, give the student's" in capsys.readouterr().err.replace("\n", " ")
     assert call(whose["zm4711"], "--yes") == 0
     assert with_text(out, whose["zm4711"]) == []
-    assert len(rows(out / "gradebook.csv")) == 4
+    assert call(whose["jg4715"], "--yes") == 0  # of a group each member has one
+    assert with_text(out, whose["jg4715"]) == [] != with_text(out, whose["dk4714"])
+    assert len(rows(out / "gradebook.csv")) == 3
