@@ -19,8 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("student", help=tr("the id, name or address; or the pseudonym"))
     folder = tr("the folder of the class")
     parser.add_argument("--from", dest="out", type=Path, required=True, metavar="DIR", help=folder)
-    really = tr("do it; else it is only shown")
-    parser.add_argument("--yes", action="store_true", help=really)
+    parser.add_argument("--yes", action="store_true", help=tr("do it; else it is only shown"))
     parser.add_argument(
         "--exercise",
         metavar="NAME|FOLDER|FILE",
@@ -54,11 +53,7 @@ def main(args: argparse.Namespace) -> int:
         for entry, _ in plan.groups:
             say(console, msg("- stays without this member: {folder}", folder=entry.folder))
         if exercise.sha256 != of_class.exercise_sha256:
-            note = msg(
-                "Note: the class was judged by another version of this exercise, and its pages "
-                "will be made by this one: give that one with --exercise"
-            )
-            say(console, note)
+            say(console, msg("Note: the class had another version of the exercise: use --exercise"))
         if not args.yes:
             say(console, msg("Nothing was changed. To do it: the same call with --yes"))
             return JUDGED

@@ -149,7 +149,7 @@ def test_a_class_that_was_regraded_by_an_edited_exercise_asks_for_it(
     )
     for path, is_noted in ((own, False), (edited, True)):
         assert main(["forget", "zm4711", "--from", str(out), "--exercise", str(path)]) == 0
-        assert ("another version of this exercise" in capsys.readouterr().out) is is_noted
+        assert ("another version of the exercise" in capsys.readouterr().out) is is_noted
     assert main(["forget", "zm4711", "--from", str(out), "--exercise", "square", "--yes"]) == 2
     assert "not for 'square'. Nothing was changed." in capsys.readouterr().err.replace("\n", " ")
 
