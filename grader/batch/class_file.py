@@ -14,6 +14,7 @@ from typing import Any, Self
 
 from grader import files
 from grader.errors import NotOffered, UsageError
+from grader.exercise.exercise import Exercise
 from grader.message import Message, Text, msg
 from grader.recording.recording import Clock
 from grader.result import json_file
@@ -82,6 +83,18 @@ class ClassFile:
                 "{out} is no folder of a class: there is no {file} in it", out=str(out), file=CLASS
             )
         return json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
+
+    def check_exercise(self, out: Path, exercise: Exercise, path: str) -> None:
+        """Refuse another exercise than that of the class; `path` is what the user called it."""
+        if exercise.name != self.exercise:
+            raise UsageError(
+                "{out} was graded for the exercise {then!r}, and {path} is one of {now!r}: give an "
+                "edited copy of that exercise's exercise.yaml",
+                out=str(out),
+                then=self.exercise,
+                path=path,
+                now=exercise.name,
+            )
 
     def differences(self, other: Self) -> dict[str, Message]:
         """Return what differs between two class files: field -> a sentence."""

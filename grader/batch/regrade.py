@@ -115,15 +115,7 @@ def regrade(out: Path, exercise_path: str, jobs: int, store: Store | None = None
         store: the opened class, if the regrade is to be applied: then the new files are made there.
     """
     of_class, exercise = ClassFile.read(out), load_exercise(exercise_path)
-    if exercise.name != of_class.exercise:
-        raise UsageError(
-            "{out} was graded for the exercise {then!r}, and {path} is one of {now!r}: give an "
-            "edited copy of that exercise's exercise.yaml",
-            out=str(out),
-            then=of_class.exercise,
-            path=exercise_path,
-            now=exercise.name,
-        )
+    of_class.check_exercise(out, exercise, exercise_path)
     before = {entry.id: entry for entry in entries(out)}
     judged: list[tuple[Entry, Entry]] = []
     failures: list[tuple[Entry, Message]] = []

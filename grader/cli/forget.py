@@ -8,7 +8,6 @@ from pathlib import Path
 from rich.console import Console
 
 from grader.cli import JUDGED, options, say
-from grader.errors import UsageError
 from grader.message import msg
 from grader.result.visible import View
 from grader.translations import tr
@@ -37,14 +36,9 @@ def main(args: argparse.Namespace) -> int:
 
     console = Console(highlight=False)
     of_class = ClassFile.read(args.out)
-    exercise = load_exercise(args.exercise or of_class.exercise)
-    if exercise.name != of_class.exercise:
-        raise UsageError(
-            "{out} was graded for the exercise {then!r}, not for {now!r}. Nothing was changed.",
-            out=args.out,
-            then=of_class.exercise,
-            now=exercise.name,
-        )
+    path = args.exercise or of_class.exercise
+    exercise = load_exercise(path)
+    of_class.check_exercise(args.out, exercise, path)
     with Store.opened(args.out) as store:
         plan = forget.plan(store, args.student)
         say(console, f"{plan.person.id} {plan.person.name}".strip(), "bold")
