@@ -312,11 +312,10 @@ def _jobs_of(args: argparse.Namespace) -> int:
 def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> Work:
     from grader.batch import cluster
 
-    inputs = [args.submissions.absolute()]
+    inputs = [args.submissions]
     if order.exercise_path != order.exercise.name:
         inputs.append(Path(order.exercise_path))
-    place = store.new_place().absolute()
-    terms = cluster.Terms(args.out.absolute(), place, tuple(inputs), order.isolation)
+    terms = cluster.Terms(args.out, store.new_place(), tuple(inputs), order.isolation)
     notify = partial(say, messages)
     return lambda tasks: cluster.work(tasks, args.scheduler, terms, notify, args.isolation or "")
 

@@ -31,14 +31,7 @@ from grader.reports import Format, readable, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import templating
 from grader.reports.page.parts import DrawnTree, Turnable, drawn, turnable
-from grader.reports.page.pictures import (
-    RADIUS_PX,
-    Pin,
-    canvas_uri,
-    pins,
-    recorded_uri,
-    solid_words,
-)
+from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, recorded_uri
 from grader.reports.page.plots import HEIGHT, WIDTH, Drawn, Plots, expected, plots
 from grader.reports.page.tracks import Animation, animation
 from grader.reports.report import Report
@@ -127,7 +120,6 @@ def render(report: Report) -> str:
             pinned={pin.point.number for run in runs if run.can_be_seen for pin in run.pins},
             has_parts=any(run.turnable or run.trees or run.tables for run in runs),
             has_solids=any(run.turnable for run in runs),
-            solid_words="" if report.recordings else solid_words(report),
             has_no_scene=not isinstance(report.subject, Scene),
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},

@@ -45,9 +45,7 @@ def recorded_uri(report: Report, run: int) -> str:
 def solid_words(report: Report) -> str:
     """Return in words what only a page can draw, of the nominal run; '' where there is nothing."""
     recording = report.recordings.get(0)
-    if recording is None:
-        return report.beside.solid_words
-    parts = load_subject(recording.scene).view(recording.trace).parts
+    parts = load_subject(recording.scene).view(recording.trace).parts if recording else ()
     return next((translate(part.text) for part in parts if isinstance(part, Solid)), "")
 
 
