@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import json
+import re
 import subprocess
 import sys
 import time
@@ -233,11 +235,21 @@ def test_a_task_of_which_two_workers_died_is_not_tried_again(
     assert (answers[2][0].state, str(answers[2][0].message)) == ("failed", told_so)
 
 
+def refusal(address: str, terms: Terms) -> str:
+    """Why there is no cluster at an address."""
+    told = ""
+    try:
+        list(cluster.work([], address, terms, print))
+    except UsageError as error:
+        told = str(error)
+    # the client that could not start ends now: while another starts, Dask would wait for itself
+    gc.collect()
+    return told
+
+
 def test_what_is_no_address_of_a_scheduler_is_told(
     terms: Terms, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster, "FIRST_S", 0.5)
-    with pytest.raises(UsageError, match="nonsense is no address of a scheduler"):
-        list(cluster.work([], "nonsense", terms, print))
-    with pytest.raises(UsageError, match=r"there is no scheduler at .*:9"):
-        list(cluster.work([], "tcp://127.0.0.1:9", terms, print))
+    assert "nonsense is no address of a scheduler" in refusal("nonsense", terms)
+    assert re.search(r"there is no scheduler at .*:9", refusal("tcp://127.0.0.1:9", terms))
