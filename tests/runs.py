@@ -123,7 +123,8 @@ def recorded(
                 recording = virtual_time.run(submission, plan, patience=patience or Patience())
         saving.save_all(Recordings(recording), folder)
 
-    return reading.load(once.folder(run, "run", name, plan, patience, time, number))
+    key = (name, once.digest(path_of(name)), plan, patience, time, number)
+    return reading.load(once.folder(run, "run", *key, made_by=once.RUNS))
 
 
 def recordings(
@@ -144,9 +145,11 @@ def recordings(
             with grading.start(submission, plans, run, None, origin, at_once=1) as runs:
                 saving.save_all(grading.gather(runs), folder)
 
-    key = (name, exercise.name, exercise.sha256, sorted(exercise.conditions.items()), number)
-    drawn = () if seed is None else (seed,)
-    return _loaded(once.folder(run, "runs", *key, *drawn))
+    key = (
+        *(name, once.digest(path_of(name)), number, seed),
+        *(exercise.name, exercise.sha256, sorted(exercise.conditions.items())),
+    )
+    return _loaded(once.folder(run, "runs", *key, made_by=once.RUNS))
 
 
 _loaded = lru_cache(KEPT)(reading.load_all)
