@@ -1,8 +1,10 @@
 """Builds turtlesim-py-jazzy and turtlesim-py-kilted: what of ROS PyPI lacks, for its ROS.
 
 The interface packages below `packages/`, one self-contained extension module each: generated,
-compiled and linked against the ROS wheels of PyPI, by `grader.rosidl.building`. And ../tf2, and
-what `ros2 run turtlesim ...` looks for. `<release>/pyproject.toml` says what is required.
+compiled and linked against the ROS wheels of PyPI, by `grader.rosidl.building`. Where there is no
+compiler, or the variable COMPILE is empty, their definitions alone (`grader.rosidl.uncompiled`).
+And ../tf2, and what `ros2 run turtlesim ...` looks for. `<release>/pyproject.toml` says what is
+required.
 
 One distribution for all of a release: they are compiled together, for one rclpy, and nobody needs
 one without the others. None of it may be where ROS is sourced, which has the same by these names.
@@ -21,8 +23,7 @@ from setuptools import Extension
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError
 
-from grader.rosidl import building
-from grader.rosidl.compiler import complaint
+from grader.rosidl import building, compiler
 from interfaces import ament
 
 HERE = Path(__file__).resolve().parent
@@ -38,9 +39,11 @@ DEPENDENCIES = (*building.ALWAYS_USED, "std_msgs", "geometry_msgs")
 # What lies in ../tf2, by the names of ROS's own packages: not in a checkout's root, which may stand
 # on Python's path and would hide them.
 TF2 = ("tf2_py", "tf2_ros")
-# Commands that compile, or by which pip asks what compiling needs. It asks before it downloads
-# anything; later the line about a missing compiler would stand below hundreds of others.
-COMPILING = {"egg_info", "dist_info", "bdist_wheel", "editable_wheel", "install", "build"}
+# Commands that build, or by which pip asks what building needs. It asks before it downloads
+# anything; later the line about a sourced ROS would stand below hundreds of others.
+BUILDING = {"egg_info", "dist_info", "bdist_wheel", "editable_wheel", "install", "build"}
+# The ament index's list of packages of interfaces.
+INTERFACES = "share/ament_index/resource_index/rosidl_interfaces"
 # Names the ROS releases that PyPI's ROS is from here (turtlesim_py/ros/source.py), as a resource of
 # the ament index.
 BROUGHT = "share/ament_index/resource_index/turtlesim_py_ros"
@@ -59,25 +62,23 @@ AMENT_PREFIX_PTH = (
 def setup() -> None:
     """Build what the folder of a release describes, which is the current one."""
     folder = Path.cwd()
-    if COMPILING.intersection(sys.argv):
-        if release := os.environ.get("ROS_DISTRO"):
-            sys.exit(
-                f"Cannot install: ROS 2 {release} is sourced, and has all that is built here. "
-                "Install the project alone, or take a shell without ROS."
-            )
-        if line := complaint():
-            sys.exit(line)
+    if BUILDING.intersection(sys.argv) and (release := os.environ.get("ROS_DISTRO")):
+        sys.exit(
+            f"Cannot install: ROS 2 {release} is sourced, and has all that is built here. "
+            "Install the project alone, or take a shell without ROS."
+        )
     ours = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
+    compiles = os.environ.get("COMPILE", "yes") and not compiler.missing()
     setuptools.setup(
         license="BSD-3-Clause AND Apache-2.0",
-        setup_requires=ours["tool"]["turtlesim-py"]["build"],
-        ext_modules=extensions(),
+        setup_requires=ours["tool"]["turtlesim-py"]["build"] if compiles else [],
+        ext_modules=extensions() if compiles else [],
         packages=[*TF2],
         package_dir={name: f"../../tf2/{name}" for name in TF2},
-        data_files=data_files(folder.name),
+        data_files=[*data_files(folder.name), *(() if compiles else definitions())],
         include_package_data=False,
         distclass=ament.AmentDistribution,
-        cmdclass={"build_py": ament.BuildPy, "build_ext": BuildInterfaces},
+        cmdclass={"build_py": BuildModules, "build_ext": BuildInterfaces},
         # what is compiled for one release of ROS is not for another
         options={"build": {"build_base": f"../../build/{folder.name}"}},
         zip_safe=False,
@@ -98,20 +99,35 @@ def data_files(release: str) -> list[tuple[str, list[str]]]:
     ]
 
 
+def definitions() -> list[tuple[str, list[str]]]:
+    """What of the packages is installed where they are not compiled."""
+    files = []
+    for name, source in PACKAGES.items():
+        files += [(index, [f"ament_marker/{name}"]) for index in (ament.PACKAGES, INTERFACES)]
+        packages = HERE / "packages"
+        plain = [packages / name / "package.xml", *(packages / source).glob("LICENSE")]
+        files.append((f"share/{name}", [*map(os.path.relpath, plain)]))
+        for kind in building.KINDS:
+            found = sorted((packages / source / kind).glob(f"*.{kind}"))
+            files.append((f"share/{name}/{kind}", [*map(os.path.relpath, found)]))
+    return files
+
+
 def extensions() -> list[Extension]:
     """Return the argument of `setup(ext_modules=...)`, with the names that rclpy imports."""
     return [Extension(f"{name}.{name}_s__rosidl_typesupport_c", sources=[]) for name in PACKAGES]
 
 
-class BuildInterfaces(build_ext):
-    """A `build_ext` that generates the sources first, and collects the files beside."""
+class BuildModules(ament.BuildPy):
+    """A `build_py` that adds the .pth file that makes the ament index work."""
 
     def run(self) -> None:
-        """Build all packages and the .pth file that makes the ament index work."""
         super().run()
-        lib = Path(self.build_lib)
-        lib.mkdir(parents=True, exist_ok=True)
-        (lib / "turtlesim_py_ament_prefix.pth").write_text(AMENT_PREFIX_PTH)
+        Path(self.build_lib, "turtlesim_py_ament_prefix.pth").write_text(AMENT_PREFIX_PTH)
+
+
+class BuildInterfaces(build_ext):
+    """A `build_ext` that generates the sources first, and collects the files beside."""
 
     def build_extensions(self) -> None:
         """Build the packages in parallel, and collect their files.

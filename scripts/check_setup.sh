@@ -1,9 +1,9 @@
 #!/bin/sh
-# Chooses the Python that .venv is made with, and checks everything that a build needs.
-# Prints the path of that Python; or one line that says what to install, and fails.
+# Chooses the Python that .venv is made with. Prints its path; or one line that says what to install,
+# and fails.
 #
 #   PYTHON      the Python to take; without it the first that fits
-#   ROS_DISTRO  set where ROS is sourced: then nothing is compiled
+#   ROS_DISTRO  set where ROS is sourced
 #   BOUNDS      lowest: for dependencies at their lower bounds, which are older than Python 3.13
 
 fail() {
@@ -58,7 +58,7 @@ else
     done
     found="$(version_of python3)"
     [ -n "$python" ] ||
-        fail "no $wanted found (python3 is ${found:-missing}): install one (Ubuntu 24.04: sudo apt install python3 python3-venv python3-dev), or name it: make install PYTHON=/path/to/python3."
+        fail "no $wanted found (python3 is ${found:-missing}): install one (Ubuntu 24.04: sudo apt install python3 python3-venv), or name it: make install PYTHON=/path/to/python3."
 fi
 
 # the Python behind a pyenv shim or an active virtual environment
@@ -70,8 +70,6 @@ version=$(version_of "$python")
 if [ -n "${ROS_DISTRO:-}" ]; then
     "$python" -c 'import rclpy' 2>/dev/null ||
         fail "ROS 2 $ROS_DISTRO is sourced, but $python cannot import its rclpy: take the Python that ROS was built for (Ubuntu 24.04: PYTHON=/usr/bin/python3)."
-else
-    "$python" "${0%/*}/../grader/rosidl/compiler.py" || exit 1
 fi
 
 echo "$python"

@@ -9,6 +9,7 @@
 #
 #   VENV     another folder than .venv
 #   BOUNDS   lowest: our dependencies at their lower bounds
+#   COMPILE  empty: no interfaces are compiled, even where there is a compiler; gradings need none
 #   UV       empty: pip, even where there is uv
 #
 # The project goes in without pip's own build environment: .venv has all that a build needs, and
@@ -122,30 +123,51 @@ fi
 
 requirements installed-requirements
 
-# $1, which is called $2 and made from the files below the rest, unless that is what was installed
+# what is to be installed, by its folder, and then stamped: `name text`
+folders=() stamps=()
+# a hash of the files below "$@": content, not dates; git changes dates, and a deleted file has none
+sources() {
+    find "$@" -type f ! -name '*.pyc' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum
+}
+# the folder $1, unless the stamp "$2" says so already
 project() {
-    local sources
-    # content, not dates: git changes dates, and a deleted file has none
-    sources=$(find "${@:3}" -type f ! -name '*.pyc' -print0 |
-        LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
-    stamped "installed-$2" "$sources" && return
-    say "installing the $2 (seconds${compiles:+; up to a minute where they are to be compiled})"
-    packages --no-build-isolation --no-deps --force-reinstall "$1"
-    byte_code
-    stamp "installed-$2" "$sources"
+    stamped "${2%% *}" "${2#* }" && return
+    folders+=("$1") stamps+=("$2")
 }
 
 packaging="LICENSE launch pyproject.toml interfaces/ament.py"
-# First: until November 2026 it had the interfaces within, which go when it is replaced.
 # shellcheck disable=SC2086  # several words
-project . project $packaging turtlesim_py turtlesim_challenge robot_py grader grader_robots \
-    MANIFEST.in README.md package.xml setup.py
+project . "installed-project $(sources $packaging turtlesim_py turtlesim_challenge robot_py grader \
+    grader_robots MANIFEST.in README.md package.xml setup.py)"
+missing= # what a compilation lacks that was asked for
 if [ -z "${ROS_DISTRO:-}" ]; then
+    ros=interfaces/${ROS:-jazzy}
     # shellcheck disable=SC2086
-    compiles=yes project "./interfaces/${ROS:-jazzy}" interfaces $packaging tf2 grader/rosidl \
-        interfaces/{build.py,LICENSE-Apache-2.0,packages} "interfaces/${ROS:-jazzy}"/{setup.py,pyproject.toml}
+    hash=$(sources $packaging tf2 grader/rosidl interfaces/{build.py,LICENSE-Apache-2.0,packages} \
+        "$ros"/{setup.py,pyproject.toml})
+    if ! stamped installed-interfaces "compiled $hash"; then
+        # what is compiled stays so
+        ! grep -qsv '^definitions ' "$venv/installed-interfaces" || COMPILE=yes
+        how=definitions
+        if [ -n "${COMPILE-yes}" ]; then
+            ! missing=$("$venv/bin/python" grader/rosidl/compiler.py) || how=compiled
+        fi
+        project "./$ros" "installed-interfaces $how $hash"
+        [ $how = compiled ] && export COMPILE=yes || export COMPILE=
+    fi
+fi
+if [ ${#folders[@]} -gt 0 ]; then
+    say "installing the project${COMPILE:+, and compiling its interfaces: half a minute}"
+    packages --no-build-isolation --no-deps --force-reinstall "${folders[@]}"
+    byte_code
+    for each in "${stamps[@]}"; do stamp "${each%% *}" "${each#* }"; done
 fi
 
 for tools in "$@"; do
     requirements "installed-$tools-requirements" "$tools"
 done
+
+if [ -n "$missing" ]; then
+    say "gradings work; turtlesim_node, other nodes and grader run --time real need compiled interfaces"
+    say "$missing, then: make install"
+fi

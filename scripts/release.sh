@@ -15,7 +15,7 @@
 # Installs nothing but into folders that it removes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-unset AMENT_PREFIX_PATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH
+unset COMPILE AMENT_PREFIX_PATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH
 
 fail() {
     echo "Cannot make a release: $*" >&2
@@ -65,7 +65,8 @@ python_of() {
     local candidate
     while read -r candidate; do
         "$candidate" -c '' 2>/dev/null || continue # pyenv's command for a version not chosen
-        PYTHON=$candidate scripts/check_setup.sh 2>"$work/why" && return
+        PYTHON=$candidate scripts/check_setup.sh >"$work/python" 2>"$work/why" || continue
+        "$candidate" grader/rosidl/compiler.py >"$work/why" && cat "$work/python" && return
     done < <(candidates "$1")
     return 1
 }
@@ -73,6 +74,7 @@ python_of() {
 pythons=()
 if [ -n "${PYTHON:-}" ]; then
     python=$(scripts/check_setup.sh)
+    why=$("$python" grader/rosidl/compiler.py) || fail "its wheels are compiled; $why"
     pythons+=("$python")
 else
     for each in 3.11 3.12 3.13; do

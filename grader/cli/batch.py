@@ -107,7 +107,7 @@ def main(args: argparse.Namespace) -> int:
     if args.scheduler:  # a worker works in another folder
         args.submissions, args.out = args.submissions.absolute(), args.out.absolute()
     else:
-        require_ros()
+        require_ros(args.time)
     if args.isolation and not args.scheduler:
         from grader.run.processes import levels
 

@@ -117,7 +117,7 @@ def day(text: str) -> date:
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
     _check_speed(args)
-    require_ros()
+    require_ros(args.time)
     if args.isolation:
         from grader.run.processes import levels
 

@@ -1,7 +1,6 @@
-"""The requirements for compiling the interface packages, and the line on what is missing.
+"""The requirements for compiling interfaces.
 
-interfaces/build.py asks before pip downloads anything. As a program (for scripts/check_setup.sh)
-this prints the line, and fails.
+As a program (for scripts/install.sh and scripts/release.sh) this prints what is missing, and fails.
 """
 
 import os
@@ -25,18 +24,17 @@ def missing() -> list[str]:
     return found_nowhere
 
 
-def complaint() -> str | None:
-    """Return a line on what is missing and how to get it; None where nothing is."""
+def main() -> int:
+    """Print what is missing and how to get it; return 1 where something is."""
     if not (names := missing()):
-        return None
+        return 0
     python = f"python{sysconfig.get_python_version()}"
-    return (
-        f"Cannot install: missing: {', '.join(names)} "
-        f"(Debian, Ubuntu: sudo apt install build-essential {python}-dev; "
-        f"Fedora: sudo dnf install gcc gcc-c++ {python}-devel). "
-        "Wheels need none of these: pip install 'turtlesim_py[jazzy]'."
+    print(
+        f"missing: {', '.join(names)} (Debian, Ubuntu: sudo apt install build-essential {python}-dev; "
+        f"Fedora: sudo dnf install gcc gcc-c++ {python}-devel)"
     )
+    return 1
 
 
 if __name__ == "__main__":
-    sys.exit(complaint())
+    sys.exit(main())

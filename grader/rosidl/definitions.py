@@ -29,6 +29,7 @@ import rosidl_parser.definition as idl
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg
+from grader.rosidl import uncompiled
 from grader.rosidl.cdr import installed, module_of, number_of, value_type
 from grader.rosidl.classes import classes_of, described, parts
 
@@ -81,7 +82,7 @@ _ESCAPES: Final = re.compile(r"\\[ntvbrfa\\'\"]|\\[0-7]{1,3}|\\x[0-9a-fA-F]{2}")
 
 
 class Definitions:
-    """The classes of definitions; at the end of `sys.meta_path`, programs can import them.
+    """The classes of definitions; on `sys.meta_path`, programs can import them.
 
     A definition with a mistake is left out, and what needs it. To import it is an ImportError that
     tells the mistake; the others can be imported.
@@ -149,8 +150,10 @@ class Definitions:
         filler = idl.Member(idl.BasicType("uint8"), "structure_needs_at_least_one_member")
         add = {idl.Message: rihs.add_msg, idl.Service: rihs.add_srv, idl.Action: rihs.add_action}
         known: dict[str, Any] = {}
-        for own in self._extents:
-            add[type(self._elements[own])](self._elements[own], known)
+        others = (Definitions(uncompiled.texts(package)) for package in uncompiled.packages())
+        for each in (*others, self):
+            for own in each._extents:
+                add[type(each._elements[own])](each._elements[own], known)
         describe = rihs.serialize_individual_type_description
         types = {
             own: describe(made.namespaced_type, made.members or [filler])
@@ -171,8 +174,8 @@ class Definitions:
         """Find a package of these, its `msg`, `srv` or `action`, or a module of one class."""
         if fullname not in self._modules:
             return None
-        is_package = fullname.count(".") < 2
-        return importlib.machinery.ModuleSpec(fullname, cast("Any", self), is_package=is_package)
+        more: Any = {"origin": "definitions", "is_package": fullname.count(".") < 2}
+        return importlib.machinery.ModuleSpec(fullname, cast("Any", self), **more)
 
     def create_module(self, spec: Any) -> None:
         """Leave that to Python."""
@@ -258,6 +261,24 @@ class Definitions:
         )
 
 
+class UncompiledPackages:
+    """On `sys.meta_path`, programs can import the packages of `uncompiled`."""
+
+    def __init__(self) -> None:
+        #: a package -> its definitions, parsed when it is first imported
+        self._packages: dict[str, Definitions] = {}
+
+    def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> Any:
+        """Find such a package, or a module of one that was found here: that has no folder."""
+        package, _, inner = fullname.partition(".")
+        if path or not (inner or uncompiled.is_uncompiled(package)):
+            return None
+        if not inner and package not in self._packages:
+            self._packages[package] = Definitions(uncompiled.texts(package))
+        found = self._packages.get(package)
+        return found and found.find_spec(fullname)
+
+
 def slot_of(name: str) -> Any:
     """Return the type of a name, `my_interfaces/msg/Num`, as SLOT_TYPES has it."""
     *namespaces, last = name.split("/")
@@ -270,9 +291,11 @@ def name_of(slot: Any) -> str:
 
 
 def _is_installed(slot: Any) -> bool:
-    """Whether a message's class is installed; nothing is imported to find out."""
+    """Whether a message's class can be imported; nothing is imported to find out."""
     module = Path(*module_of(slot).split(".")).with_suffix(".py")
-    return any(Path(folder, module).is_file() for folder in sys.path)
+    if any(Path(folder, module).is_file() for folder in sys.path):
+        return True
+    return name_of(slot) in uncompiled.texts(slot.namespaces[0])
 
 
 def _fields(element: Any) -> list[idl.Member]:

@@ -17,6 +17,7 @@ from grader.errors import GraderFailure, NotNow, SceneFailure
 from grader.message import Message
 from grader.recording.observations import Observations
 from grader.recording.recording import Recording
+from grader.requirements import missing_ros
 from grader.run import compiling, fork_servers, handover, run_context
 from grader.run.environment import student_environment
 from grader.run.evidence import EvidencePage
@@ -65,6 +66,8 @@ def run(
         SimulatorLost: it died beside the submission.
     """
     started = time.monotonic()
+    if lack := missing_ros("real"):
+        return not_run(plan, lack.message)
     with (
         run_context.open_context(plan.budget) as context,
         live_feed(audience, plan, "real") as feed,

@@ -35,8 +35,12 @@ class Complaint:
         return self.text.format(**self.values)
 
 
-def complaint() -> Complaint | None:
-    """Return what is wrong with the ROS that this Python finds, and what to do; None: nothing."""
+def complaint(*, is_virtual: bool = False) -> Complaint | None:
+    """Return what is wrong with the ROS that this Python finds, and what to do; None: nothing.
+
+    Args:
+        is_virtual: whether messages pass DDS by, which carries those of compiled interfaces alone.
+    """
     sourced = os.environ.get("ROS_DISTRO", "")
     brought = _brought()
     if len(brought) > 1:
@@ -55,7 +59,7 @@ def complaint() -> Complaint | None:
             release=sourced,
             python=sys.executable,
         )
-    if not is_there or not (sourced or interfaces.installed()):
+    if not is_there or not (sourced or brought or interfaces.installed()):
         return Complaint(
             "no ROS 2 found: source yours, or install one with {python} -m pip install "
             "'turtlesim_py[jazzy]' (or [kilted]; for Linux x86_64, others: docs/your-machine.md)",
@@ -68,7 +72,7 @@ def complaint() -> Complaint | None:
             "that this ROS was built for, or a shell without ROS",
             folder=Path(rclpy.origin).parent,
             python=sys.executable,
-            version=".".join(map(str, sys.version_info[:2])),
+            version=_version(),
         )
     if brought and not Path(rclpy.origin).is_relative_to(sys.prefix):
         return Complaint(
@@ -79,7 +83,21 @@ def complaint() -> Complaint | None:
             release=brought[0],
             prefix=sys.prefix,
         )
+    if not (is_virtual or sourced or interfaces.installed()):
+        return Complaint(
+            "{prefix} has the interfaces of turtlesim as definitions only, which do for gradings in "
+            "virtual time; all else needs them compiled: install gcc, g++ and the headers of Python "
+            "{version} (Debian, Ubuntu: sudo apt install build-essential python{version}-dev), then "
+            "turtlesim-py-{release} once more (in a checkout: make install)",
+            prefix=sys.prefix,
+            version=_version(),
+            release=brought[0],
+        )
     return None
+
+
+def _version() -> str:
+    return ".".join(map(str, sys.version_info[:2]))
 
 
 def _brought() -> list[str]:

@@ -18,10 +18,12 @@ from typing import Any
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 
+from grader import system
 from grader.message import msg
 from grader.rosidl import classes, handles
 from grader.rosidl.cdr import deserialise, is_made, serialise
-from grader.rosidl.definitions import Definitions
+from grader.rosidl.definitions import Definitions, UncompiledPackages
+from grader.rosidl.uncompiled import KINDS
 from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.registry import (
     Arrived,
@@ -39,9 +41,10 @@ _StateMachine = _rclpy.LifecycleStateMachine
 _serialize, _deserialize = _rclpy.rclpy_serialize, _rclpy.rclpy_deserialize
 
 REGISTRY: EndpointRegistry
-KINDS = ("msg", "srv", "action")
 #: Types of this process that the other has otherwise.
 UNLIKE: set[str] = set()
+#: Imports what is installed without compiled classes.
+_UNCOMPILED = UncompiledPackages()
 #: Interfaces that every node of rclpy's needs.
 EVERY_NODE = ("rcl_interfaces", "type_description_interfaces")
 
@@ -63,11 +66,21 @@ def make_importable(texts: Mapping[str, str], unlike: Iterable[str] = ()) -> Def
         texts: a type's name, `my_interfaces/msg/Num` -> its definition.
         unlike: the names of those that the other process has otherwise: the two exchange nothing.
     """
-    classes.make_support = handles.capsule
     made = Definitions(texts)
     UNLIKE.update(unlike)
-    sys.meta_path.insert(0, made)  # a folder of the same name would be a package, too
+    _import_from(made)
     return made
+
+
+def import_uncompiled() -> None:
+    """Have this process import packages that are installed as definitions only."""
+    if not system.is_ros_sourced() and _UNCOMPILED not in sys.meta_path:
+        _import_from(_UNCOMPILED)
+
+
+def _import_from(finder: Any) -> None:
+    classes.make_support = handles.capsule
+    sys.meta_path.insert(0, finder)  # a folder of the same name would be a package, too
 
 
 def profile(c_qos: Any) -> QoSProfile:
@@ -320,6 +333,8 @@ def import_messages(packages: Iterable[str]) -> None:
 
 
 def _load(module: str) -> None:
-    for value in list(vars(importlib.import_module(module)).values()):
+    found = importlib.import_module(module)
+    # those of classes that are made when they are asked for; a compiled package has no such list
+    for value in [getattr(found, name) for name in getattr(found, "__all__", dir(found))]:
         if isinstance(value, type) and hasattr(value, "__import_type_support__"):
             value.__import_type_support__()

@@ -43,8 +43,10 @@ def main(argv: list[str]) -> int:
 
         if broken := contract.broken():
             return _refuse(argv, broken)
+        from grader.run.lockstep import endpoints
         from grader.run.simulator import hub
 
+        endpoints.import_uncompiled()
         return hub.main(argv)
     except Exception as error:
         traceback.print_exc()
@@ -72,6 +74,7 @@ def serve_runs(words: Sequence[str]) -> list[str]:
             load_scene(scene).preload()
 
     number, messages, scene = words
+    endpoints.import_uncompiled()
     load(scene)
     endpoints.import_messages(json.loads(messages))
     command = fork_server_main.serve(number, (), load)

@@ -115,8 +115,10 @@ def prepare(scheduler: Scheduler) -> tuple[Message, Callable[[], object]]:
         if lack := contract.broken(contract.ENTITIES, contract.PROGRAM):
             return lack, state
         from grader.run.clock import rclpy_time
+        from grader.run.lockstep import endpoints
 
         rclpy_time.prepare()
+        endpoints.import_uncompiled()
     except Exception as error:
         return broken(error), state
     return NOTHING, state

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from grader.errors import SubmissionError
 from grader.recording.subject import Endpoint
+from grader.rosidl import uncompiled
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros.interfaces import NAMES, NEWER, OLDER, installed, of_release, usual
 
@@ -33,7 +34,7 @@ def choose(surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
             f"but no ROS 2 has both: keep {OLDER} for Jazzy and older releases, {NEWER} for Kilted "
             "and newer ones."
         )
-    there = installed()
+    there = {*installed(), *uncompiled.packages()}
     return next((name for name in (*surely, *perhaps) if name in there), usual())
 
 
