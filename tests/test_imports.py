@@ -88,7 +88,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("turtlesim_py", "live.feed", "live.server", "world.canvas"),
     "grader.scenes.joined": GROUND | below("grader", "recording") | {"turtlesim_py.__init__"},
     "grader.scenes.turtlesim": GROUND
-    | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined", "rosidl.cdr")
+    | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined")
+    | below("grader.rosidl", "cdr", "uncompiled")
     | below("turtlesim_py", "__init__", "world", "scenario", "ros", "live"),
     # scripted peers, which any scene may have beside it
     "grader.cast": GROUND

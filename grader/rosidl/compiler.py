@@ -30,8 +30,8 @@ def main() -> int:
         return 0
     python = f"python{sysconfig.get_python_version()}"
     print(
-        f"missing: {', '.join(names)} (Debian, Ubuntu: sudo apt install build-essential {python}-dev; "
-        f"Fedora: sudo dnf install gcc gcc-c++ {python}-devel)"
+        f"missing: {', '.join(names)} (Debian, Ubuntu: sudo apt install build-essential "
+        f"{python}-dev; Fedora: sudo dnf install gcc gcc-c++ {python}-devel)"
     )
     return 1
 

@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -44,7 +45,7 @@ class System:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.env = {"PATH": str(folder), "CC": "cc", "CXX": "c++"}
+        self.env = {"PATH": str(folder)}
 
     def add(self, name: str, script: str = "") -> None:
         path = self.folder / name
@@ -61,6 +62,22 @@ class System:
         assert result.stdout == ""
         (line,) = result.stderr.splitlines()
         return line
+
+
+def copy_environment(folder: Path, *left_out: str) -> Path:
+    """Copy this Python's environment into a folder, but for files and folders of these names.
+
+    It is ten thousands of files, which pytest would keep: remove it.
+    """
+
+    def link(source: str, target: str) -> None:  # no symbolic one: a sandbox shows it alone
+        try:
+            os.link(source, target)
+        except OSError:  # on another disk
+            shutil.copy2(source, target)
+
+    ignored, place = shutil.ignore_patterns(*left_out), folder / "environment"
+    return shutil.copytree(sys.prefix, place, symlinks=True, ignore=ignored, copy_function=link)
 
 
 @pytest.fixture

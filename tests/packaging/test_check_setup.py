@@ -18,8 +18,6 @@ def system(tmp_path: Path) -> System:
     system = System(tmp_path)
     system.add("uname", '[ "$1" = -s ] && echo Linux || echo x86_64')
     system.add("python3", f'exec {PYTHON} "$@"')
-    system.add("cc")
-    system.add("c++")
     return system
 
 
@@ -43,31 +41,6 @@ def test_the_python_that_is_asked_for_goes_first(system: System) -> None:
     system.add("python3", "exit 1")
     system.env["PYTHON"] = PYTHON
     assert system.check().stdout.strip() == PYTHON
-
-
-def test_names_missing_compilers(system: System) -> None:
-    (system.folder / "cc").unlink()
-    (system.folder / "c++").unlink()
-    line = system.complaint()
-    assert "missing: cc, c++ " in line
-    assert "apt install build-essential" in line
-
-
-def test_says_that_a_wheel_needs_no_compiler(system: System) -> None:
-    system.env["CC"] = "/nonexistent/gcc -pthread"
-    line = system.complaint()
-    assert "missing: /nonexistent/gcc " in line
-    assert "pip install 'turtlesim_py[jazzy]'" in line
-
-
-def test_names_missing_python_headers(system: System) -> None:
-    nowhere = "import runpy, sys, sysconfig; sysconfig.get_path = lambda name: '/nowhere'; "
-    run = "runpy.run_path(sys.argv[1], run_name='__main__')"
-    check = f'*compiler.py) exec {PYTHON} -c "{nowhere}{run}" "$1" ;;'
-    system.add("python3", f'case "$1" in {check} *) {without("_base_executable")} ;; esac')
-    line = system.complaint()
-    assert "missing: Python.h" in line
-    assert f"python3.{sys.version_info.minor}-dev" in line
 
 
 def test_a_python_without_venv_is_no_use(system: System) -> None:
@@ -116,13 +89,6 @@ def test_ros_is_on_pypi_for_one_system_only(system: System) -> None:
     line = system.complaint()
     assert "this is Darwin arm64" in line
     assert "install ROS 2 Jazzy" in line
-
-
-def test_with_ros_sourced_no_compiler_is_needed(system: System) -> None:
-    (system.folder / "cc").unlink()
-    system.add("python3", without("rclpy").replace("*rclpy*) exit 1", "*rclpy*) exit 0"))
-    system.env["ROS_DISTRO"] = "jazzy"
-    assert system.check().returncode == 0
 
 
 def test_the_python_has_to_be_that_of_the_sourced_ros(system: System) -> None:

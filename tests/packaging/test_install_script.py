@@ -12,12 +12,16 @@ from .conftest import ROOT, System
 
 PYTHON = str(Path(sys.executable).resolve())
 JAZZY = "pip ./interfaces/jazzy"
+ALL = "pip . ./interfaces/jazzy"
+#: Asks what is missing.
+COMPILER = "grader/rosidl/compiler.py"
 #: Answers as the Python of .venv does, and notes what it was asked.
 VENV_PYTHON = f"""\
 [ "$*" = "-c " ] || echo "$*" >>calls
 case "$*" in
 *requirements.py*) exec {PYTHON} "$@" ;;
-*pip*install*) [ ! -e says ] || {{ cat says; exit 1; }} ;;
+*pip*install*) printf %s "${{COMPILE-unset}}" >compiles; [ ! -e says ] || {{ cat says; exit 1; }} ;;
+*compiler.py*) [ ! -e lacking ] || {{ cat lacking; exit 1; }} ;;
 esac"""
 UV = """\
 [ "$1" = --version ] || echo "uv $*" >>calls
@@ -55,6 +59,10 @@ class Install:
         lines = (self.folder / "calls").read_text().splitlines()
         return [line for line in lines if "requirements.py" not in line]
 
+    def compiles(self) -> str:
+        """COMPILE, as the last build found it."""
+        return (self.folder / "compiles").read_text()
+
     def complaint(self, said: str) -> list[str]:
         """What is said where pip or uv fails with `said`."""
         (self.folder / "says").write_text(said)
@@ -72,12 +80,12 @@ def install(checkout: Path) -> Install:
 
 
 def packages(calls: list[str]) -> list[str]:
-    """Whose packages: `pip` or `uv`, and `.` or a folder of interfaces/ for the project's own."""
+    """Whose packages: `pip` or `uv`, and the folders of the project's own."""
     return [
-        f"{'uv' if call.startswith('uv') else 'pip'} {last if last.startswith('.') else 'needs'}"
+        f"{'uv' if call.startswith('uv') else 'pip'} {' '.join(own) or 'needs'}"
         for call in calls
         if " install " in call
-        for last in [call.rpartition(" ")[2]]
+        for own in [[word for word in call.split() if word == "." or word.startswith("./")]]
     ]
 
 
@@ -85,10 +93,9 @@ def test_the_project_goes_in_after_what_it_needs_and_then_byte_code_is_made(
     install: Install,
 ) -> None:
     calls = install.calls()
-    assert packages(calls) == ["pip needs", "pip .", JAZZY]
+    assert packages(calls) == ["pip needs", ALL]
     assert all("--no-compile" in call for call in calls if " install " in call)
-    compiled = [call.startswith("-m compileall") for call in calls]
-    assert compiled == [False, False, True, False, True]
+    assert calls[-1].startswith("-m compileall")
 
 
 def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install: Install) -> None:
@@ -102,7 +109,7 @@ def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install: I
 def test_another_release_of_ros_is_chosen_by_its_name(install: Install) -> None:
     (install.folder / ".venv").rename(install.folder / ".venv-kilted")
     install.env["ROS"] = "kilted"
-    assert packages(install.calls()) == ["pip needs", "pip .", "pip ./interfaces/kilted"]
+    assert packages(install.calls()) == ["pip needs", "pip . ./interfaces/kilted"]
 
 
 @pytest.mark.parametrize("target", ["install", "tools"])
@@ -131,7 +138,7 @@ def test_a_file_that_is_not_as_it_was_is_noticed(install: Install, change: str) 
 def test_what_failed_is_tried_again(install: Install) -> None:
     install.complaint("ERROR: no space left")
     (install.folder / "says").unlink()
-    assert packages(install.calls()) == ["pip needs", "pip .", JAZZY]
+    assert packages(install.calls()) == ["pip needs", ALL]
 
 
 def test_only_tests_and_linters_get_what_they_need_besides(install: Install) -> None:
@@ -157,13 +164,13 @@ def test_what_the_tests_need_holds_all_that_the_project_needs() -> None:
 
 def test_uv_is_used_where_it_is(install: Install) -> None:
     install.commands.add("uv", UV)
-    assert packages(install.calls()) == ["uv needs", "uv .", JAZZY.replace("pip", "uv")]
+    assert packages(install.calls()) == ["uv needs", ALL.replace("pip", "uv")]
 
 
 def test_who_wants_pip_beside_uv_gets_it(install: Install) -> None:
     install.commands.add("uv", UV)
     install.env["UV"] = ""
-    assert packages(install.calls()) == ["pip needs", "pip .", JAZZY]
+    assert packages(install.calls()) == ["pip needs", ALL]
 
 
 def test_beside_a_sourced_ros_uv_is_not_used(install: Install) -> None:
@@ -173,9 +180,39 @@ def test_beside_a_sourced_ros_uv_is_not_used(install: Install) -> None:
     assert packages(install.calls()) == ["pip needs", "pip ."]
 
 
-def test_a_compiler_that_is_gone_since_is_said_in_one_line(install: Install) -> None:
-    said = "╰─> [1 lines of output]\n      Cannot install: missing: cc\nerror: subprocess-exited"
-    assert install.complaint(said) == ["Cannot install: missing: cc"]
+def test_without_a_compiler_definitions_are_installed_and_the_last_lines_say_so(
+    install: Install,
+) -> None:
+    (install.folder / "lacking").write_text("missing: cc (sudo apt install cc)\n")
+    lines = [line for line in install.run().stdout.splitlines() if line.startswith("== ")]
+    assert install.compiles() == ""
+    assert "turtlesim_node, other nodes and grader run --time real need" in lines[-2]
+    assert lines[-1] == "== missing: cc (sudo apt install cc), then: make install"
+    assert install.calls() == [COMPILER]
+    (install.folder / "lacking").unlink()
+    assert packages(install.calls()) == [JAZZY]
+    assert install.compiles() == "yes"
+    assert install.calls() == []
+
+
+def test_without_need_nothing_is_compiled_and_nothing_that_was_is_lost(install: Install) -> None:
+    asked = dict(install.env)
+    install.env |= {"COMPILE": ""}
+    assert COMPILER not in install.calls()
+    assert install.compiles() == ""
+    assert "grader run" not in install.run().stdout
+    install.env = asked
+    assert packages(install.calls()) == [JAZZY]
+    install.env |= {"COMPILE": ""}
+    assert install.calls() == []
+    (install.folder / "tf2" / "tf2_ros" / "buffer.py").write_text("")
+    assert packages(install.calls()) == [JAZZY]
+    assert install.compiles() == "yes"
+
+
+def test_what_a_build_refuses_is_said_in_one_line(install: Install) -> None:
+    said = "╰─> [1 lines of output]\n      Cannot install: ROS 2\nerror: subprocess-exited"
+    assert install.complaint(said) == ["Cannot install: ROS 2"]
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from interfaces.build import PACKAGES
+
 from .conftest import ROOT, Environment
 
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -141,6 +143,45 @@ def test_every_file_of_the_packages_is_in_the_wheel_and_nothing_that_ros_has(
     assert marked == shared == {*packages}
 
 
+#: What ROS has by these names, or what stands for it where none is sourced.
+OF_ROS = (*PACKAGES, "tf2_py", "tf2_ros")
+#: Prints which of these names Python finds, with the finder that a grading's processes have.
+FIND = """
+import sys
+from importlib.util import find_spec
+sys.path.insert(0, sys.argv[1])
+from grader.rosidl import uncompiled
+from grader.rosidl.definitions import UncompiledPackages
+assert uncompiled.__file__.startswith(sys.argv[1])
+sys.meta_path.insert(0, UncompiledPackages())
+print([name for name in sys.argv[2:] if find_spec(name)], uncompiled.packages())
+"""
+
+
+def test_where_ros_is_sourced_nothing_of_ours_stands_for_a_package_of_ros(
+    checkout: Path, ros_sourced: Environment, tmp_path: Path
+) -> None:
+    """As far as Python finds it: this environment's packages and ROS's are out of sight."""
+    name = call_hook(checkout, ros_sourced, "build_wheel", checkout.parent)
+    with zipfile.ZipFile(checkout.parent / name) as wheel:
+        wheel.extractall(tmp_path / "wheel")
+    # what the finder needs of others
+    needed = ("numpy", "rosidl_parser", "rosidl_adapter", "rosidl_cli", "em", "lark", "ament_index")
+    beside = tmp_path / "beside"
+    beside.mkdir()
+    for path in (path for folder in sys.path for path in Path(folder).glob("*")):
+        if path.name.startswith(needed) and not (beside / path.name).exists():
+            (beside / path.name).symlink_to(path)
+    call = subprocess.run(
+        [sys.executable, "-S", "-c", FIND, tmp_path / "wheel", *OF_ROS],
+        cwd=tmp_path,
+        env=ros_sourced | {"PYTHONPATH": str(beside), "ROS_DISTRO": "jazzy"},
+        capture_output=True,
+        text=True,
+    )
+    assert call.stdout == "[] []\n", call.stderr
+
+
 @pytest.mark.more("builds two wheels")
 def test_a_deleted_module_is_not_in_the_next_wheel(
     checkout: Path, ros_sourced: Environment
@@ -191,42 +232,38 @@ def no_compiler(shell: Environment) -> Environment:
     return shell | {"PATH": "/nonexistent", "CC": "/nonexistent/gcc", "CXX": "/nonexistent/g++"}
 
 
-MISSING = "Cannot install: missing: /nonexistent/gcc, /nonexistent/g++ (Debian, Ubuntu: sudo apt"
-
-
-def test_without_a_compiler_pip_shows_one_line(checkout: Path, no_compiler: Environment) -> None:
-    # no environment for the build, as for `make install`: another one comes from the index
-    pip = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-build-isolation"]
-    call = subprocess.run(
-        [*pip, "--target", checkout.parent / "target", checkout / "interfaces" / "jazzy"],
-        env=no_compiler,
-        capture_output=True,
-        text=True,
-    )
-    assert call.returncode != 0
-    said = call.stdout + call.stderr
-    assert "[1 lines of output]" in said
-    (line,) = [line for line in said.splitlines() if "Cannot install" in line]
-    assert line.strip().startswith(MISSING)
-
-
-def test_without_a_compiler_nothing_is_downloaded(checkout: Path, no_compiler: Environment) -> None:
-    line = refusal(checkout / "interfaces" / "jazzy", no_compiler)
-    assert line.startswith(MISSING)
-
-
 def test_the_project_needs_no_compiler(checkout: Path, no_compiler: Environment) -> None:
     assert call_hook(checkout, no_compiler, "build_wheel", checkout.parent).endswith("-any.whl")
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["sdist", "--help"], ["--version"]])
-def test_what_compiles_nothing_needs_no_compiler(
-    checkout: Path, no_compiler: Environment, arguments: list[str]
+@pytest.fixture(params=["no_compiler", "none_wanted"])
+def uncompiled(request: pytest.FixtureRequest, shell: Environment) -> Environment:
+    """An environment that compiles nothing."""
+    if request.param == "no_compiler":
+        return request.getfixturevalue("no_compiler")
+    shell.pop("ROS_DISTRO", None)
+    return shell | {"COMPILE": ""}
+
+
+def test_interfaces_that_are_not_compiled_are_installed_as_their_definitions(
+    checkout: Path, uncompiled: Environment
 ) -> None:
-    setup = [sys.executable, "setup.py", *arguments]
     folder = checkout / "interfaces" / "jazzy"
-    call = subprocess.run(setup, cwd=folder, env=no_compiler, capture_output=True, text=True)
-    assert call.returncode == 0, call.stderr
+    assert call_hook(folder, uncompiled, "get_requires_for_build_wheel") == []
+    wheel = call_hook(folder, uncompiled, "build_wheel", checkout.parent)
+    assert wheel.endswith("-py3-none-any.whl")
+    with zipfile.ZipFile(checkout.parent / wheel) as file:
+        shared = {name.partition(".data/data/share/")[2] for name in file.namelist()}
+        modules = {name.partition("/")[0] for name in file.namelist()}
+    packages = ROOT / "interfaces" / "packages"
+    for name, source in PACKAGES.items():
+        index = "ament_index/resource_index"
+        expected = {f"{name}/package.xml", f"{index}/packages/{name}"}
+        definitions = (packages / source).glob("*/*.*")
+        expected |= {f"{name}/{path.parent.name}/{path.name}" for path in definitions}
+        assert expected | {f"{index}/rosidl_interfaces/{name}"} <= shared
+    modules = {name for name in modules if not name.startswith("turtlesim_py_jazzy-")}
+    assert modules == {"tf2_py", "tf2_ros", "turtlesim_py_ament_prefix.pth"}
 
 
 def test_each_ros_has_a_build_folder_of_its_own(checkout: Path, none_sourced: Environment) -> None:

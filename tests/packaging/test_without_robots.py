@@ -9,14 +9,13 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from .conftest import ROOT, Environment
+from .conftest import ROOT, Environment, copy_environment
 
 #: With EXAMPLES=1000, `make test-all`: everything; else what is soon over.
 IS_WHOLE = int(os.environ.get("EXAMPLES") or 0) >= 1000
@@ -34,20 +33,7 @@ LEFT_OUT = shutil.ignore_patterns(
 @pytest.fixture
 def environment(tmp_path: Path) -> Iterator[Path]:
     """This environment, but that nothing in it says that there is grader_robots."""
-    place = tmp_path / "environment"
-
-    def link(
-        source: str, target: str
-    ) -> None:  # no symbolic one: a sandbox shows this folder alone
-        try:
-            os.link(source, target)
-        except OSError:  # on another disk
-            shutil.copy2(source, target)
-
-    def leave_out(_: str, names: list[str]) -> set[str]:
-        return {name for name in names if name in ("grader_robots", "__pycache__")}
-
-    shutil.copytree(sys.prefix, place, symlinks=True, ignore=leave_out, copy_function=link)
+    place = copy_environment(tmp_path, "grader_robots", "__pycache__")
     (points,) = place.glob("lib/python*/site-packages/turtlesim_py-*.dist-info/entry_points.txt")
     lines = points.read_text().splitlines(keepends=True)
     points.unlink()

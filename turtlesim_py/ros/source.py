@@ -85,11 +85,10 @@ def complaint(*, is_virtual: bool = False) -> Complaint | None:
         )
     if not (is_virtual or sourced or interfaces.installed()):
         return Complaint(
-            "{prefix} has the interfaces of turtlesim as definitions only, which do for gradings in "
-            "virtual time; all else needs them compiled: install gcc, g++ and the headers of Python "
-            "{version} (Debian, Ubuntu: sudo apt install build-essential python{version}-dev), then "
+            "turtlesim's interfaces are installed as definitions only, which is enough for "
+            "gradings in virtual time. For all else install gcc, g++ and Python's headers (Debian, "
+            "Ubuntu: sudo apt install build-essential python{version}-dev), then "
             "turtlesim-py-{release} once more (in a checkout: make install)",
-            prefix=sys.prefix,
             version=_version(),
             release=brought[0],
         )

@@ -25,6 +25,7 @@ from grader.run.processes import levels
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.grader.rosidl.comparing import differences
+from turtlesim_py.ros import interfaces
 
 FOLDER = runs.SUBMISSIONS / "interfaces"
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=4))
@@ -143,6 +144,14 @@ def test_without_a_compiler_nothing_is_judged_and_the_way_out_is_told(sends, mon
         "Python 3.12 is missing here. In virtual time they need not: have one program graded, "
         "without --time real, and take out what virtual time cannot follow, which a remark names"
     )
+
+
+@pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="ROS's are compiled")
+def test_where_turtlesim_s_are_definitions_only_nothing_is_judged_either(sends, monkeypatch):
+    monkeypatch.setattr(interfaces, "installed", tuple)
+    recording = run(sends, OwnInterfaces({}))
+    assert recording.run.outcome == "not_run"
+    assert "installed as definitions only" in str(recording.run.flags[0])
 
 
 def test_what_an_exercise_has_otherwise_is_not_judged(sends):

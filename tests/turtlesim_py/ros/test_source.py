@@ -30,9 +30,11 @@ sys.argv[0] = "command"
 """
 
 
-def call(code: str, *arguments: str, folder: Path, **env: str) -> subprocess.CompletedProcess[str]:
+def call(
+    code: str, *arguments: str, folder: Path, shim: str = WITHOUT_ROS, **env: str
+) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-P", "-c", WITHOUT_ROS + code, *arguments],
+        [sys.executable, "-P", "-c", shim + code, *arguments],
         cwd=folder,
         env=os.environ | {"PYTHONPATH": str(ROOT), "LANGUAGE": "en"} | env,
         capture_output=True,
@@ -64,6 +66,32 @@ def test_without_ros_a_command_says_which_extra_brings_it(command, code, argumen
     (line,) = done.stderr.splitlines()
     assert line.startswith(f"{command}: no ROS 2 found: ")
     assert f"{sys.executable} -m pip install 'turtlesim_py[jazzy]'" in line
+
+
+UNCOMPILED = WITHOUT_ROS.replace('("rclpy", ', "(")
+
+
+@pytest.mark.parametrize(
+    ("command", "code", "arguments"),
+    [
+        ("mimic", "import turtlesim_py.commands as c; sys.exit(c.mimic())", []),
+        ("grader run", GRADER, ["run", "x.py", "--time", "real"]),
+        ("grader batch", GRADER, ["batch", "x", "--out", "y", "--time", "real"]),
+    ],
+)
+def test_what_needs_compiled_interfaces_says_so(command, code, arguments, tmp_path):
+    done = call(code, *arguments, folder=tmp_path, shim=UNCOMPILED)
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"{command}: turtlesim's interfaces are installed as definitions only")
+    assert f"python3.{sys.version_info.minor}-dev" in line
+    assert f"turtlesim-py-{source._brought()[0]} once more" in line
+
+
+def test_a_grading_in_virtual_time_needs_none(tmp_path):
+    done = call(GRADER, "run", "x.py", folder=tmp_path, shim=UNCOMPILED)
+    assert "x.py" in done.stderr
+    assert "interfaces" not in done.stderr
 
 
 def test_what_needs_no_ros_does_without(tmp_path):

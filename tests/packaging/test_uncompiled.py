@@ -1,0 +1,95 @@
+"""An environment in which nothing was compiled grades as one with compiled interfaces does."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from turtlesim_py.ros import source
+
+from .conftest import ROOT, SOURCES, Environment, copy_environment
+
+pytestmark = [
+    pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="ROS's are compiled"),
+    pytest.mark.more("an environment of its own"),
+]
+EXERCISES = ROOT / "grader" / "exercises"
+REFERENCES = {
+    "turtlesim_challenge": ROOT / "turtlesim_challenge" / "turtle_controller.py",
+    "tf2_listener": EXERCISES / "tf2_listener" / "reference" / "tf2_listener.py",
+    "action_server": EXERCISES / "action_server" / "reference" / "action_server.py",
+    "catch_them_all": EXERCISES / "catch_them_all" / "reference",
+}
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A copy of this one, but for what is compiled of ours."""
+    folder = tmp_path_factory.mktemp("uncompiled")
+    place = copy_environment(folder)
+    for name in SOURCES:
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, folder / name, symlinks=True)
+        else:
+            shutil.copy(ROOT / name, folder)
+    (release,) = source._brought()
+    pip = ["-m", "pip", "install", "--no-build-isolation", "--no-deps", "--force-reinstall"]
+    subprocess.run(
+        [place / "bin" / "python", *pip, folder / "interfaces" / release],
+        env=os.environ | {"COMPILE": ""},
+        check=True,
+    )
+    yield place
+    shutil.rmtree(folder)
+
+
+def run(prefix: Path, *words: str | Path, env: Environment) -> subprocess.CompletedProcess[str]:
+    """Run `grader run` in an environment."""
+    command = [prefix / "bin" / "python", "-P", "-m", "grader", "run", *words]
+    return subprocess.run(command, env=env, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("exercise", REFERENCES)
+def test_a_grading_is_the_same(
+    environment: Path, shell: Environment, tmp_path: Path, exercise: str
+) -> None:
+    def graded(prefix: Path) -> dict[str, Any]:
+        out = tmp_path / prefix.name
+        words = (REFERENCES[exercise], "--exercise", exercise, "--out", out)
+        done = run(prefix, *words, "--fail-under", "100", env=shell)
+        assert done.returncode == 0, done.stderr
+        result: dict[str, Any] = json.loads((out / "result.json").read_text())
+        for each in (result["run"], *result["varied_runs"]):
+            del each["wall_s"]
+        return {name: result[name] for name in ("verdicts", "run", "varied_runs")}
+
+    made, compiled = graded(environment), graded(Path(sys.prefix))
+    assert made["run"]["time"] == "virtual"
+    assert made == compiled
+
+
+def test_what_needs_compiled_ones_says_so_in_one_line(
+    environment: Path, shell: Environment
+) -> None:
+    sentence = "turtlesim's interfaces are installed as definitions only"
+    start = "import sys; from turtlesim_py import commands; sys.exit(commands.turtlesim_node())"
+    node = subprocess.run(
+        [environment / "bin" / "python", "-P", "-c", start],
+        env=shell,
+        capture_output=True,
+        text=True,
+    )
+    real = run(environment, REFERENCES["turtlesim_challenge"], "--time", "real", env=shell)
+    for command, done in (("turtlesim_node", node), ("grader run", real)):
+        assert done.returncode == 2
+        (line,) = done.stderr.splitlines()
+        assert line.startswith(f"{command}: {sentence}")
+        assert "sudo apt install build-essential" in line
