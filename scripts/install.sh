@@ -153,7 +153,8 @@ if [ -z "${ROS_DISTRO:-}" ]; then
             ! missing=$("$venv/bin/python" grader/rosidl/compiler.py) || how=compiled
         fi
         project "./$ros" "installed-interfaces $how $hash"
-        [ $how = compiled ] && export COMPILE=yes || export COMPILE=
+        export COMPILE=
+        [ $how != compiled ] || COMPILE=yes
     fi
 fi
 if [ ${#folders[@]} -gt 0 ]; then

@@ -34,13 +34,11 @@ esac
 # Python imports from where it is started: not from a student's folder
 cd /
 
-# A Python that pip can compile for: with headers, beside a compiler
+# a Python with venv, beside git
 usable() {
     "$1" - <<'EOF' >/dev/null 2>&1
-import ensurepip, os, shutil, sys, sysconfig, venv
-headers = os.path.join(sysconfig.get_path("include"), "Python.h")
-tools = map(shutil.which, ("gcc", "g++", "git"))
-sys.exit(not ((3, 11) <= sys.version_info < (3, 14) and os.path.exists(headers) and all(tools)))
+import ensurepip, shutil, sys, venv
+sys.exit(not ((3, 11) <= sys.version_info < (3, 14) and shutil.which("git")))
 EOF
 }
 
@@ -54,13 +52,13 @@ find_python() {
 }
 
 if ! find_python; then
-    command -v apt-get >/dev/null || fail "needed: Python 3.11, 3.12 or 3.13 with its headers and venv; git, gcc, g++."
+    command -v apt-get >/dev/null || fail "needed: Python 3.11, 3.12 or 3.13 with its venv, and git."
     export DEBIAN_FRONTEND=noninteractive
     apt-get update
     for version in 3.12 3.11 3.13; do
         if apt-cache show "python$version-venv" >/dev/null 2>&1; then
-            apt-get install -y --no-install-recommends build-essential ca-certificates git procps \
-                "python$version" "python$version-dev" "python$version-venv"
+            apt-get install -y --no-install-recommends ca-certificates git procps \
+                "python$version" "python$version-venv"
             break
         fi
     done
