@@ -36,10 +36,8 @@ FORMATS = (
     *("html", "markdown", "csv", "junit", "gradescope", "prairielearn", "autolab"),
     *("moodle-vpl", "github-autograding", "terminal"),
 )
-#: Folders of programs beside peers; of the tutorials, right ones of one file are graded.
-WITH_PEERS = ("tutorials", "hostile_casts")
-#: Files beside the fixtures that are none.
-HELPERS = ("beginners.py", "mangled.py", "mutants.py", "packages.py")
+#: Folders of what is not the challenge's; of the tutorials, right ones of one file are graded.
+OTHERS = ("tutorials", "hostile_casts", "interfaces")
 #: The file of a recording that differs between equal runs.
 CIRCUMSTANCES = "circumstances.json"
 
@@ -47,25 +45,23 @@ CIRCUMSTANCES = "circumstances.json"
 def lay_out() -> dict[str, tuple[Path, str]]:
     """Copy the fixtures; name -> path and exercise."""
     sys.path.insert(0, str(ROOT))
-    from tests.submissions.beginners import CHANGED, changed
-    from tests.submissions.mutants import MUTANTS, REFERENCE
+    from tests import hand_ins
+    from tests.runs import MUTANTS
 
     shutil.rmtree(FIXTURES, ignore_errors=True)
-    shutil.copytree(ROOT / "tests" / "submissions", FIXTURES)
-    for name in CHANGED:
-        (FIXTURES / "first_lines" / f"{name}.py").write_text(changed(name), encoding="utf-8")
+    shutil.copytree(hand_ins.SUBMISSIONS, FIXTURES)
     found: dict[str, tuple[Path, str]] = {}
     for path in sorted(FIXTURES.rglob("*.py")):
         kind, *inside = path.relative_to(FIXTURES).parts
         if kind == "tutorials" and inside[1:] == ["right", path.name]:
             found[f"{inside[0]}-{path.stem}"] = (path, inside[0])
-        elif kind in WITH_PEERS or path.relative_to(FIXTURES).as_posix() in HELPERS:
+        elif kind in OTHERS or inside[:1] == ["tutorials"]:
             continue
         else:
             is_square = path.stem.startswith("square")
             found[path.stem] = (path, "square" if is_square else "turtlesim_challenge")
     for name, text in {
-        "reference": REFERENCE.read_text(encoding="utf-8"),
+        "reference": hand_ins.REFERENCE.read_text(encoding="utf-8"),
         **{name: mutant.text() for name, mutant in MUTANTS.items()},
     }.items():
         path = FIXTURES / "mutants" / name / "turtle_controller.py"

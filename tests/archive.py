@@ -33,7 +33,7 @@ SIDES: tuple[Side, ...] = ("right", "wrong")
 FILE = Path(__file__).with_name("recordings.tar.xz")
 EXERCISES = sorted(point.name for point in metadata.entry_points(group="grader.exercises"))
 #: Mutants of exercises that come without any.
-MUTANTS = {"square": FILE.parent / "submissions" / "square_mutants.yaml"}
+MUTANTS = {"square": FILE.parent / "grader" / "exercises" / "square_mutants.yaml"}
 #: The wrong one, where it is not the first mutant.
 WRONG = {"follow_me": "stands_still", "turtlesim_challenge": "two_colours_only"}
 #: So many are kept in memory: some megabytes each.

@@ -6,13 +6,8 @@ that, too. See `tests.once` for how long they serve.
 
 from __future__ import annotations
 
-import re
-import shutil
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any
-
-import yaml
 
 import grader
 from grader import grading
@@ -25,13 +20,13 @@ from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
+from grader.testing.solutions import read_solutions
 from tests import once
-from tests.submissions import beginners
-from tests.submissions.mutants import MUTANTS, REFERENCE
+from tests.hand_ins import REFERENCE, SUBMISSIONS, find
 
-SUBMISSIONS = Path(__file__).parent / "submissions"
-TUTORIALS = SUBMISSIONS / "tutorials"
 CHALLENGE = load_exercise("turtlesim_challenge")
+#: The reference controller with one thing spoiled at a time, by name.
+MUTANTS = {each.name: each for each in read_solutions(CHALLENGE) if not each.is_right}
 #: So many of each kind are kept in memory: some megabytes each.
 KEPT = 8
 
@@ -41,53 +36,16 @@ def path_of(name: str | Path) -> Path:
     """Where a submission lies.
 
     Args:
-        name: its path below tests/submissions, without `.py`; `reference`, the challenge's;
-            `mutants/NAME`, one of its mutants; `tutorials/EXERCISE/mutants/NAME`, one of a
-            tutorial's; a row of first_lines.yaml; or the path of something in the tree or
-            `written`.
+        name: its path below tests/submissions, as `hand_ins` lays it out, without `.py`;
+            `reference`, the challenge's; `mutants/NAME`, one of its mutants; or the path of
+            something in the tree or `written`.
     """
     if isinstance(name, Path):
         return name
     if name == "reference":
         return REFERENCE
     kind, _, which = name.partition("/")
-    if kind == "mutants":
-        return written(MUTANTS[which].text())
-    if of_tutorial := re.fullmatch(r"tutorials/(\w+)/mutants/(\w+)", name):
-        return mutant(*of_tutorial.groups())
-    if name in beginners.ROWS and (source := beginners.source(name)) is not None:
-        return written(source, f"{Path(name).name}.py")
-    path = SUBMISSIONS / name
-    return path if path.is_dir() else path.with_name(f"{path.name}.py")
-
-
-@cache
-def mutants_of(exercise: str) -> dict[str, dict[str, Any]]:
-    """The mutants of a tutorial's official solution, by name."""
-    found: dict[str, dict[str, Any]] = yaml.safe_load(
-        (TUTORIALS / exercise / "mutants.yaml").read_text(encoding="utf-8")
-    )
-    return found
-
-
-def mutant(exercise: str, name: str) -> Path:
-    """Where a mutant lies: the official solution, a file or a folder, with passages replaced."""
-    changes = mutants_of(exercise)[name]["changes"]
-    official = TUTORIALS / exercise / "right" / "official"
-    if not official.is_dir():
-        official = official.with_suffix(".py")
-    hand_in = f"{name}{official.suffix}"
-
-    def make(folder: Path) -> None:
-        made = folder / hand_in
-        shutil.copytree(official, made) if official.is_dir() else shutil.copy(official, made)
-        for *file, old, new in changes:
-            path = made.joinpath(*file)
-            text = path.read_text(encoding="utf-8")
-            assert text.count(old) == 1, (path, old)
-            path.write_text(text.replace(old, new), encoding="utf-8")
-
-    return once.folder(make, "tutorial", exercise, name, str(changes)) / hand_in
+    return written(MUTANTS[which].text()) if kind == "mutants" else find(SUBMISSIONS, name)
 
 
 def written(text: str | bytes, file: str = "turtle_controller.py") -> Path:

@@ -28,7 +28,7 @@ from grader import cli, testing
 from grader.exercise.loading import load_exercise
 from grader.text import points
 from tests.browser import BROWSER, open_browser
-from tests.submissions import beginners
+from tests.hand_ins import SUBMISSIONS
 from turtlesim_py import scenario
 
 HERE = Path(__file__).parent
@@ -50,14 +50,15 @@ copy; [how to write your own](../docs/write-an-exercise.md).
 """
 API = "# The Python API\n\nTo grade, to write checks, to try them: [how](docs/python-api.md).\n"
 #: A controller that draws its spiral in seconds.
-QUICK = (ROOT / "tests" / "submissions" / "quick_spiral.py").read_text(encoding="utf-8")
+MISTAKES = SUBMISSIONS / "first_lines"
+QUICK = (SUBMISSIONS / "quick_spiral.py").read_text(encoding="utf-8")
 #: A class: student -> program.
 CLASS = {
     "ada": (ROOT / "turtlesim_challenge" / "turtle_controller.py").read_text(encoding="utf-8"),
     "ben": QUICK,
     "dan": QUICK.replace("< 0.9:", "< 0.9 and pose.x > C:"),
-    "eva": beginners.changed("hears_capital_pose"),
-    "gul": beginners.changed("raises_at_six"),
+    "eva": (MISTAKES / "hears_capital_pose.py").read_text(encoding="utf-8"),
+    "gul": (MISTAKES / "raises_at_six.py").read_text(encoding="utf-8"),
 }
 ROBOT = ROOT / "grader_robots" / "exercises" / "description_package" / "reference"
 #: Runs of the original turtlesim in tests/golden that are drawn again.

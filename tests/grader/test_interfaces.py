@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-import yaml
 
 from grader import grading
 from grader.diagnosis.diagnose import diagnose
@@ -20,15 +19,14 @@ from grader.run import virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
-from tests import once, runs
+from tests import hand_ins, runs
 from tests.docs.test_examples import environment_with
 from tests.grader.testing import exercises
 from turtlesim_py.world.events import CmdVel
 
 FOLDER = runs.SUBMISSIONS / "interfaces"
 LIGHT = Path(__file__).with_name("scenes") / "light"
-JUDGED = yaml.safe_load((FOLDER / "judged.yaml").read_text(encoding="utf-8"))
-WRONG = yaml.safe_load((FOLDER / "wrong.yaml").read_text(encoding="utf-8"))
+JUDGED, WRONG = (hand_ins.read("interfaces")[kind] for kind in ("judged", "wrong"))
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=6))
 LOST = [Verdict("check", plain_text("Check"), "failed", 0, 20, plain_text("It lacks something."))]
 #: What each says once it has used its interfaces.
@@ -80,25 +78,16 @@ def grade(request, tmp_path):
 
     def graded(name, number=1):
         case = JUDGED[name]
+        made = runs.path_of(f"interfaces/judged/{name}")
         if "exercise" not in case:
-            return runs.graded(handed_in(case), number=number).to_json()
+            return runs.graded(made, number=number).to_json()
         python, out = str(request.getfixturevalue("lit")), tmp_path / f"out{number}"
-        made = changed(FOLDER / case["of"], case, tmp_path / f"{name}{number}")
         words = [python, "-m", "grader", "run", str(made), "--out", str(out)]
         words += ["--exercise", str(LIGHT / case["exercise"])]
         subprocess.run(words, check=True, cwd=tmp_path, capture_output=True)
         return json.loads((out / "result.json").read_text())
 
     return graded
-
-
-def handed_in(case):
-    """A case's hand-in, always in the same place."""
-    original = FOLDER / case["of"]
-    if case.keys().isdisjoint(("copies", "changes", "without")):
-        return original
-    made = once.folder(lambda folder: changed(original, case, folder / original.name), case)
-    return made / original.name
 
 
 @pytest.mark.timeout(300)
@@ -133,24 +122,6 @@ def run(path, interfaces=None):
         return replace(virtual_time.run(submission, PLAN), interfaces=submission.interfaces)
 
 
-def changed(original, case, place):
-    """Copy a hand-in with changes; see the files that list these."""
-    if original.is_file():
-        place.mkdir()
-        return Path(shutil.copy(original, place))
-    shutil.copytree(original, place)
-    for file, to in case.get("copies", {}).items():
-        shutil.copytree(place / file, place / to)
-    for file, old, new in case.get("changes", ()):
-        (path,) = place.rglob(file) if "/" not in file else [place / file]
-        text = path.read_text()
-        assert text.count(old) == 1
-        path.write_text(text.replace(old, new))
-    for file in case.get("without", "").split():
-        shutil.rmtree(place / file) if (place / file).is_dir() else (place / file).unlink()
-    return place
-
-
 def is_in_order(pieces, text):
     begin = 0
     for piece in pieces:
@@ -159,21 +130,8 @@ def is_in_order(pieces, text):
 
 
 @pytest.mark.parametrize("name", some(WRONG, list(WRONG)[::4]))
-def test_the_first_lines_say_what_is_wrong(name, tmp_path):
-    place = shutil.copytree(FOLDER / "workspace", tmp_path / "it")
-    package = place / "src" / "tutorial_interfaces"
-    for file, old, new in WRONG[name].get("changes", ()):
-        (path,) = place.glob(f"src/*/*/{file}") if file.endswith(".py") else [package / file]
-        text = path.read_text()
-        assert text.count(old) == 1
-        path.write_text(text.replace(old, new))
-    for file, to in WRONG[name].get("moves", {}).items():
-        path = package / file
-        if to is None:
-            shutil.rmtree(path) if path.is_dir() else path.unlink()
-        else:
-            path.rename(package / to)
-    found = diagnose(Recordings(run(place)), LOST)
+def test_the_first_lines_say_what_is_wrong(name):
+    found = diagnose(Recordings(run(FOLDER / "wrong" / name)), LOST)
     assert found is not None
     is_in_order(WRONG[name]["says"], f"{found.cause!s} {found.help!s}")
 

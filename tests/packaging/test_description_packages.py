@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.submissions.packages import FOLDER, REFERENCE, looked_at
+from tests.grader_robots.packages import FOLDER, REFERENCE, looked_at
 
 #: What colcon adds by itself.
 OF_COLCON = ("hook", "package.bash", "package.ps1", "package.sh", "package.zsh", "package.dsv")

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.submissions.mutants import REFERENCE
+from tests.hand_ins import REFERENCE
 
 
 @pytest.mark.parametrize(

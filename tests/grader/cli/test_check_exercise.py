@@ -79,5 +79,7 @@ def test_a_number_of_jobs_that_is_none_is_named(number, capsys):
 
 
 def test_every_mutant_of_the_square_is_a_change_of_its_solution():
-    text = (ROOT / "tests" / "submissions" / "square_mutants.yaml").read_text(encoding="utf-8")
+    text = (ROOT / "tests" / "grader" / "exercises" / "square_mutants.yaml").read_text(
+        encoding="utf-8"
+    )
     assert all("replace" in mutant for mutant in yaml.safe_load(text)["mutants"].values())

@@ -8,10 +8,10 @@ import grader
 from grader.cli import main
 from grader.exercise.loading import load_exercise
 from grader.testing.solutions import FILE_NAME, read_solutions
-from tests import runs
+from tests import hand_ins, runs
 
-FOLDER = runs.TUTORIALS
-NAMES = sorted(path.name for path in FOLDER.iterdir() if path.is_dir())
+FOLDER = hand_ins.SUBMISSIONS / "tutorials"
+NAMES = sorted(path.name for path in FOLDER.iterdir())
 RIGHT = {
     (name, path.stem): path
     for name in NAMES
@@ -20,9 +20,11 @@ RIGHT = {
 }
 #: Those that come with a reference and mutants of their own.
 WHOLE = [name for name in NAMES if (load_exercise(name).folder / FILE_NAME).is_file()]
-MUTANTS = [(name, key) for name in NAMES for key in runs.mutants_of(name)]
+MUTANTS = {
+    (n, key): row for n in NAMES for key, row in hand_ins.read(f"tutorials/{n}")["mutants"].items()
+}
 #: What stands for the others in `make test`; `make test-more` grades all.
-FIRST = [(name, next(iter(runs.mutants_of(name)))) for name in NAMES]
+FIRST = [(name, next(iter(hand_ins.read(f"tutorials/{name}")["mutants"]))) for name in NAMES]
 #: One part of the mutants may slip through: those that only another seed would show.
 MOST_MISSED = 0.03
 #: What the name of a node, or a definition that is given, is worth [points].
@@ -31,13 +33,13 @@ MOST_FOR_NOTHING = 20
 
 def lost(name, key):
     """The checks in which a mutant loses points."""
-    result = grader.grade(runs.mutant(name, key), name)
+    result = grader.grade(runs.path_of(f"tutorials/{name}/mutants/{key}"), name)
     return {verdict.check for verdict in result.verdicts if verdict.status != "passed"}
 
 
 def must_lose(name, key):
     known = {check.name for check in load_exercise(name).checks}
-    return set(runs.mutants_of(name)[key]["loses"]) & known
+    return set(MUTANTS[name, key]["loses"]) & known
 
 
 @pytest.mark.parametrize("name", NAMES)

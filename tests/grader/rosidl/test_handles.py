@@ -1,4 +1,4 @@
-"""What DDS is shown of a made class; in a run, see tests/submissions/messages/made_classes.py."""
+"""What DDS is shown of a made class; in a run, see `messages/made_classes`."""
 
 from __future__ import annotations
 

@@ -3,7 +3,6 @@
 import os
 import re
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
@@ -17,10 +16,10 @@ from grader.run.limits import Patience
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
 from tests import runs
+from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 
-SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 STYLES = sorted(p.stem for p in (SUBMISSIONS / "styles").glob("*.py"))
 
 Recorded = Callable[..., Recording]

@@ -1,12 +1,12 @@
-"""Record what the real `launch` starts of the launch files in tests/submissions/like_ros2_launch.
+"""Record what the real `launch` starts of the launch files of the hand-in `like_ros2_launch`.
 
     python -m tests.grader.submission.record_launches
 
-It needs ROS's launch and launch_ros, and writes `launched.json` there. The packages are laid out
-as `colcon build` would, with programs that do nothing: `worker` and scripts end at once, all others
-wait. Programs of other packages are such, too. Of each start it writes the name that
-`ros2 launch` prints, the moment [s], and the arguments; a file by its name alone, a temporary file
-of parameters by what it holds.
+It needs ROS's launch and launch_ros, and writes `launched.json` beside it. The packages are laid
+out as `colcon build` would, with programs that do nothing: `worker` and scripts end at once, all
+others wait. Programs of other packages are such, too. Of each start it writes the name that `ros2
+launch` prints, the moment [s], and the arguments; a file by its name alone, a temporary file of
+parameters by what it holds.
 """
 
 import asyncio
@@ -21,8 +21,10 @@ from typing import Any
 
 import yaml
 
-FOLDER = Path(__file__).parents[2] / "submissions" / "like_ros2_launch"
-RECORDED = FOLDER / "launched.json"
+from tests.hand_ins import SUBMISSIONS
+
+FOLDER = SUBMISSIONS / "like_ros2_launch"
+RECORDED = Path(__file__).with_name("launched.json")
 MARKS = "share/ament_index/resource_index/packages"
 PROGRAMS = {
     "demo": ("talker", "listener", "worker"),

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import ast
-from pathlib import Path
 
 import pytest
 
 from grader.recording.observations import LintFinding, SourceLine
 from grader.run.opening import open_submission
 from grader.submission import lint
+from tests.hand_ins import SUBMISSIONS
 
-TUTORIALS = Path(__file__).parents[2] / "submissions" / "tutorials"
+TUTORIALS = SUBMISSIONS / "tutorials"
 SETUP = """from setuptools import setup
 setup(name="spiral", entry_points={"console_scripts": ["draw = spiral.draw:main"]})
 """

@@ -9,7 +9,7 @@ import pytest
 
 from grader.judging import judge
 from grader.result.result import Result
-from tests.submissions.packages import (
+from tests.grader_robots.packages import (
     EXERCISE,
     FOLDER,
     HANDED_IN,

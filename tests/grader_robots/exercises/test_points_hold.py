@@ -17,7 +17,7 @@ from grader.judging import judge
 from grader.recording.recording import Recording, Recordings
 from grader_robots.scene.driving import drive, joint_state, tf
 from robot_py.robot_state import Placed
-from tests.submissions.packages import looked_at, recorded
+from tests.grader_robots.packages import looked_at, recorded
 from tests.tiers import others_are_more
 
 #: A passage of a file, and what stands there instead; a passage '' is the whole file.

@@ -9,7 +9,7 @@ from grader.judging import judge
 from grader.testing.checking import examine
 from grader.testing.solutions import read_solutions
 from grader_robots.inspection.oddities import odd_traces
-from tests.submissions.packages import looked_at, recorded, written
+from tests.grader_robots.packages import looked_at, recorded, written
 
 EXERCISE = load_exercise("thymio_package")
 REFERENCE = EXERCISE.folder / "reference"

@@ -27,7 +27,7 @@ from grader.inspection.examining.steps import (
 from grader.inspection.trace import FAILED, PackageTrace, decode, encode
 from grader.strict_json import from_json
 from grader_robots.inspection import meshes
-from tests.submissions.packages import INSPECTORS, REFERENCE, looked_at, written
+from tests.grader_robots.packages import INSPECTORS, REFERENCE, looked_at, written
 
 DISPLAY, SPAWN = "launch/display.launch.py", "launch/spawn.launch.py"
 SETUP = (REFERENCE / "setup.py").read_text(encoding="utf-8")

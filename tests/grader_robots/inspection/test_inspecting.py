@@ -16,7 +16,7 @@ from grader.run import inspecting
 from grader.run.processes import levels, network
 from tests import runs
 from tests.grader.run.test_opening import FORGES
-from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, recorded, written
+from tests.grader_robots.packages import EXERCISE, REFERENCE, looked_at, recorded, written
 
 NEVER_ENDS = "while True:\n    pass\n"
 

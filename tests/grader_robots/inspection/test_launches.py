@@ -7,7 +7,7 @@ import textwrap
 import pytest
 
 from grader.inspection.trace import LaunchFile
-from tests.submissions.packages import looked_at, written
+from tests.grader_robots.packages import looked_at, written
 
 FILE = "launch/display.launch.py"
 HEAD = """

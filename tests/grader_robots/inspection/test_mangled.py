@@ -16,8 +16,8 @@ from grader.exercise.loading import load_exercise
 from grader.inspection.examining.steps import Ended, attempt
 from grader.inspection.trace import decode, encode
 from tests.conftest import CASES
-from tests.submissions.mangled import OUTSIDE, SAYS, Change, Mangled, packages
-from tests.submissions.packages import looked_at, recorded
+from tests.grader_robots.mangled import OUTSIDE, SAYS, Change, Mangled, packages
+from tests.grader_robots.packages import looked_at, recorded
 
 #: What is said where something of ours has failed, and the system has refused nothing.
 OURS = re.compile(r"cannot be read \(\w+: .*, \w+\.py, line \d+\)")

@@ -15,6 +15,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from grader import system
 from grader.message import NOTHING, msg
 from grader.run.lockstep import contract
+from tests.hand_ins import SUBMISSIONS
 
 GROUPS = (contract.ENTITIES, contract.PROGRAM)
 
@@ -118,11 +119,10 @@ def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time
     from grader.run.processes import levels
     from grader.scenes.scene import Limits
 
-    submissions = Path(__file__).parents[3] / "submissions"
     changed_rclpy(side, "ClockType.STEADY_TIME")
     # a submission that is confined does not see the folder with the change
     monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
-    with open_submission(submissions / "misbehaving/exits.py") as submission:
+    with open_submission(SUBMISSIONS / "misbehaving/exits.py") as submission:
         plan = Plan(Limits(1, 0.2, 5))
         found = virtual_time._try(submission, plan, virtual_time.PATIENCE, None)
     fault = {"version": system.rclpy_version(), "fault": "ClockType has no STEADY_TIME"}

@@ -1,9 +1,0 @@
-from launch import LaunchDescription
-from launch_ros.actions import Node
-
-
-def generate_launch_description():
-    return LaunchDescription([
-        Node(package='py_pubsub', executable='chat', arguments=['talker']),
-        Node(package='py_pubsub', executable='chat', arguments=['listener']),
-    ])
