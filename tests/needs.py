@@ -1,8 +1,8 @@
 """What of the machine some tests need, and the one command that brings each.
 
-On a newcomer's laptop such tests are left out, and the last lines of the call say what to install.
-Where the environment variable CI is set, what is missing is a failure. As a program this prints the
-commands for what is missing, for a shell:
+Such tests are left to `make test-all`, so `make test` skips nothing anywhere. Where something is
+missing they are left out, and the last lines of the call say what to install; with the environment
+variable CI set that is a failure. As a program this prints the commands for what is missing:
 
     .venv/bin/python -m tests.needs | sh -ex
 """
@@ -83,6 +83,14 @@ def missing(names: Any) -> list[str]:
 def pytest_configure(config: pytest.Config) -> None:
     """Make the mark known."""
     config.addinivalue_line("markers", "needs(*names): left out where one is missing (needs.py)")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Leave what needs something of the machine to `make test-all`."""
+    for item in items:
+        if item.get_closest_marker("needs"):
+            item.add_marker(pytest.mark.more("it needs something of the machine"))
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
