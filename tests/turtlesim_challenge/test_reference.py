@@ -1,7 +1,5 @@
 """The reference controller takes the messages that the ROS release has."""
 
-from __future__ import annotations
-
 import runpy
 import sys
 

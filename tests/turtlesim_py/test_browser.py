@@ -1,7 +1,5 @@
 """Who sits at another machine is told how a page of this one opens there."""
 
-from __future__ import annotations
-
 import pytest
 
 from turtlesim_py import browser

@@ -1,33 +1,31 @@
 """What a viewer is told is enough to have the same picture, and no more is told than happens."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from turtlesim_py.live.feed import Feed, News
+from turtlesim_py.live.feed import Feed
 from turtlesim_py.world.arena import Arena
 
 
 class Viewer:
     """Draws what it is told, as the page does."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.arena = Arena(sprite="jazzy")
-        self.news: list[News] = []
+        self.news = []
         self.feed = Feed(self.arena, self.news.append)
         self.canvas = np.zeros((500, 500, 4), np.uint8)
 
-    def look(self) -> None:
+    def look(self):
         self.feed.is_watched = True
         self.feed.ask(self)
         self.pass_ticks(1)
 
-    def pass_ticks(self, ticks: int) -> None:
+    def pass_ticks(self, ticks):
         for _ in range(ticks):
             self.feed.after_tick(self.arena.tick())
 
-    def changes(self) -> list[News]:
+    def changes(self):
         """Those since the last look."""
         taken, self.news[:] = self.news[:], []
         for news in taken:
@@ -37,7 +35,7 @@ class Viewer:
                 self._draw(news)
         return [news for news in taken if news.canvas is None]
 
-    def _draw(self, change: News) -> None:
+    def _draw(self, change):
         for stroke in change.content["drawn"]:
             if stroke is None:
                 self.canvas[:] = (255, 255, 255, 0)
@@ -48,7 +46,7 @@ class Viewer:
 
 
 @pytest.fixture
-def viewer() -> Viewer:
+def viewer():
     return Viewer()
 
 
@@ -76,15 +74,11 @@ def test_who_comes_late_gets_what_was_drawn_before_and_then_what_is_drawn(viewer
     assert np.array_equal(viewer.canvas, viewer.arena.canvas.rgba())
 
 
-def test_at_rest_nothing_is_told(viewer):
+def test_at_rest_nothing_is_told_and_while_nobody_looks_nothing_kept(viewer):
     viewer.look()
     viewer.changes()
     viewer.pass_ticks(100)
     assert viewer.changes() == []
-
-
-def test_nobody_is_told_and_nothing_kept_while_nobody_looks(viewer):
-    viewer.look()
     viewer.feed.is_watched = False
     viewer.news.clear()
     viewer.arena.command("turtle1", (2.0, 0.0, 0.0), (0.0, 0.0, 1.5))
@@ -108,6 +102,10 @@ def test_turtles_that_come_and_go_are_told_with_their_pens(viewer):
     viewer.pass_ticks(2)
     (*_, change) = viewer.changes()
     assert [turtle["name"] for turtle in change.content["turtles"]] == ["turtle1"]
+    viewer.arena.teleport_absolute("turtle1", float("nan"), float("inf"), 0.0)
+    viewer.pass_ticks(2)
+    (*_, change) = viewer.changes()
+    assert change.content["turtles"][0]["px"][0] == "nan"  # what is no number, in words
 
 
 def test_calls_are_told_in_order_and_a_flood_of_them_is_cut(viewer):
@@ -121,11 +119,3 @@ def test_calls_are_told_in_order_and_a_flood_of_them_is_cut(viewer):
         viewer.arena.clear()
     viewer.pass_ticks(2)
     assert max(len(change.content["calls"]) for change in viewer.changes()) == 20
-
-
-def test_what_is_no_number_is_told_in_words(viewer):
-    viewer.look()
-    viewer.arena.teleport_absolute("turtle1", float("nan"), float("inf"), 0.0)
-    viewer.pass_ticks(2)
-    (*_, change) = viewer.changes()
-    assert change.content["turtles"][0]["px"][0] == "nan"

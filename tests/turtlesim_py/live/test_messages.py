@@ -1,7 +1,5 @@
 """What a page sends and does not fit is refused, with the sentence that the page translates."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

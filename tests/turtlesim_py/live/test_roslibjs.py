@@ -1,7 +1,5 @@
 """roslibjs, the library of ROS's web pages, drives the turtle through the page's socket."""
 
-from __future__ import annotations
-
 import subprocess
 
 from turtlesim.msg import Pose

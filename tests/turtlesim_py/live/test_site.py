@@ -1,7 +1,5 @@
 """Who is let in: this machine's own pages, and whoever has the token."""
 
-from __future__ import annotations
-
 import pytest
 
 from turtlesim_py.live.site import Site, is_loopback

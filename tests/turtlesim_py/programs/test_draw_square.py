@@ -1,21 +1,18 @@
 """draw_square: its decisions in a bare world, and the program beside a simulator."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
 from turtlesim.msg import Pose
 
-from tests.graph import Graph
 from tests.programs import Program
 from turtlesim_py.programs.draw_square import NEAR_M, SIDE_M, Square
 from turtlesim_py.world.arena import Arena
 
 
-def test_it_drives_along_a_square_and_comes_back() -> None:
+def test_it_drives_along_a_square_and_comes_back():
     arena = Arena()
-    goals: list[tuple[float, float, float]] = []
+    goals = []
     square = Square(lambda *goal: goals.append(goal))
     corners = []
     pose = arena.tick()["turtle1"].pose
@@ -36,7 +33,7 @@ def test_it_drives_along_a_square_and_comes_back() -> None:
     assert len(goals) == 10
 
 
-def test_the_program_resets_the_simulator_and_drives(graph: Graph, simulator: Program) -> None:
+def test_the_program_resets_the_simulator_and_drives(graph, simulator):
     begin = len(simulator.lines)
     with Program("turtlesim_py.programs.draw_square") as program:
         simulator.wait_for_line("Resetting turtlesim.", begin)

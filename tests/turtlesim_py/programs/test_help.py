@@ -1,7 +1,5 @@
 """`--help` of every program says what it does, and starts nothing."""
 
-from __future__ import annotations
-
 import tomllib
 from importlib import import_module
 

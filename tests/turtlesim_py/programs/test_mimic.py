@@ -1,17 +1,17 @@
 """mimic, between two topics of the test's own."""
 
-from __future__ import annotations
-
 import pytest
 from geometry_msgs.msg import Twist
 
-from tests.graph import Graph
 from tests.programs import Program
-from turtlesim_py.ros.interfaces import Interfaces, installed
+from tests.tiers import others_are_more
+from turtlesim_py.ros.interfaces import Interfaces, installed, usual
 
 
-@pytest.mark.parametrize("package", installed())
-def test_the_speeds_of_a_pose_become_a_command(graph: Graph, package: str) -> None:
+@pytest.mark.parametrize(
+    "package", others_are_more("the classes are told apart by units", installed(), usual())
+)
+def test_the_speeds_of_a_pose_become_a_command(graph, package):
     pose = Interfaces.of(package).msg.Pose
     arguments = ["-r", f"input/pose:=/leader/{package}", "-r", "output/cmd_vel:=/follower/cmd_vel"]
     arguments += ["-p", f"interfaces:={package}"]
@@ -21,7 +21,7 @@ def test_the_speeds_of_a_pose_become_a_command(graph: Graph, package: str) -> No
         graph.until(lambda: ("turtle_mimic", "/") in nodes(), "the node")
         poses = graph.publisher(pose, f"/leader/{package}")
 
-        def answered() -> bool:
+        def answered():
             poses.publish(pose(linear_velocity=1.5, angular_velocity=-0.5))
             return bool(twists)
 

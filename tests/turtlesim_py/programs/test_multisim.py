@@ -1,19 +1,13 @@
 """multisim.launch.py. PyPI has no launch, so this looks only at what it would start."""
 
-from __future__ import annotations
-
 import runpy
 import sys
 from types import ModuleType
 
-import pytest
-
 from tests.programs import ROOT
 
 
-def test_it_starts_the_simulator_in_the_originals_two_namespaces(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_it_starts_the_simulator_in_the_originals_two_namespaces(monkeypatch):
     for name, attribute, value in [
         ("launch", "LaunchDescription", list),
         ("launch_ros", "actions", None),

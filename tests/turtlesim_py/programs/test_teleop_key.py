@@ -1,28 +1,33 @@
 """turtle_teleop_key on a terminal of its own, with a real simulator at the other end."""
 
-from __future__ import annotations
-
 import os
 import pty
 import signal
 import subprocess
 import termios
 import time
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pytest
 from std_srvs.srv import Empty
 from turtlesim.msg import Pose
 
-from tests.graph import Graph
 from tests.programs import DEADLINE_S, Program
+
+#: In the words of turtlesim 1.8.4.
+GREETING = [
+    "Reading from keyboard",
+    "---------------------------",
+    "Use arrow keys to move the turtle.",
+    "Use g|b|v|c|d|e|r|t keys to rotate to absolute orientations. 'f' to cancel a rotation.",
+    "'q' to quit.",
+]
 
 
 class Teleop:
     """The program and the user's end of its terminal."""
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments):
         self._user, self._terminal = pty.openpty()
         self.found = termios.tcgetattr(self._terminal)
         self.program = Program(
@@ -33,7 +38,7 @@ class Teleop:
             stdout=self._terminal,
         )
 
-    def close(self) -> None:
+    def close(self):
         if self.program.process.poll() is None:
             self.type("q")
             self.program.wait()
@@ -41,49 +46,49 @@ class Teleop:
         for end in (self._user, self._terminal):
             os.close(end)
 
-    def wait_for_help(self) -> str:
+    def wait_for_help(self):
         """What is on the screen when the help is."""
         shown = b""
         while b"quit." not in shown:
             shown += os.read(self._user, 1024)
         return shown.decode()
 
-    def type(self, keys: str) -> None:
+    def type(self, keys):
         os.write(self._user, keys.encode())
 
-    def attributes(self) -> list[object]:
+    def attributes(self):
         return termios.tcgetattr(self._terminal)
 
-    def shows_keys(self) -> bool:
+    def shows_keys(self):
         return bool(termios.tcgetattr(self._terminal)[3] & termios.ECHO)
 
 
 @contextmanager
-def teleop(*arguments: str) -> Iterator[Teleop]:
+def teleop(*arguments):
     running = Teleop(*arguments)
     try:
-        running.wait_for_help()
+        assert running.wait_for_help().splitlines() == GREETING
         yield running
     finally:
         running.close()
 
 
-def wait_until(condition: Callable[[], bool]) -> None:
+def wait_until(condition):
     deadline = time.monotonic() + DEADLINE_S
     while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.005)
 
 
-def test_keys_drive_and_turn_the_turtle(graph: Graph, simulator: Program) -> None:
+def test_keys_drive_and_turn_the_turtle(graph, simulator):
     graph.call(Empty, "/reset")
     with teleop("--ros-args", "-p", "scale_linear:=1.0", "-p", "scale_angular:=3.0") as driver:
         # the simulator hears it, and the reverse
         graph.until(lambda: graph.node.count_publishers("/turtle1/cmd_vel") == 1, "the driver")
         poses = graph.listen(Pose, "/turtle1/pose")
 
-        def wait_for_speeds(linear: float, angular: float) -> None:
-            def has_them() -> bool:
+        def wait_for_speeds(linear, angular):
+            def has_them():
                 last = poses[-1] if poses else Pose()
                 return (last.linear_velocity, last.angular_velocity) == (linear, angular)
 
@@ -91,7 +96,7 @@ def test_keys_drive_and_turn_the_turtle(graph: Graph, simulator: Program) -> Non
 
         first = len(poses)
 
-        def drives() -> bool:
+        def drives():
             driver.type("\x1b[A")  # again: the first may be before the simulator listens
             return any(pose.linear_velocity == 1.0 for pose in poses[first:])
 
@@ -104,7 +109,7 @@ def test_keys_drive_and_turn_the_turtle(graph: Graph, simulator: Program) -> Non
         wait_for_speeds(1.0, 0.0)  # the pose shows no sign
         begin = len(simulator.lines)
 
-        def turns() -> bool:
+        def turns():
             driver.type("t")  # again: the first goal may be before the simulator is found
             done = "Rotation goal completed successfully"
             return any(done in line for line in simulator.lines[begin:])
@@ -124,21 +129,21 @@ def test_keys_drive_and_turn_the_turtle(graph: Graph, simulator: Program) -> Non
     "end",
     [
         pytest.param(lambda d: d.type("\x03"), id="Ctrl-C"),
-        pytest.param(lambda d: d.program.process.send_signal(signal.SIGTERM), id="SIGTERM"),
-        pytest.param(lambda d: d.program.process.send_signal(signal.SIGHUP), id="SIGHUP"),
+        *(
+            pytest.param(
+                lambda d, number=number: d.program.process.send_signal(number),
+                marks=pytest.mark.more("test_keyboard.py has the signals"),
+                id=number.name,
+            )
+            for number in (signal.SIGTERM, signal.SIGHUP)
+        ),
     ],
 )
-def test_the_terminal_is_restored_however_it_ends(end: Callable[[Teleop], None]) -> None:
+def test_the_terminal_is_restored_however_it_ends_and_for_a_pause(end):
     with teleop("--ros-args", "-r", "__ns:=/alone") as driver:
         assert not driver.shows_keys()
-        end(driver)
-        assert driver.program.wait() == 0
-        assert driver.attributes() == driver.found
-        assert driver.program.text() == ""
-
-
-def test_ctrl_z_gives_the_terminal_back_for_the_pause() -> None:
-    with teleop("--ros-args", "-r", "__ns:=/alone") as driver:
+        driver.type("g")
+        driver.program.wait_for_line("is turtlesim_node running?")
         for _ in range(2):
             begin = len(driver.program.lines)
             driver.type("\x1a")
@@ -146,33 +151,14 @@ def test_ctrl_z_gives_the_terminal_back_for_the_pause() -> None:
             assert driver.attributes() == driver.found
             driver.program.process.send_signal(signal.SIGUSR1)
             wait_until(lambda: not driver.shows_keys())
-        driver.type("q")
+        begin = len(driver.program.lines)
+        end(driver)
         assert driver.program.wait() == 0
         assert driver.attributes() == driver.found
+        assert driver.program.lines[begin:] == []
 
 
-def test_it_says_where_there_is_no_simulator() -> None:
-    with teleop("--ros-args", "-r", "__ns:=/alone") as driver:
-        driver.type("g")
-        driver.program.wait_for_line("is turtlesim_node running?")
-
-
-def test_it_greets_in_the_words_of_turtlesim_1_8_4() -> None:
-    driver = Teleop("--ros-args", "-r", "__ns:=/alone")
-    try:
-        lines = driver.wait_for_help().splitlines()
-    finally:
-        driver.close()
-    assert lines == [
-        "Reading from keyboard",
-        "---------------------------",
-        "Use arrow keys to move the turtle.",
-        "Use g|b|v|c|d|e|r|t keys to rotate to absolute orientations. 'f' to cancel a rotation.",
-        "'q' to quit.",
-    ]
-
-
-def test_without_a_terminal_it_is_one_line_and_exit_code_2() -> None:
+def test_without_a_terminal_it_is_one_line_and_exit_code_2():
     with Program("turtlesim_py.programs.teleop_key", stdin=subprocess.DEVNULL) as program:
         assert program.wait() == 2
         (line,) = program.lines

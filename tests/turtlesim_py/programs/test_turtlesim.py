@@ -1,7 +1,5 @@
 """`turtlesim`: simulator and page, and a browser where there is one."""
 
-from __future__ import annotations
-
 import http.client
 import re
 import socket

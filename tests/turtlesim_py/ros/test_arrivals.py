@@ -1,15 +1,11 @@
 """A node that is polled only when something has arrived misses nothing."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
 from rclpy.action import ActionServer
 from std_srvs.srv import Empty
 from turtlesim.action import RotateAbsolute
 
-from tests.graph import Graph, wait_for_arrival
+from tests.graph import wait_for_arrival
 from tests.turtlesim_py.ros.test_executor import Served, send, served
 from turtlesim_py.ros.executor import QUIET_SPINS, Arrivals
 
@@ -19,38 +15,38 @@ __all__ = ["served"]
 class Watched(Served):
     """A node that is polled on arrivals, and counts how often it is."""
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph):
         super().__init__(graph)
         self.polls = 0
         polled = self.executor._polled
 
-        def counted(*arguments: object) -> object:
+        def counted(*arguments):
             self.polls += 1
-            return polled(*arguments)  # type: ignore[arg-type]
+            return polled(*arguments)
 
-        self.executor._polled = counted  # type: ignore[method-assign,assignment]
+        self.executor._polled = counted
         self.executor.rely_on_arrivals()
 
-    def next(self) -> list[str]:
+    def next(self):
         """What the next spin brings that brings anything."""
         return self.graph.until(self.spin, "something to serve")
 
 
 @pytest.fixture
-def watched(graph: Graph) -> Iterator[Watched]:
+def watched(graph):
     watched = Watched(graph)
     yield watched
     watched.node.destroy_node()
 
 
-def test_only_every_sixteenth_spin_polls_where_nothing_arrives(watched: Watched) -> None:
+def test_only_every_sixteenth_spin_polls_where_nothing_arrives(watched):
     watched.service("service")
     for _ in range(3 * QUIET_SPINS):
         watched.spin()
     assert watched.polls == 3
 
 
-def test_a_burst_is_taken_one_a_spin(watched: Watched) -> None:
+def test_a_burst_is_taken_one_a_spin(watched):
     subscription, publisher = watched.subscription("topic")
     watched.spin()
     send(publisher, 1)
@@ -59,14 +55,14 @@ def test_a_burst_is_taken_one_a_spin(watched: Watched) -> None:
     assert [watched.next() for _ in range(3)] == [["topic 1"], ["topic 2"], ["topic 3"]]
 
 
-def test_what_has_arrived_before_it_is_watched_counts(watched: Watched) -> None:
+def test_what_has_arrived_before_it_is_watched_counts(watched):
     service = watched.service("service")
     watched.graph.ask(Empty, "served/service")
     wait_for_arrival(service)
     assert watched.spin() == ["service"]
 
 
-def test_messages_requests_and_goals_are_told(served: Served) -> None:
+def test_messages_requests_and_goals_are_told(served):
     subscription, publisher = served.subscription("topic")
     service = served.service("service")
     server = ActionServer(
@@ -84,9 +80,7 @@ def test_messages_requests_and_goals_are_told(served: Served) -> None:
     server.destroy()
 
 
-def test_where_arrivals_cannot_be_told_every_spin_polls(
-    watched: Watched, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_where_arrivals_cannot_be_told_every_spin_polls(watched, monkeypatch):
     monkeypatch.setattr(Arrivals, "watch", lambda *_: False)
     for _ in range(QUIET_SPINS):
         watched.spin()

@@ -1,14 +1,12 @@
 """Under which of its two names a node serves turtlesim's interfaces."""
 
-from __future__ import annotations
-
 import re
 
 import pytest
 from rcl_interfaces.srv import GetParameters
 
-from tests.graph import Graph
 from tests.programs import Program
+from tests.tiers import others_are_more
 from turtlesim_py.ros import interfaces
 from turtlesim_py.ros.interfaces import NAMES, Interfaces, installed, of_release, usual
 from turtlesim_py.ros.node import TurtlesimNode
@@ -58,8 +56,10 @@ def test_the_classes_are_those_of_the_package():
 
 
 @both
-@pytest.mark.parametrize("package", NAMES)
-def test_a_node_serves_the_one_that_it_is_told_to_and_only_that(graph: Graph, package: str):
+@pytest.mark.parametrize(
+    "package", others_are_more("all other tests of nodes are of it", NAMES, "turtlesim_msgs")
+)
+def test_a_node_serves_the_one_that_it_is_told_to_and_only_that(graph, package):
     namespace = f"/of_{package}"
     arguments = ["-r", f"__ns:={namespace}", "-p", f"interfaces:={package}"]
     kinds = Interfaces.of(package)
@@ -81,15 +81,9 @@ def test_a_node_serves_the_one_that_it_is_told_to_and_only_that(graph: Graph, pa
         goal = graph.done(rotation.send_goal_async(kinds.action.RotateAbsolute.Goal(theta=0.1)))
         assert graph.done(goal.get_result_async()).result.delta == pytest.approx(-0.096)
         graph.call(kinds.srv.Kill, f"{namespace}/kill", name="late")
-        types = [
-            type_
-            for name, types in (
-                *graph.node.get_topic_names_and_types(),
-                *graph.node.get_service_names_and_types(),
-            )
-            if name.startswith(namespace)
-            for type_ in types
-        ]
+        node = graph.node
+        named = (*node.get_topic_names_and_types(), *node.get_service_names_and_types())
+        types = [type_ for name, types in named if name.startswith(namespace) for type_ in types]
         assert {name.partition("/")[0] for name in types} & set(NAMES) == {package}
         values = graph.call(
             GetParameters, f"{namespace}/turtlesim/get_parameters", names=["interfaces"]

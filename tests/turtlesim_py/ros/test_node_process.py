@@ -1,7 +1,5 @@
 """The program turtlesim_node: its arguments, several of them at once, its end."""
 
-from __future__ import annotations
-
 import re
 import signal
 
@@ -15,17 +13,18 @@ from std_srvs.srv import Empty
 from turtlesim.msg import Pose
 from turtlesim.srv import Spawn
 
-from tests.graph import DEADLINE_S, Graph
+from tests.graph import DEADLINE_S
 from tests.programs import Program
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.ros.rclcpp_node import UnusableParameter
 
 
-def simulator(*arguments: str) -> Program:
+def simulator(*arguments):
     return Program("turtlesim_py.ros.node", *arguments)
 
 
-def test_two_nodes_in_two_namespaces_do_not_hear_each_other(graph: Graph) -> None:
+@pytest.mark.more("each name by itself is in test_window and test_interfaces: nodes in namespaces")
+def test_two_nodes_in_two_namespaces_do_not_hear_each_other(graph):
     first = simulator("--ros-args", "-r", "__ns:=/first")
     painter = ["-r", "__ns:=/second", "-r", "__node:=painter", "-p", "holonomic:=true"]
     second = simulator("--ros-args", *painter)
@@ -52,21 +51,26 @@ def test_two_nodes_in_two_namespaces_do_not_hear_each_other(graph: Graph) -> Non
         assert first.stop() == second.stop() == 0
 
 
-def test_it_says_that_it_shows_no_window_and_how_to_see_one() -> None:
-    with simulator("--ros-args", "-r", "__ns:=/unseen") as program:
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_it_well_and_unknown_words_do_not_matter(how):
+    with simulator("--bogus", "word", "--ros-args", "-r", "__ns:=/ended") as program:
         line = program.wait_for_line("shows no window")
         assert line.startswith("[INFO]")
-        for name in ("/unseen/turtlesim/image", "/unseen/turtlesim/save_canvas"):
-            assert name in line
-        assert program.stop() == 0
-
-
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_it_well_and_unknown_words_do_not_matter(how: signal.Signals) -> None:
-    with simulator("--bogus", "word", "--ros-args", "-r", "__ns:=/ended") as program:
+        assert "/ended/turtlesim/image" in line and "/ended/turtlesim/save_canvas" in line
         program.wait_for_line("Spawning turtle [turtle1]")
         assert program.stop(how) == 0
         assert "Traceback" not in program.text()
+
+
+def test_logs_go_to_stderr_and_nothing_to_stdout():
+    level = ["--log-level", "quiet.turtlesim:=debug"]
+    with simulator("--ros-args", "-r", "__ns:=/quiet", *level) as program:
+        line = program.wait_for_line("[DEBUG]")
+        # The original has the namespace in these brackets, and y grows downwards.
+        assert line.endswith("[/quiet]: pos_x: 5.544445 pos_y: 5.544445 theta: 0.000000\n")
+        program.stop()
+        assert program.process.stdout is not None
+        assert program.process.stdout.read() == ""
 
 
 @pytest.mark.parametrize(
@@ -77,9 +81,7 @@ def test_a_signal_ends_it_well_and_unknown_words_do_not_matter(how: signal.Signa
         (["--unknown"], "cannot use the ROS arguments: ['--unknown']"),
     ],
 )
-def test_what_cannot_be_used_is_one_line_and_exit_code_2(
-    arguments: list[str], complaint: str
-) -> None:
+def test_what_cannot_be_used_is_one_line_and_exit_code_2(arguments, complaint):
     with simulator("--ros-args", *arguments) as program:
         assert program.wait() == 2
         (line,) = program.lines
@@ -99,12 +101,13 @@ def test_what_cannot_be_used_is_one_line_and_exit_code_2(
         ("turtle_image:=kame", "turtle_image is 'kame', expected one of ardent, bouncy"),
     ],
 )
-def test_the_line_says_what_was_found_and_what_is_expected(override: str, complaint: str) -> None:
+def test_the_line_says_what_was_found_and_what_is_expected(override, complaint):
     with pytest.raises(UnusableParameter, match=re.escape(complaint)):
         TurtlesimNode(["--ros-args", "-r", "__ns:=/unusable", "-p", override])
 
 
-def test_under_use_sim_time_ticks_and_watchdog_follow_the_clock_topic(graph: Graph) -> None:
+@pytest.mark.more("test_program.py has the pacer with clocks of its own")
+def test_under_use_sim_time_ticks_and_watchdog_follow_the_clock_topic(graph):
     arguments = ["-p", "use_sim_time:=true", "-r", "__ns:=/simulated"]
     with simulator("--ros-args", *arguments) as program:
         graph.meet("simulated.turtlesim")
@@ -115,12 +118,12 @@ def test_under_use_sim_time_ticks_and_watchdog_follow_the_clock_topic(graph: Gra
         assert not poses
         clock = graph.publisher(Clock, "/clock")
 
-        def poses_at(seconds: float, count: int) -> list[Pose]:
+        def poses_at(seconds, count):
             """All poses when the clock says so and `count` have come."""
             message = Clock()
             message.clock.sec, message.clock.nanosec = divmod(round(seconds * 1e9), 10**9)
 
-            def arrived() -> bool:
+            def arrived():
                 clock.publish(message)  # again and again: /clock is best effort
                 return len(poses) >= count
 

@@ -1,10 +1,7 @@
 """A real node's services: what they do, what they answer, what is logged."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 from geometry_msgs.msg import Twist, Vector3
@@ -13,10 +10,9 @@ from rcl_interfaces.msg import Log, Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import Empty, Trigger
 from turtlesim.msg import Color, Pose
-from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+from turtlesim.srv import Kill, Spawn, TeleportAbsolute
 
-from tests.graph import ROSOUT_QOS, Graph, wait_for_arrival
-from tests.programs import Program
+from tests.graph import ROSOUT_QOS, wait_for_arrival
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.world.arena import TICK_NS
 
@@ -25,15 +21,13 @@ WARN = 30
 
 
 @pytest.fixture
-def emptied(graph: Graph, simulator: Program) -> None:
+def emptied(graph, simulator):
     """The simulator with turtle1 alone."""
     graph.call(Empty, "/reset")
 
 
-def test_the_graph_shows_the_originals_services_and_one_for_pictures(
-    graph: Graph, turtle: str
-) -> None:
-    def services() -> dict[str, list[str]]:
+def test_the_graph_shows_the_originals_services_and_one_for_pictures(graph, turtle):
+    def services():
         found = graph.node.get_service_names_and_types_by_node("turtlesim", "/")
         return {name: types for name, types in found if "/_" not in name}
 
@@ -64,17 +58,7 @@ def test_the_graph_shows_the_originals_services_and_one_for_pictures(
     assert of_the_node == of_every_node | {"/turtlesim/save_canvas"}
 
 
-def test_teleports_move_the_turtle(graph: Graph, turtle: str) -> None:
-    poses = graph.listen(Pose, f"/{turtle}/pose")
-    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=2.0, y=3.0, theta=0.5)
-    graph.until(lambda: poses and (poses[-1].x, poses[-1].y) == (2.0, 3.0), "the first place")
-    graph.call(TeleportRelative, f"/{turtle}/teleport_relative", linear=1.0, angular=-0.5)
-    graph.until(lambda: (poses[-1].x, poses[-1].theta) == (3.0, 0.0), "the second place")
-
-
-def test_simultaneous_requests_of_one_service_are_executed_one_a_tick(
-    graph: Graph, turtle: str
-) -> None:
+def test_simultaneous_requests_of_one_service_are_executed_one_a_tick(graph, turtle):
     poses = graph.listen(Pose, f"/{turtle}/pose")
     graph.until(lambda: poses, "a pose")
     places = [1.0, 2.0, 3.0, 4.0]
@@ -86,7 +70,7 @@ def test_simultaneous_requests_of_one_service_are_executed_one_a_tick(
     assert [pose.x for pose in poses if pose.y == 5.0][: len(places)] == places
 
 
-def test_of_many_requests_of_one_service_the_last_ten_are_kept(graph: Graph) -> None:
+def test_of_many_requests_of_one_service_the_last_ten_are_kept(graph):
     node = TurtlesimNode(["--ros-args", "-r", "__ns:=/crowded"])
     name = "/crowded/spawn"
     for number in range(15):
@@ -100,14 +84,7 @@ def test_of_many_requests_of_one_service_the_last_ten_are_kept(graph: Graph) -> 
     node.destroy_node()
 
 
-def test_set_pen_changes_what_is_drawn(graph: Graph, turtle: str) -> None:
-    colors = graph.listen(Color, f"/{turtle}/color_sensor")
-    graph.call(SetPen, f"/{turtle}/set_pen", r=10, g=20, b=30, width=9, off=0)
-    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=7.0, y=5.5)
-    graph.until(lambda: colors and (colors[-1].r, colors[-1].g, colors[-1].b) == (10, 20, 30), "it")
-
-
-def test_a_spawned_turtle_is_logged_and_lives(graph: Graph, simulator: Program) -> None:
+def test_a_spawned_turtle_is_logged_and_lives_until_it_is_killed(graph, simulator):
     begin = len(simulator.lines)
     assert graph.call(Spawn, "/spawn", x=1.5, y=2.5, theta=0.5, name="eve").name == "eve"
     line = simulator.wait_for_line("[eve]", begin)
@@ -117,34 +94,32 @@ def test_a_spawned_turtle_is_logged_and_lives(graph: Graph, simulator: Program) 
     graph.until(lambda: poses, "a pose")
     assert (poses[0].x, poses[0].y, poses[0].theta) == (1.5, 2.5, 0.5)
     graph.call(Kill, "/kill", name="eve")
+    count, services = graph.node.count_publishers, graph.node.get_service_names_and_types
+    graph.until(lambda: count("/eve/pose") == count("/eve/color_sensor") == 0, "its end")
+    graph.until(lambda: "/eve" not in str(services()), "its services' end")
 
 
 @pytest.mark.usefixtures("emptied")
-def test_a_turtle_without_a_name_gets_the_next_free_number(graph: Graph) -> None:
+def test_a_turtle_without_a_name_gets_the_next_free_number(graph):
     assert graph.call(Spawn, "/spawn", x=1.0, y=1.0).name == "turtle2"
     graph.call(Kill, "/kill", name="turtle1")
     assert graph.call(Spawn, "/spawn", x=1.0, y=1.0).name == "turtle3"
     graph.call(Empty, "/reset")
 
 
-def test_a_name_that_is_taken_is_answered_with_none(graph: Graph, simulator: Program) -> None:
+def test_a_name_that_is_taken_and_one_that_nobody_has_are_errors_in_the_log(graph, simulator):
     assert graph.call(Spawn, "/spawn", x=1.0, y=1.0, name="turtle1").name == ""
     line = simulator.wait_for_line("A turtle named [turtle1] already exists")
     assert line.startswith("[ERROR]")
-
-
-def test_killing_nobody_is_an_error_in_the_log_only(graph: Graph, simulator: Program) -> None:
     assert graph.call(Kill, "/kill", name="nobody") == Kill.Response()
     line = simulator.wait_for_line("Tried to kill turtle [nobody], which does not exist")
     assert line.startswith("[ERROR]")
 
 
 @pytest.mark.parametrize(
-    "name", ["bad name", "1abc", "a-b", "é", "~x", "a/", "/", "{nothing}", "n" * 250, "a\nb"]
+    "name", ["bad name", "1abc", "é", "~x", "/", "{nothing}", "n" * 250, "a\nb"]
 )
-def test_an_invalid_name_is_an_error_and_the_node_lives_on(
-    graph: Graph, simulator: Program, name: str
-) -> None:
+def test_an_invalid_name_is_an_error_and_the_node_lives_on(graph, simulator, name):
     begin = len(simulator.lines)
     assert graph.call(Spawn, "/spawn", x=1.0, y=1.0, name=name).name == ""
     line = simulator.wait_for_line("Cannot spawn a turtle named [", begin)
@@ -159,34 +134,19 @@ def test_an_invalid_name_is_an_error_and_the_node_lives_on(
         ("/abs", "/abs"),
         ("~/x", "/turtlesim/x"),
         ("{node}", "/turtlesim"),
-        ("_u", "/_u"),
-        ("a__b", "/a__b"),
-        ("Turtle", "/Turtle"),
+        ("a__B", "/a__B"),
     ],
 )
 @pytest.mark.usefixtures("simulator")
-def test_every_name_that_topics_can_have_is_good(graph: Graph, name: str, prefix: str) -> None:
+def test_every_name_that_topics_can_have_is_good(graph, name, prefix):
     assert graph.call(Spawn, "/spawn", x=1.0, y=1.0, name=name).name == name
     poses = graph.listen(Pose, f"{prefix}/pose")
     graph.until(lambda: poses, "a pose")
     graph.call(Kill, "/kill", name=name)
 
 
-def test_a_killed_turtle_leaves_the_graph(graph: Graph, simulator: Program) -> None:
-    graph.call(Spawn, "/spawn", x=1.0, y=1.0, name="gone")
-    count = graph.node.count_publishers
-    graph.until(lambda: count("/gone/pose") == 1, "the turtle")
-    graph.call(Kill, "/kill", name="gone")
-    graph.until(lambda: count("/gone/pose") == count("/gone/color_sensor") == 0, "its end")
-    graph.until(
-        lambda: "/gone" not in str(graph.node.get_service_names_and_types()), "its services' end"
-    )
-
-
 @pytest.mark.usefixtures("emptied")
-def test_reset_leaves_one_turtle_in_the_centre_and_an_empty_canvas(
-    graph: Graph, simulator: Program
-) -> None:
+def test_reset_leaves_one_turtle_in_the_centre_and_an_empty_canvas(graph, simulator):
     graph.call(Spawn, "/spawn", x=1.0, y=1.0, name="other")
     graph.call(TeleportAbsolute, "/turtle1/teleport_absolute", x=1.0, y=1.0)
     begin = len(simulator.lines)
@@ -199,7 +159,7 @@ def test_reset_leaves_one_turtle_in_the_centre_and_an_empty_canvas(
     assert poses[-1].x == poses[-1].y == 5.544444561004639
 
 
-def test_clear_wipes_what_was_drawn(graph: Graph, simulator: Program, turtle: str) -> None:
+def test_clear_wipes_what_was_drawn(graph, simulator, turtle):
     colors = graph.listen(Color, f"/{turtle}/color_sensor")
     graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=7.0, y=5.5)
     graph.until(lambda: colors and colors[-1].g == 184, "paint")
@@ -209,17 +169,15 @@ def test_clear_wipes_what_was_drawn(graph: Graph, simulator: Program, turtle: st
     graph.until(lambda: colors[-1].g == 255, "none")
 
 
-def test_hitting_the_wall_warns_in_every_tick_and_on_rosout(
-    graph: Graph, simulator: Program, turtle: str
-) -> None:
-    logs: list[Log] = graph.listen(Log, "/rosout", ROSOUT_QOS)
+def test_hitting_the_wall_warns_in_every_tick_and_on_rosout(graph, simulator, turtle):
+    logs = graph.listen(Log, "/rosout", ROSOUT_QOS)
     graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=11.0, y=5.5)
     begin = len(simulator.lines)
     command = Twist(linear=Vector3(x=2.0))
     graph.publisher(Twist, f"/{turtle}/cmd_vel").publish(command)
     text = "Oh no! I hit the wall! (Clamping from [x="
 
-    def warnings() -> list[Log]:
+    def warnings():
         return [log for log in logs if text in log.msg]
 
     graph.until(lambda: len(warnings()) >= 10, "ten warnings on /rosout")
@@ -227,55 +185,35 @@ def test_hitting_the_wall_warns_in_every_tick_and_on_rosout(
     assert simulator.wait_for_line(text, begin).startswith("[WARN]")
 
 
-def test_logs_go_to_stderr_and_nothing_to_stdout() -> None:
-    level = ["--log-level", "quiet.turtlesim:=debug"]
-    with Program("turtlesim_py.ros.node", "--ros-args", "-r", "__ns:=/quiet", *level) as program:
-        program.wait_for_line("Spawning turtle [turtle1]")
-        line = program.wait_for_line("[DEBUG]")
-        # The original has the namespace in these brackets, and y grows downwards.
-        assert line.endswith("[/quiet]: pos_x: 5.544445 pos_y: 5.544445 theta: 0.000000\n")
-        program.stop()
-        assert program.process.stdout is not None
-        assert program.process.stdout.read() == ""
+def test_save_canvas_writes_numbered_pictures_and_through_no_link(graph, simulator, tmp_path):
+    def saved():
+        answer = graph.call(Trigger, "/turtlesim/save_canvas")
+        assert answer.success
+        return Path(answer.message)
 
-
-def test_save_canvas_writes_numbered_pictures(graph: Graph, simulator: Program) -> None:
-    first: Any = graph.call(Trigger, "/turtlesim/save_canvas")
-    second: Any = graph.call(Trigger, "/turtlesim/save_canvas")
-    assert first.success and second.success
-    paths = [Path(first.message), Path(second.message)]
+    paths = [saved(), saved()]
     assert all(re.fullmatch(r"canvas_\d{3}\.png", path.name) for path in paths)
     assert paths[0].name < paths[1].name
     with Image.open(paths[0]) as image:
         assert (image.size, image.mode) == ((500, 500), "RGB")
         assert image.getpixel((0, 0)) == (69, 86, 255)
+    paths[1].unlink()
+    paths[1].symlink_to(tmp_path / "elsewhere.png")
+    assert saved().name > paths[1].name
+    assert not (tmp_path / "elsewhere.png").exists()
+    paths[1].unlink()
 
 
 @pytest.mark.parametrize("folder", ["~nosuchuser/x", "/dev/null", "/proc/nothing", "x" * 5000])
-def test_save_canvas_says_where_it_cannot_write(
-    graph: Graph, simulator: Program, folder: str
-) -> None:
-    def choose(name: str) -> None:
+def test_save_canvas_says_where_it_cannot_write(graph, simulator, folder):
+    def choose(name):
         value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=name)
         parameters = [Parameter(name="canvas_folder", value=value)]
         answer = graph.call(SetParameters, "/turtlesim/set_parameters", parameters=parameters)
         assert answer.results[0].successful
 
     choose(folder)
-    answer: Any = graph.call(Trigger, "/turtlesim/save_canvas")
+    answer = graph.call(Trigger, "/turtlesim/save_canvas")
     choose(".")
     assert not answer.success
     assert answer.message.startswith("cannot write the canvas to ")
-
-
-def test_save_canvas_writes_through_no_link(
-    graph: Graph, simulator: Program, tmp_path: Path
-) -> None:
-    first: Any = graph.call(Trigger, "/turtlesim/save_canvas")
-    taken = Path(first.message)
-    taken.unlink()
-    taken.symlink_to(tmp_path / "elsewhere.png")
-    again: Any = graph.call(Trigger, "/turtlesim/save_canvas")
-    assert Path(again.message).name > taken.name
-    assert not (tmp_path / "elsewhere.png").exists()
-    taken.unlink()

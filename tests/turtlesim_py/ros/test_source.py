@@ -1,7 +1,5 @@
 """Where ROS is missing, or is there twice, every command says so in one line."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -9,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.tiers import others_are_more
 from turtlesim_py.ros import source
 
 ROOT = Path(__file__).parents[3]
@@ -30,9 +29,7 @@ sys.argv[0] = "command"
 """
 
 
-def call(
-    code: str, *arguments: str, folder: Path, shim: str = WITHOUT_ROS, **env: str
-) -> subprocess.CompletedProcess[str]:
+def call(code, *arguments, folder, shim=WITHOUT_ROS, **env):
     return subprocess.run(
         [sys.executable, "-P", "-c", shim + code, *arguments],
         cwd=folder,
@@ -45,20 +42,20 @@ def call(
 GRADER = "from grader.__main__ import main; main()"
 
 
+ROBOT = "import robot_py.commands as c; sys.exit(c.robot_state_publisher())"
+COMMANDS = [
+    ("turtlesim_node", "import turtlesim_py.commands as c; sys.exit(c.turtlesim_node())", []),
+    ("turtle_controller", "import turtlesim_challenge as c; c.main()", []),
+    ("grader run", GRADER, ["run", "x.py"]),
+    ("robot_state_publisher", ROBOT, []),
+    ("grader batch", GRADER, ["batch", "x", "--out", "y"]),
+    ("grader check-exercise", GRADER, ["check-exercise", "talker"]),
+]
+
+
 @pytest.mark.parametrize(
     ("command", "code", "arguments"),
-    [
-        ("turtlesim_node", "import turtlesim_py.commands as c; sys.exit(c.turtlesim_node())", []),
-        (
-            "robot_state_publisher",
-            "import robot_py.commands as c; sys.exit(c.robot_state_publisher())",
-            [],
-        ),
-        ("turtle_controller", "import turtlesim_challenge as c; c.main()", []),
-        ("grader run", GRADER, ["run", "x.py"]),
-        ("grader batch", GRADER, ["batch", "x", "--out", "y"]),
-        ("grader check-exercise", GRADER, ["check-exercise", "talker"]),
-    ],
+    others_are_more("they begin as these do", COMMANDS, *(name for name, *_ in COMMANDS[:3])),
 )
 def test_without_ros_a_command_says_which_extra_brings_it(command, code, arguments, tmp_path):
     done = call(code, *arguments, folder=tmp_path)
@@ -113,7 +110,7 @@ def test_a_sourced_ros_that_this_python_does_not_find(tmp_path):
 
 
 @pytest.fixture
-def prefix(tmp_path, monkeypatch) -> Path:
+def prefix(tmp_path, monkeypatch):
     """Another environment, into which releases of ROS have been installed."""
     monkeypatch.setattr(sys, "prefix", str(tmp_path / "environment"))
     return tmp_path / "environment" / source.BROUGHT
@@ -123,19 +120,17 @@ def test_ros_of_this_environment_is_fine():
     assert source.complaint() is None
 
 
-def test_two_releases_in_one_environment(prefix):
-    prefix.mkdir(parents=True)
-    for release in ("kilted", "jazzy"):
-        (prefix / release).touch()
-    assert "(turtlesim-py-jazzy, turtlesim-py-kilted)" in str(source.complaint())
-
-
-def test_a_ros_from_elsewhere_beside_that_of_the_environment(prefix, monkeypatch):
+def test_a_ros_from_elsewhere_or_a_second_release_beside_that_of_the_environment(
+    prefix, monkeypatch
+):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     assert source.complaint() is None
     prefix.mkdir(parents=True)
     (prefix / "jazzy").touch()
     assert "two ROS 2 found" in str(source.complaint())
+    monkeypatch.delenv("ROS_DISTRO")
+    (prefix / "kilted").touch()
+    assert "(turtlesim-py-jazzy, turtlesim-py-kilted)" in str(source.complaint())
 
 
 def test_an_rclpy_for_another_python(tmp_path, monkeypatch):

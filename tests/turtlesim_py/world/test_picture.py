@@ -27,13 +27,6 @@ def over(background, pixels):
     return (color * alpha + np.array(background) * (255 - alpha) + 127) // 255
 
 
-def test_an_empty_window_shows_the_background():
-    picture = window(background=(1, 2, 3))
-    assert picture.shape == (500, 500, 3)
-    assert picture.dtype == np.uint8
-    assert (picture == (1, 2, 3)).all()
-
-
 def test_the_path_lies_on_the_background():
     canvas = Canvas()
     canvas.draw_line(100.0, 100.0, 200.0, 100.0, Pen(9, 8, 7, 2))
@@ -41,21 +34,15 @@ def test_the_path_lies_on_the_background():
     painted = canvas.rgba()[..., 3] == 255
     assert (picture[painted] == (9, 8, 7)).all()
     assert (picture[~painted] == BLUE).all()
-
-
-def test_white_paint_is_not_taken_for_background():
-    canvas = Canvas()
     canvas.draw_line(100.0, 100.0, 200.0, 100.0, Pen(255, 255, 255, 2))
     assert tuple(render(canvas, BLUE, [])[100, 150]) == (255, 255, 255)
-
-
-def test_the_canvas_stays_as_it_is():
-    canvas = Canvas()
+    assert (window(background=(1, 2, 3)) == (1, 2, 3)).all()
+    before = canvas.rgba()
     render(canvas, BLUE, [Sprite(MIDDLE, MIDDLE, 0.0, "iron")])
-    assert (canvas.rgba()[..., 3] == 0).all()
+    assert (canvas.rgba() == before).all()
 
 
-@pytest.mark.parametrize("name", SPRITES)
+@pytest.mark.parametrize("name", ["ardent", "rolling"])
 @pytest.mark.parametrize(("heading_rad", "quarter_turns"), [(0.0, -1), (-PI, 1), (-PI / 2.0, 2)])
 def test_a_turtle_looks_along_its_heading(name, heading_rad, quarter_turns):
     """To the right, to the left, down: the pictures look up, and `np.rot90` turns to the left."""

@@ -52,13 +52,13 @@ def test_any_line_stays_inside_the_image_and_paints_no_pixel_twice(ax, ay, bx, b
     assert all(0 <= column < 500 for _, column in painted)
 
 
-@pytest.mark.parametrize("width", [0, 1, 2, 3, 255])
-@pytest.mark.parametrize("place", range(4))
+@pytest.mark.parametrize("width", [0, 1, 255])
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), float("-inf")])
-def test_a_coordinate_that_is_not_finite_draws_nothing(value, place, width):
-    line = [100.0, 110.0, 120.0, 130.0]
-    line[place] = value
-    assert spans(*line, width) == []
+def test_a_coordinate_that_is_not_finite_draws_nothing(value, width):
+    for place in range(4):
+        line = [100.0, 110.0, 120.0, 130.0]
+        line[place] = value
+        assert spans(*line, width) == []
 
 
 @given(st.integers(100, 1900), st.integers(100, 1900), st.integers(2, 40))
