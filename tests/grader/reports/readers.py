@@ -1,7 +1,5 @@
 """Strict readers: what a course system would make of a format. Each returns the total score."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import io
@@ -11,7 +9,6 @@ import re
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import jsonschema
 import xmlschema
@@ -23,32 +20,32 @@ LOADING = {"src", "href", "srcset", "poster", "data", "action", "formaction", "x
 
 
 @cache
-def schema(name: str) -> dict[str, Any]:
-    loaded: dict[str, Any] = json.loads((CONTRACTS / f"{name}.schema.json").read_text())
+def schema(name):
+    loaded = json.loads((CONTRACTS / f"{name}.schema.json").read_text())
     return loaded
 
 
 @cache
-def junit_schema() -> xmlschema.XMLSchema:
+def junit_schema():
     return xmlschema.XMLSchema(str(CONTRACTS / "junit.xsd"))
 
 
-def strict_json(content: str) -> Any:
-    def refuse(constant: str) -> None:
+def strict_json(content):
+    def refuse(constant):
         raise ValueError(f"{constant} is not JSON")
 
-    def distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    def distinct(pairs):
         assert len({key for key, _ in pairs}) == len(pairs)
         return dict(pairs)
 
     return json.loads(content, parse_constant=refuse, object_pairs_hook=distinct)
 
 
-def total(parts: list[float]) -> float:
+def total(parts):
     return round(math.fsum(parts), 2)
 
 
-def gradescope(content: str) -> float:
+def gradescope(content):
     document = strict_json(content)
     jsonschema.validate(document, schema("gradescope"))
     assert document["score"] == total([test["score"] for test in document["tests"]])
@@ -56,7 +53,7 @@ def gradescope(content: str) -> float:
     return document["score"]
 
 
-def classroom50(content: str) -> int:
+def classroom50(content):
     document = strict_json(content)
     jsonschema.validate(document, schema("classroom50"))
     tests = document["tests"]
@@ -66,7 +63,7 @@ def classroom50(content: str) -> int:
     return document["score"]
 
 
-def prairielearn(content: str) -> float:
+def prairielearn(content):
     assert len(content.encode()) <= 1_000_000
     document = strict_json(content)
     jsonschema.validate(document, schema("prairielearn"))
@@ -76,7 +73,7 @@ def prairielearn(content: str) -> float:
     return points
 
 
-def autolab(content: str) -> float:
+def autolab(content):
     assert content.endswith("\n")
     before, last = content[:-1].split("\n")
     for line, part in ((before, "feedback"), (last, "autoresult")):
@@ -84,7 +81,7 @@ def autolab(content: str) -> float:
     return total(list(strict_json(last)["scores"].values()))
 
 
-def moodle_vpl(content: str) -> float:
+def moodle_vpl(content):
     """As VPL's `proposedgrade` and `proposedcomment` do."""
     lines = content.split("\n")
     grades = [line.removeprefix("Grade :=>>") for line in lines if line.startswith("Grade :=>>")]
@@ -103,14 +100,14 @@ def moodle_vpl(content: str) -> float:
     return float(grades[0])
 
 
-def csv_table(content: str) -> float:
+def csv_table(content):
     header, row = list(csv.reader(io.StringIO(content), strict=True))
     assert len(set(header)) == len(header) == len(row)
     assert not [cell for cell in row if cell.startswith(("=", "@", "+", "\t", "\r"))]
     return float(dict(zip(header, row, strict=True))["score"])
 
 
-def junit(content: str) -> float:
+def junit(content):
     junit_schema().validate(content)
     suite = next(iter(xmlschema.XMLResource(content).root))
     properties = {p.get("name"): p.get("value") for p in suite.iter("property")}
@@ -126,14 +123,14 @@ def junit(content: str) -> float:
     return points
 
 
-def github_autograding(content: str) -> float:
+def github_autograding(content):
     assert content.count("\n") == 1
     document = strict_json(base64.b64decode(content.strip(), validate=True).decode())
     jsonschema.validate(document, schema("github_autograding"))
     return total([test["score"] for test in document["tests"]])
 
 
-def markdown(content: str) -> float:
+def markdown(content):
     """Every HTML token is ours, there are no links or pictures, and one well-formed table."""
     tokens = MarkdownIt("gfm-like", {"linkify": False}).parse(content)
     inline = [child for token in tokens for child in token.children or []]
@@ -151,7 +148,7 @@ def markdown(content: str) -> float:
     return float(first.rsplit(": ", 1)[1].split(" of ")[0])
 
 
-def terminal(content: str) -> float:
+def terminal(content):
     assert not re.search(r"[\x00-\x09\x0b-\x1f\x7f-\x9f]", content)
     assert not re.search(r"::(error|warning|set-output|stop-commands|add-mask)\b", content)
     return float(content.rstrip().rsplit("Score: ", 1)[1].split(" of ")[0])
@@ -160,32 +157,32 @@ def terminal(content: str) -> float:
 class Page(HTMLParser):
     """Checks that every tag is closed in order, and takes down what a page would load."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         super().__init__(convert_charrefs=True)
-        self.open: list[str] = []
-        self.ids: list[str] = []
-        self.anchors: list[str] = []
-        self.loads: list[str] = []
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.text: list[str] = []
+        self.open = []
+        self.ids = []
+        self.anchors = []
+        self.loads = []
+        self.tags = []
+        self.text = []
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag, attrs):
         assert len({name for name, _ in attrs}) == len(attrs), f"an attribute twice in <{tag}>"
         if tag not in VOID:
             self.open.append(tag)
         self._note(tag, dict(attrs))
 
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_startendtag(self, tag, attrs):
         self._note(tag, dict(attrs))
 
-    def handle_endtag(self, tag: str) -> None:
+    def handle_endtag(self, tag):
         assert self.open, f"</{tag}> without a beginning"
         assert self.open.pop() == tag
 
-    def handle_data(self, data: str) -> None:
+    def handle_data(self, data):
         self.text.append(data)
 
-    def _note(self, tag: str, attrs: dict[str, str | None]) -> None:
+    def _note(self, tag, attrs):
         self.tags.append((tag, attrs))
         assert not [name for name in attrs if name.startswith("on")], "a script in an attribute"
         if attrs.get("id"):
@@ -195,7 +192,7 @@ class Page(HTMLParser):
             (self.anchors if value.startswith("#") else self.loads).append(value)
 
 
-def balanced(content: str) -> Page:
+def balanced(content):
     page = Page()
     page.feed(content)
     page.close()
@@ -203,7 +200,7 @@ def balanced(content: str) -> Page:
     return page
 
 
-def html(content: str) -> float:
+def html(content):
     assert len(content.encode()) < 2_000_000
     page = balanced(content)
     assert len(set(page.ids)) == len(page.ids)

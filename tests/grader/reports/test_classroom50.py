@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 from decimal import ROUND_HALF_UP, Decimal
 
@@ -38,17 +36,9 @@ def test_who_and_what_come_from_the_environment(environment):
     assert found["submission"] == samples.CLASSROOM50["SUBMISSION_TAG"]
     assert found["commit"] == samples.CLASSROOM50["COMMIT_URL"]
     assert found["review"] == samples.CLASSROOM50["REVIEW_URL"]
-
-
-def test_points_are_whole_and_the_exact_ones_stand_beside_them(environment):
-    environment()
-    found = document()
     assert (found["score"], found["max-score"]) == (18, 40)
     draws = found["tests"][1]
     assert (draws["score"], draws["exact-score"], draws["passed"]) == (8, 8.33, False)
-
-
-def test_the_owner_can_come_as_username_and_the_review_as_the_commit(environment):
     environment(OWNER="", USERNAME="grace", REVIEW_URL="", ASSIGNMENT_TYPE="")
     found = document()
     assert (found["owner"], found["assignment_type"]) == ("grace", "individual")
@@ -76,26 +66,14 @@ def whole(*pairs):
     return whole_points(samples.report(*verdicts).verdicts)
 
 
-def test_whole_points_stay_as_they_are():
+def test_points_become_whole():
     assert whole((5, 5), (0, 25), (20, 20)) == ([5, 0, 20], [5, 25, 20])
-
-
-def test_the_points_that_rounding_down_loses_go_where_most_was_lost():
-    # 33.33 + 8.4 + 2.3 = 44.03
-    scores, _ = whole((33.33, 50), (8.4, 10), (2.3, 5))
-    assert scores == [33, 9, 2]
-
-
-def test_the_total_is_rounded_half_up():
+    # 33.33 + 8.4 + 2.3 = 44.03: what rounding down loses goes where most was lost
+    assert whole((33.33, 50), (8.4, 10), (2.3, 5))[0] == [33, 9, 2]
     assert sum(whole((12.5, 30), (70, 70))[0]) == 83
     assert sum(whole((12.49, 30), (70, 70))[0]) == 82
-
-
-def test_checks_worth_a_fraction_multiply_everything():
+    # where checks are worth a fraction, everything is multiplied
     assert whole((2.5, 2.5), (1.25, 5)) == ([25, 13], [25, 50])
-
-
-def test_nothing_judged_is_nothing():
     assert whole_points([]) == ([], [])
 
 

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import csv as stdlib_csv
 import io
 
@@ -22,9 +20,8 @@ def test_one_row_a_submission_with_points_and_verdict_of_each_check():
     assert (first["draws"], first["draws verdict"]) == ("8.33", "failed")
     assert (first["rests"], first["rests verdict"]) == ("0", "not judged")
     assert first["first_to_mend"] == "draws: Rationale of draws."
-
-
-def test_results_of_different_exercises_share_a_table():
+    (row,) = rows(samples.report(diagnosis=samples.diagnosis()))
+    assert row["first_to_mend"].startswith("crashed: You crashed at 6.0 s (drive.py, line 39).")
     first, second = rows(samples.report(verdict("a")), samples.report(verdict("b")))
     assert (first["a"], first["b"], first["b verdict"]) == ("10", "", "")
     assert (second["a"], second["b"]) == ("", "10")

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from xml.etree import ElementTree
 
 from grader.reports import junit
@@ -17,12 +15,8 @@ def cases(report):
 
 def test_passed_failed_and_not_judged_are_told_apart():
     kinds = [[child.tag for child in case] for case in cases(samples.report())]
-    assert kinds == [
-        ["system-out"],
-        ["failure", "system-out"],
-        ["failure", "system-out"],
-        ["skipped", "system-out"],
-    ]
+    out = "system-out"
+    assert kinds == [[out], ["failure", out], ["failure", out], ["skipped", out]]
 
 
 def test_marks_of_xml_come_out_as_they_went_in():
@@ -36,12 +30,8 @@ def test_the_picture_is_attached_to_what_failed_if_it_lies_in_the_project(tmp_pa
     path = samples.graded(tmp_path / "graded", drive(Spiral(), ticks=200))
     monkeypatch.chdir(tmp_path)
     said = [case.findtext("system-out") for case in cases(read_report(path))]
-    assert ["[[ATTACHMENT|graded/canvas.png]]" in text for text in said] == [
-        False,
-        True,
-        True,
-        False,
-    ]
+    attached = ["[[ATTACHMENT|graded/canvas.png]]" in text for text in said]
+    assert attached == [False, True, True, False]
     monkeypatch.chdir(tmp_path / "graded" / "recording")
     assert "ATTACHMENT" not in junit.render(read_report(path))
 

@@ -1,7 +1,5 @@
 """A report is told in the reader's language; what a machine reads in it is the same in all."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

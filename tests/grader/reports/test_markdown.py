@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from itertools import pairwise
 
 import pytest
@@ -44,11 +42,10 @@ def test_a_rationale_begins_no_list_title_or_code(text):
 def test_an_address_becomes_no_link_and_nobody_is_notified():
     text = "see http://evil.example or www.evil.example, and ask @somebody or me@evil.example"
     content = markdown.render(samples.report(verdict("x", "failed", 0, rationale=text)))
-    # What GitHub makes links and notifications from.
-    assert "http://" not in content
-    assert "www." not in content
-    assert "@somebody" not in content
-    assert "@evil" not in content
+    # what GitHub makes links and notifications from
+    for words in ("http://", "www.", "@somebody", "@evil"):
+        assert words not in content
+    assert content.endswith("\n")  # it can be appended
 
 
 def test_the_table_has_a_row_for_each_verdict_and_the_total():
@@ -67,7 +64,3 @@ def test_printed_fences_do_not_end_the_fence(tmp_path):
     assert "<h1>" not in html
     assert html.count("</details>") == 1
     assert "&lt;/details&gt;" in html
-
-
-def test_it_ends_with_a_line_break_so_that_it_can_be_appended():
-    assert markdown.render(samples.report()).endswith("\n")

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import pytest
 
 from grader.reports import moodle_vpl
@@ -20,18 +18,9 @@ from tests.grader.reports.samples import evidence, verdict
     ],
 )
 def test_nothing_that_a_submission_says_is_a_grade(text):
-    report = samples.report(
-        verdict(
-            f"a{text}",
-            "failed",
-            3,
-            title=text,
-            rationale=text,
-            help=text,
-            evidence=[evidence(text)],
-        ),
-        submission=text,
-    )
+    words = dict.fromkeys(("title", "rationale", "help"), text)
+    judged = verdict(f"a{text}", "failed", 3, **words, evidence=[evidence(text)])
+    report = samples.report(judged, submission=text)
     content = moodle_vpl.render(report)
     assert readers.moodle_vpl(content) == 3
     assert (content.count(":=>>"), content.count("<|--"), content.count("--|>")) == (1, 1, 1)

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import io
 import re
 from pathlib import Path
@@ -18,10 +16,12 @@ def shown(result, width=80):
     return out.getvalue()
 
 
-def test_the_first_line_is_the_first_thing_to_mend_uncut():
-    rationale = "word " * 60
+@pytest.mark.parametrize("rationale", ["word " * 60, "[bold]x[/bold] [/red] [1]"])
+def test_the_first_line_is_the_first_thing_to_mend_uncut_and_as_it_is(rationale):
     text = shown(samples.result(verdict("a", "failed", 0, rationale=rationale)))
     assert text.splitlines()[0] == f"Fix this first: {rationale.strip()}"
+    text = shown(samples.result(verdict("a")))
+    assert text.startswith("Nothing to fix: the only check passed.\n")
 
 
 def test_the_verdict_is_there_before_any_file_is_written(capfd):
@@ -40,30 +40,16 @@ def test_in_a_terminal_the_first_line_is_wrapped_at_words():
     report = samples.report(verdict("a", "failed", 0, rationale="word " * 60))
     terminal.show(report, Console(file=out, width=80, force_terminal=True, color_system=None))
     lines = out.getvalue().splitlines()
-    assert {word for line in lines[:4] for word in line.split()} == {
-        "Fix",
-        "this",
-        "first:",
-        "word",
-    }
+    assert {*" ".join(lines[:4]).split()} == {"Fix", "this", "first:", "word"}
     assert max(map(len, lines)) <= 80
-
-
-def test_with_nothing_to_mend_the_first_line_says_so():
-    text = shown(samples.result(verdict("a")))
-    assert text.startswith("Nothing to fix: the only check passed.\n")
 
 
 @pytest.mark.parametrize("width", [80, 120])
 def test_it_stays_within_the_terminal(width):
-    text = shown(samples.result(*[verdict(f"check_{i}", title="word " * 12) for i in range(7)]))
+    verdicts = [verdict(f"a_long_name_of_check_{i}", title="word " * 20) for i in range(7)]
+    text = shown(samples.result(*verdicts), width)
     assert max(map(len, text.splitlines())) <= width
-
-
-def test_names_and_points_are_whole_at_80_columns():
-    text = shown(samples.result(verdict("a_long_name_of_a_check", title="word " * 20)))
-    assert "a_long_name_of_a_check" in text
-    assert "10 / 10" in text
+    assert "a_long_name_of_check_6" in text and "10 / 10" in text
 
 
 def test_at_80_columns_a_usual_check_is_one_line():
@@ -100,11 +86,8 @@ def test_no_advice_of_a_check_contradicts_the_first_line():
     assert "Help for a." not in text
     assert "Help for c." not in text
     assert "→ Help for b." in text  # of a run in which there was no such cause
-
-
-def test_advice_that_the_first_line_repeats_stays():
-    found = samples.diagnosis(key="check", check="a")
-    assert "→ Help for a." in shown(samples.result(verdict("a", "failed", 0), diagnosis=found))
+    repeated = samples.diagnosis(key="check", check="a")
+    assert "→ Help for a." in shown(samples.result(verdict("a", "failed", 0), diagnosis=repeated))
 
 
 def test_what_several_checks_say_stands_once_below_their_titles():
@@ -123,32 +106,22 @@ def test_a_check_without_a_title_is_called_by_its_name():
     assert "✗ a: 0 / 10" in text
 
 
-def test_partial_credit_and_what_a_check_waits_for_are_shown():
+def test_partial_credit_notes_and_what_a_check_waits_for_are_shown():
     text = shown(samples.result())
     assert "8.33 / 10" in text
     assert "partial credit" in text
     assert "“Title of stops” did not pass: rests (10 points)" in text
     assert "Score: 18.33 of 40" in text
-
-
-def test_a_check_that_waits_for_none_says_why_it_is_not_judged():
-    text = shown(samples.result(verdict("a", "not_judged", 0, rationale="The run was spoiled.")))
-    assert "– Title of a: 0 / 10\n  The run was spoiled." in text
-
-
-def test_markup_is_shown_and_not_obeyed():
-    text = shown(samples.result(verdict("a", "failed", 0, rationale="[bold]x[/bold] [/red] [1]")))
-    assert text.startswith("Fix this first: [bold]x[/bold] [/red] [1]\n")
+    flagged = samples.run(flags=["seen twice"])
+    assert "Note: seen twice" in shown(samples.result(run=flagged))
+    spoiled = verdict("a", "not_judged", 0, rationale="The run was spoiled.")
+    assert "– Title of a: 0 / 10\n  The run was spoiled." in shown(samples.result(spoiled))
 
 
 def test_a_submission_cannot_speak_to_the_runner_of_a_ci_system():
     rationale = "x\n::error file=a.py::boo ::stop-commands::t ##[error]no ##vso[task.x]"
     lines = shown(samples.result(verdict("a", "failed", 0, rationale=rationale)), 20).splitlines()
     assert not [line for line in lines if "::" in line or "##" in line]
-
-
-def test_flags_of_the_run_are_notes():
-    assert "Note: seen twice" in shown(samples.result(run=samples.run(flags=["seen twice"])))
 
 
 def test_colours_say_nothing_that_the_words_do_not():

@@ -1,7 +1,5 @@
 """What is to be told apart has the contrast of WCAG 2.2: text as in 1.4.3, the rest in 1.4.11."""
 
-from __future__ import annotations
-
 import re
 from itertools import product
 from pathlib import Path
@@ -14,7 +12,7 @@ CSS = (Path(html.__file__).parent / "templates" / "page.css").read_text(encoding
 TEXT, OTHER = 4.5, 3.0
 
 
-def variables(block: str) -> dict[str, str]:
+def variables(block):
     return dict(re.findall(r"--([\w-]+): (#\w+);", block))
 
 
@@ -22,26 +20,20 @@ _light, _dark = re.findall(r":root \{\s*(--paper.*?)\}", CSS, re.DOTALL)[:2]
 SCHEMES = {"light": variables(_light), "dark": {**variables(_light), **variables(_dark)}}
 
 
-def rgb(color: str) -> tuple[int, ...]:
-    digits = color[1:]
-    if len(digits) == 3:
-        digits = "".join(2 * digit for digit in digits)
-    return tuple(bytes.fromhex(digits))
-
-
-def luminance(color: str) -> float:
+def luminance(color):
     """Relative luminance, as WCAG 2.2 defines it."""
-    parts = [part / 255 for part in rgb(color)]
+    digits = color[1:] if len(color) == 7 else "".join(2 * digit for digit in color[1:])
+    parts = [part / 255 for part in bytes.fromhex(digits)]
     red, green, blue = (p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts)
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
-def contrast(one: str, other: str) -> float:
+def contrast(one, other):
     darker, lighter = sorted((luminance(one), luminance(other)))
     return (lighter + 0.05) / (darker + 0.05)
 
 
-def stroke(selector: str) -> str:
+def stroke(selector):
     (color,) = re.findall(rf"^{re.escape(selector)} {{ stroke: (#\w+);", CSS, re.MULTILINE)
     return color
 

@@ -1,7 +1,5 @@
 """The page as a browser shows and prints it."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 

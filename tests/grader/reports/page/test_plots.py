@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 
@@ -66,11 +64,14 @@ def test_a_spike_of_one_tick_survives_the_thinning():
     )
 
 
-def test_service_calls_are_counted_and_keep_their_colours(shown):
+def test_service_calls_are_counted_keep_their_colours_and_are_listed_in_words(shown):
     (calls,) = shown.calls
     assert calls.name == "set_pen"
     assert {mark.color for mark in calls.marks} == {"#ffffff", "#ff0000", "#00ff00", "#0000ff"}
     assert calls.count == len(calls.marks)
+    assert calls.has_text and calls.has_place
+    assert str(calls.rows[1].text).startswith("red (255, 0, 0)")
+    assert str(calls.rows[1].where) == "top left (quadrant II)"
 
 
 def test_a_flood_of_calls_is_counted_in_full_and_drawn_sparsely():
@@ -80,14 +81,6 @@ def test_a_flood_of_calls_is_counted_in_full_and_drawn_sparsely():
     assert len(calls.marks) <= 401
     assert len(calls.rows) == 12
     assert calls.rows[1].time_ns / 1e9 == pytest.approx(2 * TICK_S)
-
-
-def test_calls_are_listed_in_words_too(shown):
-    (calls,) = shown.calls
-    assert calls.has_text
-    assert calls.has_place
-    assert str(calls.rows[1].text).startswith("red (255, 0, 0)")
-    assert str(calls.rows[1].where) == "top left (quadrant II)"
 
 
 def test_values_without_end_do_not_break_a_plot():
@@ -100,13 +93,10 @@ def test_values_without_end_do_not_break_a_plot():
     assert shown.curves[2].summary.endswith("1e+30 rad/s")
 
 
-def test_a_turtle_that_stands_still_has_flat_curves():
-    shown = plots_of(drive(lambda *_: None, ticks=900))
-    assert shown.curves[1].summary == "Speed: from 0 to 0 m/s"
-    assert shown.calls == ()
-
-
-def test_nothing_recorded_has_no_plots():
+def test_nothing_recorded_has_no_plots_and_a_turtle_that_stands_still_flat_ones():
     curve = Curve(plain_text("Speed"), "m/s", np.zeros(0, np.int64), np.zeros(0))
     assert plots(View(), TICK_NS) is None
     assert plots(View(curves=(curve,)), 0) is None
+    still = plots_of(drive(lambda *_: None, ticks=900))
+    assert still.curves[1].summary == "Speed: from 0 to 0 m/s"
+    assert still.calls == ()

@@ -1,7 +1,5 @@
 """Templates are compiled once; where that cannot be kept, or was spoiled, each time."""
 
-from __future__ import annotations
-
 import sys
 
 import jinja2
@@ -43,12 +41,12 @@ def test_a_template_that_changed_is_compiled_anew(templates):
     assert len(kept(templates)) == 1
 
 
-@pytest.mark.parametrize("keep", [0, 3, 30])
-def test_a_damaged_file_is_no_harm(templates, keep):
-    rendered(templates)
-    (path,) = kept(templates)
-    path.write_bytes(path.read_bytes()[:keep])
-    assert rendered(templates) == "<p>alice</p>"
+def test_a_damaged_file_is_no_harm(templates):
+    for size in (0, 3, 30):
+        rendered(templates)
+        (path,) = kept(templates)
+        path.write_bytes(path.read_bytes()[:size])
+        assert rendered(templates) == "<p>alice</p>"
 
 
 def test_where_nothing_can_be_kept_it_works_all_the_same(templates, monkeypatch):

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -52,22 +50,17 @@ def test_ink_has_the_pens_colour_and_gaps_where_it_was_off():
     assert track.lifted().count("M") == 1
 
 
-def test_other_turtles_are_drawn_from_when_they_are_there():
+def test_other_turtles_are_drawn_from_when_they_are_there_and_what_was_cleared_is_known():
     def controller(tick, pose, arena):
         if tick == 50:
             arena.spawn(2.0, 3.0, 0.0, "another")
-
-    _, second = animation_of(drive(controller, ticks=100)).tracks
-    assert np.isnan(second.x[:48]).all()
-    assert second.x[-1] == pytest.approx(90)
-
-
-def test_what_was_cleared_is_known():
-    def controller(tick, pose, arena):
-        if tick == 50:
             arena.clear()
 
-    assert animation_of(drive(controller, ticks=100)).cleared == (49,)
+    shown = animation_of(drive(controller, ticks=100))
+    assert (shown.background, shown.cleared) == ("#4556ff", (49,))
+    _, second = shown.tracks
+    assert np.isnan(second.x[:48]).all()
+    assert second.x[-1] == pytest.approx(90)
 
 
 def test_the_rest_is_where_the_turtle_stands_at_the_end():
@@ -76,7 +69,3 @@ def test_the_rest_is_where_the_turtle_stands_at_the_end():
     assert rest.time_s > 30
     assert animation_of(drive(Spiral(), ticks=300)).rest is None
     assert animation_of(drive(lambda *_: None, ticks=10)).rest is None
-
-
-def test_the_background_is_what_lies_below_the_ink():
-    assert animation_of(drive(Spiral(), ticks=200)).background == "#4556ff"
