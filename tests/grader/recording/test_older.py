@@ -1,7 +1,5 @@
 """Recordings made while rosbags wrote and read them: still read, judged and reported."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path
@@ -16,7 +14,7 @@ FOLDER = Path(__file__).parent / "of_rosbags"
 
 
 @pytest.mark.parametrize("name", ["turtles", "talker"])
-def test_it_is_read_and_means_the_same_when_it_is_written_again(name: str, tmp_path: Path) -> None:
+def test_it_is_read_and_means_the_same_when_it_is_written_again(name, tmp_path):
     older = reading.load(FOLDER / name)  # which compares the hash of its trace
     saving.save_all(Recordings(older), tmp_path / "again")
     again = reading.load(tmp_path / "again")
@@ -26,7 +24,7 @@ def test_it_is_read_and_means_the_same_when_it_is_written_again(name: str, tmp_p
             assert (tmp_path / "again" / file).read_bytes() == (FOLDER / name / file).read_bytes()
 
 
-def test_it_is_judged_and_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_is_judged_and_reported(tmp_path, capsys):
     folder = shutil.copytree(FOLDER / "talker", tmp_path / "graded" / "recording")
     result = tmp_path / "result.json"
     assert cli.main(["check", str(folder), "--exercise", "talker", "--json", str(result)]) == 0

@@ -1,38 +1,40 @@
 """A trace survives the way from one process to another, and nothing else is taken for one."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from dataclasses import replace
 from struct import pack as packed
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.recording.transfer import pack, unpack
 from grader.scenes.turtlesim.scene import SCENE
 from grader.scenes.turtlesim.trace import TurtleTrace
+from tests.conftest import EXAMPLES
 from tests.grader.driving import Spiral, drive
 from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_events, odd_traces
 from turtlesim_py.world.events import KINDS
 
 
 @pytest.fixture(scope="module")
-def trace() -> TurtleTrace:
+def trace():
     return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
 
 
-def there(trace: TurtleTrace) -> TurtleTrace:
+def there(trace):
     return TurtleTrace.of(unpack(pack(trace, SCENE), SCENE))
 
 
 # There and back -------------------------------------------------------------------------------
 
 
-def test_an_unpacked_trace_equals_the_packed_one(trace):
+def test_an_unpacked_trace_equals_the_packed_one_and_equal_ones_have_equal_bytes(trace):
     assert_same_trace(there(trace), trace)
+    again = TurtleTrace.of(drive(Spiral(), ticks=100).trace)
+    assert pack(again, SCENE) == pack(trace, SCENE)
+    assert again.sha256() == trace.sha256()
 
 
 @given(odd=odd_traces())
@@ -41,18 +43,13 @@ def test_odd_traces_survive_bit_for_bit(odd):
 
 
 @pytest.mark.parametrize("op", KINDS)
+@settings(max_examples=EXAMPLES or 10)
 @given(data=st.data())
 def test_every_kind_of_event_survives(trace, op, data):
     short = replace(trace, trajectories={}, canvas=trace.canvas[:1], window=trace.window[:1])
     event = data.draw(odd_events(op))
     odd = replace(short, ticks=max(event.tick, 0), events=(event,))
     assert_same_trace(there(odd), odd)
-
-
-def test_equal_traces_have_equal_bytes(trace):
-    again = TurtleTrace.of(drive(Spiral(), ticks=100).trace)
-    assert pack(again, SCENE) == pack(trace, SCENE)
-    assert again.sha256() == trace.sha256()
 
 
 def test_names_that_no_file_could_have_survive(trace):
@@ -73,7 +70,7 @@ class Trap:
         return setattr, (Trap, "done", True)
 
 
-def changed(trace: TurtleTrace, **changes: object) -> bytes:
+def changed(trace, **changes):
     """The bytes of a trace with some of its head changed; None takes one away."""
     whole = pack(trace, SCENE)
     end = 8 + int.from_bytes(whole[:8], "little")
@@ -96,7 +93,7 @@ def test_nothing_is_unpickled(trace):
     assert not Trap.done
 
 
-@pytest.mark.parametrize("part", [0, 0.001, 0.1, 0.5, 0.9, 0.999])
+@pytest.mark.parametrize("part", [0, 0.001, 0.5, 0.999])
 def test_a_truncated_trace_is_none(trace, part):
     whole = pack(trace, SCENE)
     with pytest.raises(ValueError, match="no trace of turtlesim"):
@@ -106,17 +103,9 @@ def test_a_truncated_trace_is_none(trace, part):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"duration_ns": None},
-        {"duration_ns": "many"},
-        {"duration_ns": 3},
-        {"topics": None},
-        {"topics": []},
-        {"topics": ["/turtle1/pose"]},
-        {"topics": [["/chatter", "std_msgs/msg/Int8"]]},
-        {"messages": None},
-        {"messages": -1},
-        {"messages": 10**9},
-        {"messages": "all"},
+        *({"duration_ns": value} for value in (None, "many", 3)),
+        *({"topics": value} for value in (None, [], ["/a"], [["/a", "std_msgs/msg/Int8"]])),
+        *({"messages": value} for value in (None, -1, 10**9, "all")),
     ],
 )
 def test_a_head_of_another_trace_is_refused(trace, changes):

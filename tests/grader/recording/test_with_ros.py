@@ -1,11 +1,8 @@
-"""Where ROS is sourced: rosbag2_py reads what was recorded, and ros2 bag describes and plays it."""
-
-from __future__ import annotations
+"""Where ROS is sourced: rosbag2_py reads what was recorded, and ros2 bag plays it."""
 
 import shutil
 import subprocess
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 import rclpy
@@ -25,44 +22,34 @@ TOPIC = "/turtle1/cmd_vel"
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bag") / "recording"
     saving.save_all(Recordings(drive(Spiral(), ticks=60)), folder)
     return folder
 
 
 @pytest.fixture(scope="module")
-def messages(folder: Path) -> dict[str, list[bytes]]:
+def messages(folder):
     channels = bag.read_channels(folder / "recording.mcap")
     return {channel.topic: list(channel.messages()) for channel in channels}
 
 
-def test_rosbag2_py_reads_every_message(folder: Path, messages: dict[str, list[bytes]]) -> None:
+def test_rosbag2_py_reads_every_message(folder, messages):
     import rosbag2_py
 
     reader = rosbag2_py.SequentialReader()
     storage = rosbag2_py.StorageOptions(uri=str(folder), storage_id="mcap")
     reader.open(storage, rosbag2_py.ConverterOptions("cdr", "cdr"))
     assert {topic.name for topic in reader.get_all_topics_and_types()} == set(messages)
-    found: dict[str, list[bytes]] = {topic: [] for topic in messages}
+    found = {topic: [] for topic in messages}
     while reader.has_next():
         topic, data, _ = reader.read_next()
         found[topic].append(bytes(data))
     assert found == messages
 
 
-def test_ros2_bag_info_tells_of_every_topic(folder: Path, messages: dict[str, list[bytes]]) -> None:
-    call = ["ros2", "bag", "info", folder]
-    said = subprocess.run(call, capture_output=True, text=True, check=True).stdout
-    for topic, found in messages.items():
-        (line,) = (line for line in said.splitlines() if f"Topic: {topic} " in line)
-        assert f"| Count: {len(found)} " in line
-
-
-def test_ros2_bag_play_publishes_the_commands(
-    folder: Path, messages: dict[str, list[bytes]]
-) -> None:
-    heard: list[Twist] = []
+def test_ros2_bag_play_publishes_the_commands(folder, messages):
+    heard = []
     context = rclpy.Context()
     rclpy.init(context=context)
     executor = SingleThreadedExecutor(context=context)

@@ -1,11 +1,8 @@
 """Python's zstd and the C library read each other's frames, and refuse the same."""
 
-from __future__ import annotations
-
 import ctypes
 import random
 import sys
-from collections.abc import Iterator
 
 import pytest
 
@@ -16,14 +13,14 @@ DATA = random.Random(1).randbytes(5_000) * 40
 
 
 @pytest.fixture(params=["python", "c_library"])
-def one(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+def one(request, monkeypatch):
     if request.param == "c_library":
         monkeypatch.setattr(zstd, "python", lambda: None)
     return str(request.param)
 
 
 @pytest.fixture
-def without_any(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def without_any(monkeypatch):
     monkeypatch.setattr(zstd, "python", lambda: None)
     monkeypatch.setattr(zstd, "_LIBRARY", "libnone.so.1")
     monkeypatch.setitem(sys.modules, "backports.zstd", None)
@@ -32,13 +29,13 @@ def without_any(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     zstd.c_library.cache_clear()
 
 
-def test_both_are_there() -> None:
+def test_both_are_there():
     assert zstd.python() is not None
     assert isinstance(zstd.c_library(), ctypes.CDLL)
 
 
 @pytest.mark.parametrize("data", [b"", b"x", DATA], ids=["nothing", "a byte", "much"])
-def test_each_reads_what_the_other_writes(data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_reads_what_the_other_writes(data, monkeypatch):
     by_python = zstd.compress(data)
     with monkeypatch.context() as patch:
         patch.setattr(zstd, "python", lambda: None)
@@ -48,7 +45,7 @@ def test_each_reads_what_the_other_writes(data: bytes, monkeypatch: pytest.Monke
     assert len(by_c) < 10_000
 
 
-def test_what_is_of_another_size_or_damaged_is_refused(one: str) -> None:
+def test_what_is_of_another_size_or_damaged_is_refused(one):
     packed = zstd.compress(DATA)
     assert zstd.decompress(packed, len(DATA)) == DATA
     wrong = [
@@ -62,6 +59,6 @@ def test_what_is_of_another_size_or_damaged_is_refused(one: str) -> None:
             zstd.decompress(data, size)
 
 
-def test_without_any_one_line_says_how_to_get_it(without_any: None) -> None:
+def test_without_any_one_line_says_how_to_get_it(without_any):
     with pytest.raises(GraderFailure, match=r"backports.zstd is missing .*'backports.zstd>=1'"):
         zstd.compress(b"x")

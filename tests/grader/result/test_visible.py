@@ -1,7 +1,5 @@
 """What a student sees of a result depends on nothing that is hidden from him."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
