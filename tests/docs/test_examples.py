@@ -1,7 +1,5 @@
 """The examples in the docs run as they stand there, one after the other, in an empty folder."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil
@@ -46,16 +44,21 @@ def run_examples(page, folder):
     return left
 
 
-@pytest.mark.timeout(300)
 def test_an_exercise_can_be_written_as_the_page_says(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run_examples("write-an-exercise.md", tmp_path)["result"].exercise == "corner"
     shown = capsys.readouterr().out.strip()
     assert f"# {shown}\n" in (ROOT / "docs" / "write-an-exercise.md").read_text(encoding="utf-8")
+    assert not list(tmp_path.rglob("*.pyc"))
+
+
+@pytest.mark.more("check_exercise has tests of its own: a grading for each solution")
+def test_the_exercise_of_the_page_stands_its_check(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run_examples("write-an-exercise.md", tmp_path)
     found = check_exercise("./corner")
     assert [str(problem) for problem in found.problems] == []
     assert found.catches == {"moves": ("says_nothing",), "arrives": ("stops_too_early",)}
-    assert not list(tmp_path.rglob("*.pyc"))
 
 
 def environment_with(package, folder):
@@ -72,7 +75,7 @@ def environment_with(package, folder):
     return python
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.more("test_a_scene_of_others.py has another one: an environment, and two gradings")
 def test_a_scene_can_be_written_as_the_page_says(tmp_path):
     run_examples("write-a-scene.md", tmp_path)
     scene = (tmp_path / "lamp" / "lamp.py").read_text(encoding="utf-8")
@@ -91,7 +94,7 @@ def test_a_scene_can_be_written_as_the_page_says(tmp_path):
     assert len(hashes) == 1
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.more("test_grading.py calls the same functions: three gradings")
 def test_the_api_can_be_used_as_the_page_says(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     quick = ROOT / "tests" / "submissions" / "quick_spiral.py"

@@ -1,7 +1,5 @@
 """The site: what is laid out for it, and how it serves its readers."""
 
-from __future__ import annotations
-
 import threading
 import tomllib
 from functools import partial
@@ -52,7 +50,7 @@ def test_the_sheet_of_an_exercise_is_the_one_that_students_get(tmp_path):
 
 
 class Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, *_: object) -> None:
+    def log_message(self, *_):
         pass
 
 
@@ -83,7 +81,7 @@ def test_the_site_has_a_sheet_for_each_exercise_and_each_public_name():
 @pytest.mark.parametrize(("width", "scheme"), [(375, "dark"), (1280, "light")])
 def test_everybody_can_use_the_site(browser, address, width, scheme):
     page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme=scheme)
-    asked: list[str] = []
+    asked = []
     page.on("request", lambda request: asked.append(request.url))
     for name in ("index", "docs/course-ci", "exercises/talker", "gallery/index", "api"):
         page.goto(f"{address}/{name}.html")

@@ -1,7 +1,5 @@
 """examples/batch: a class on many machines, held against what their documents say."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess
@@ -12,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BATCH = ROOT / "examples" / "batch"
 
 
-def test_the_workflow_has_its_actions_pinned() -> None:
+def test_the_workflow_has_its_actions_pinned():
     used = re.findall(r"uses: (\S+)", (BATCH / "github" / "grade-class.yml").read_text())
     (template,) = (ROOT / "grader" / "course" / "templates" / "github").rglob("grade.yml")
     known = template.read_text()
@@ -20,7 +18,7 @@ def test_the_workflow_has_its_actions_pinned() -> None:
     assert [action for action in used if f"uses: {action} " not in known] == []
 
 
-def test_the_script_for_dask_jobqueue_ends_with_what_the_grading_says(tmp_path: Path) -> None:
+def test_the_script_for_dask_jobqueue_ends_with_what_the_grading_says(tmp_path):
     (tmp_path / "dask_jobqueue.py").write_text(
         "class SLURMCluster:\n"
         "    scheduler_address = 'tcp://10.0.0.1:8786'\n"

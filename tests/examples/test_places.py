@@ -1,7 +1,5 @@
 """examples/devcontainer, docker and pixi: what can be run of them without docker and conda."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess
@@ -12,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
 
 
-def test_what_they_run_is_shell() -> None:
+def test_what_they_run_is_shell():
     text = (EXAMPLES / "docker" / "Dockerfile").read_text(encoding="utf-8")
     lines = re.sub(r"(?m)^#.*\n", "", text).replace("\\\n", " ").splitlines()
     container = (EXAMPLES / "devcontainer" / "devcontainer.json").read_text(encoding="utf-8")
@@ -23,7 +21,7 @@ def test_what_they_run_is_shell() -> None:
         subprocess.run(["sh", "-n", "-c", command], check=True)
 
 
-def test_pixi_requires_what_we_require() -> None:
+def test_pixi_requires_what_we_require():
     pixi = tomllib.loads((EXAMPLES / "pixi" / "pixi.toml").read_text(encoding="utf-8"))
     ours = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     required = {}

@@ -1,7 +1,5 @@
 """Each topic and field that a layout for another viewer names is in a recording."""
 
-from __future__ import annotations
-
 import json
 import xml.etree.ElementTree as ElementTree
 
@@ -9,9 +7,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from grader.recording import saving
-from grader.recording.recording import Recordings
-from tests.grader.driving import Spiral, drive
+from tests import archive
 from tests.programs import ROOT
 
 LAYOUTS = ROOT / "examples" / "viewers"
@@ -19,11 +15,14 @@ FOXGLOVE = json.loads((LAYOUTS / "foxglove.json").read_text())
 
 
 @pytest.fixture(scope="module")
-def messages(tmp_path_factory):
+def recorded():
+    return archive.folder("turtlesim_challenge", "right") / "recording.mcap"
+
+
+@pytest.fixture(scope="module")
+def messages(recorded):
     """Topic -> a decoded message and the name of its schema."""
-    made = tmp_path_factory.mktemp("recorded") / "recording"
-    saving.save_all(Recordings(drive(Spiral())), made)
-    with (made / "recording.mcap").open("rb") as file:
+    with recorded.open("rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         return {
             channel.topic: (message, schema.name)
@@ -31,7 +30,7 @@ def messages(tmp_path_factory):
         }
 
 
-def strings(value: object):
+def strings(value):
     """Every text in a layout."""
     if isinstance(value, str):
         yield value
@@ -43,7 +42,7 @@ def strings(value: object):
             yield from strings(inner)
 
 
-def paths(layout: str) -> list[str]:
+def paths(layout):
     if layout == "foxglove.json":
         return [text for text in strings(FOXGLOVE["configById"]) if text.startswith("/")]
     root = ElementTree.parse(LAYOUTS / layout).getroot()
@@ -66,13 +65,12 @@ def test_every_panel_has_its_place_and_every_place_its_panel():
     assert set(strings(FOXGLOVE["layout"])) - {"row", "column"} == set(FOXGLOVE["configById"])
 
 
-def test_types_are_well_known_and_times_are_ticks(messages, tmp_path):
+def test_types_are_well_known_and_times_are_ticks(recorded, messages):
     assert {schema for _, schema in messages.values()} <= {
         *("turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"),
         *("std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"),
     }
-    saving.save_all(Recordings(drive(Spiral())), tmp_path / "recording")
-    with (tmp_path / "recording" / "recording.mcap").open("rb") as file:
+    with recorded.open("rb") as file:
         times = [message.log_time for _, _, message in make_reader(file).iter_messages()]
     assert times == sorted(times)
     assert all(time % 16_000_000 == 0 for time in times)

@@ -1,7 +1,5 @@
 """Scripts and benchmarks, which hardly anything else runs, fit the code that they use."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -22,7 +20,7 @@ for name in sys.argv[2:]:
 
 
 @pytest.mark.parametrize("folder", ["benchmarks", "scripts"])
-def test_every_tool_finds_what_it_imports(folder: str) -> None:
+def test_every_tool_finds_what_it_imports(folder):
     names = sorted({path.stem for path in (ROOT / folder).glob("*.py")} - LEFT_OUT)
     command = [sys.executable, "-c", IMPORT, str(ROOT / folder), *names]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)

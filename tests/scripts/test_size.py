@@ -1,12 +1,10 @@
 """scripts/size.py: what it counts, and what it finds in a project of a few files."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
 
-import pytest
+from tests.files import lay
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "size.py"
 FILES = {
@@ -27,20 +25,15 @@ FILES = {
 }
 
 
-@pytest.fixture(scope="module")
-def printed(tmp_path_factory: pytest.TempPathFactory) -> str:
-    folder = tmp_path_factory.mktemp("project")
-    for name, text in FILES.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
+def test_what_git_tracks_of_the_product_is_counted_and_class_names_that_stand_twice_are_shown(
+    tmp_path,
+):
+    folder = lay(tmp_path, FILES)
     subprocess.run(["git", "init", "-q"], cwd=folder, check=True)
     subprocess.run(["git", "add", "."], cwd=folder, check=True)
     (folder / "untracked.py").write_text("class Run:\n    pass\n")
     command = [sys.executable, str(SCRIPT), str(folder)]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
-
-
-def test_tests_students_programs_and_files_that_git_does_not_track_are_not_counted(printed):
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     counts = {row.split()[0]: row.split()[1:] for row in printed.splitlines()[1:9]}
     assert counts == {
         "all": ["24", "8"],
@@ -52,9 +45,6 @@ def test_tests_students_programs_and_files_that_git_does_not_track_are_not_count
         "tf2": ["2", "1"],
         "world": ["9", "1"],
     }
-
-
-def test_class_names_that_stand_twice_are_shown_apart_from_those_of_ros(printed):
     assert "class names in several modules: 1\n" in printed
     assert "  Run: grader/run/run.py, world/turtle.py\n" in printed
     assert "doubles of ROS's API besides: Pose\n" in printed
