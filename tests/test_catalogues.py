@@ -1,7 +1,5 @@
 """The catalogues: each translation has its sentence's values; `make catalogues` keeps them."""
 
-from __future__ import annotations
-
 import json
 import re
 import runpy
@@ -23,7 +21,7 @@ FILES = [
 _PERCENT = re.compile(r"%(?:\(\w+\))?[a-z]")
 
 
-def values(text: str) -> set[tuple[str, ...]]:
+def values(text):
     """The names in a sentence, each with its format; argparse's as they are."""
     fields = string.Formatter().parse(text) if "{" in text else ()
     # !u: a capital at the start, which not every language has
@@ -36,7 +34,7 @@ def values(text: str) -> set[tuple[str, ...]]:
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(ROOT)))
-def test_each_translation_has_the_values_of_its_sentence(file: Path) -> None:
+def test_each_translation_has_the_values_of_its_sentence(file):
     number = {("n", form, "") for form in ("", ",")}  # "one pin" has none
     wrong = {
         key: form
@@ -47,7 +45,7 @@ def test_each_translation_has_the_values_of_its_sentence(file: Path) -> None:
     assert wrong == {}
 
 
-def test_a_translation_is_kept_while_its_sentence_is_there_and_what_lacks_one_is_printed() -> None:
+def test_a_translation_is_kept_while_its_sentence_is_there_and_what_lacks_one_is_printed():
     there = {"a": "â", "gone": "perdu", "{n} b": ["un b", "{n} b"], "filled in later": ""}
     sentences = ["new", "a", "", ("{n} b", "{n} bs"), ("{n} c", "{n} cs"), "filled in later"]
     kept, missing = SCRIPT["update"](there, sentences)
@@ -87,7 +85,7 @@ SENTENCES = {
 
 
 @pytest.mark.parametrize("reader", SENTENCES)
-def test_sentences_are_found_in(reader: str, tmp_path: Path) -> None:
+def test_sentences_are_found_in(reader, tmp_path):
     source, sentences, *pairs = SENTENCES[reader]
     (tmp_path / "file").write_text(source)
     assert set(SCRIPT[reader](tmp_path / "file")) == {*sentences, *pairs}

@@ -3,8 +3,6 @@
 The live page is in tests/turtlesim_py/live.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
@@ -15,7 +13,6 @@ from grader.reports import ErrorReport
 from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.result.error import ErrorResult
-from grader_robots.scene.driving import drive as drive_robot
 from tests.barriers import barriers
 from tests.browser import needs_browser, open_browser
 from tests.grader.batch.page.classes import entry, result
@@ -23,15 +20,13 @@ from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
 from tests.grader_robots.reports.test_parts import package_trace, page_of
-from tests.grader_robots.scene.robots import walks
-from tests.grader_robots.scene.test_view import URDF
 
 pytestmark = needs_browser
 
 FAULT = verdict("stops", "failed", 0, evidence=[evidence("too far", 30.0, run=1)])
 
 
-def report_of_turtles(folder) -> str:
+def report_of_turtles(folder):
     good = drive(Spiral(), 700)
     verdicts = (verdict("starts", evidence=[evidence("it starts", 0.16)]), FAULT)
     return html.render(
@@ -39,22 +34,18 @@ def report_of_turtles(folder) -> str:
     )
 
 
-def report_of_a_crash(folder) -> str:
+def report_of_a_crash(folder):
     short = drive(Spiral(), 125)
     run = replace(short.run, outcome="crashed", exit_code=1)
     recording = replace(short, run=run, output="Traceback (most recent call last):\nNameError")
     return html.render(read_report(samples.graded(folder, recording, FAULT)))
 
 
-def report_of_a_robot(folder) -> str:
-    return page_of(folder, drive_robot(walks, 400, URDF), "robot", FAULT)
-
-
-def report_of_a_package(folder) -> str:
+def report_of_a_package(folder):
     return page_of(folder, package_trace(), "package", FAULT)
 
 
-def page_of_a_class(folder) -> str:
+def page_of_a_class(folder):
     told = "NameError: Zoë is not 1"
     class_of_three = [
         entry("zoe17", result({"moves": 0.0}, told), name="Zoë Müller"),
@@ -66,7 +57,7 @@ def page_of_a_class(folder) -> str:
     ]
 
 
-def page_without_a_result(folder) -> str:
+def page_without_a_result(folder):
     error = ErrorResult("submission", "Found no .py file; hand in one.", 100)
     return html.render_error(ErrorReport(error, folder))
 
@@ -82,7 +73,6 @@ def browser():
     [
         report_of_turtles,
         report_of_a_crash,
-        pytest.param(report_of_a_robot, marks=pytest.mark.more("a package's has all its parts")),
         report_of_a_package,
         page_of_a_class,
         page_without_a_result,
@@ -112,7 +102,6 @@ FAULTY = {
 }
 
 
-@pytest.mark.more("it tries the trial: what nobody changes with a page")
 @pytest.mark.parametrize("fault", FAULTY)
 def test_a_barrier_of_each_kind_is_found(fault, browser):
     page = browser.new_page(reduced_motion="reduce")
