@@ -1,7 +1,5 @@
 """Right controllers of any style keep all points; one with a fault loses what that concerns."""
 
-from __future__ import annotations
-
 import random
 from dataclasses import replace
 
@@ -11,6 +9,7 @@ from grader.exercise.loading import load_exercise
 from tests.conftest import EXAMPLES
 from tests.searches.controllers import FAULTS, lost, some_style
 
+pytestmark = pytest.mark.more("a search; each check has units of its own")
 EXERCISE = load_exercise("turtlesim_challenge")
 
 
