@@ -146,6 +146,7 @@ def test_a_package_that_is_missing_is_named_with_the_bounds_of_pyproject():
         assert dependencies("test")[name] == wanted
 
 
+@pytest.mark.more("starts the grader; what is imported is read from the sources")
 def test_what_is_not_in_package_xml_is_hidden_from_these_tests(shell):
     code = (
         "import numpy, rclpy\n"
@@ -158,6 +159,7 @@ def test_what_is_not_in_package_xml_is_hidden_from_these_tests(shell):
     assert call.stdout == "hidden\n" * 3, call.stderr
 
 
+@pytest.mark.more("starts the grader; what is imported is read from the sources")
 def test_every_verb_has_help(shell):
     verbs = ("run", "check", "report", "new")
     common, *own = shell.graders(("--help",), *((verb, "--help") for verb in verbs))
@@ -165,17 +167,20 @@ def test_every_verb_has_help(shell):
     assert all(verb in common for verb in verbs)
 
 
+@pytest.mark.more("starts the grader; what is imported is read from the sources")
 def test_new_makes_a_solution(shell):
     shell.grader("new", "my_solution")
     assert (shell.folder / "my_solution" / "package.xml").exists()
 
 
+@pytest.mark.more("starts the grader; what is imported is read from the sources")
 def test_run_and_check_judge_the_reference_alike(shell, graded):
     shell.grader("check", graded, "--json", "again.json", "--exercise", "one_run.yaml")
     results = [graded / "result.json", shell.folder / "again.json"]
     assert [json.loads(path.read_text())["score"] for path in results] == [100, 100]
 
 
+@pytest.mark.more("starts the grader; what is imported is read from the sources")
 def test_every_other_format_is_written(shell, graded):
     forms = sorted(set(names()) - {"html"})
     result = str(graded / "result.json")
@@ -183,5 +188,6 @@ def test_every_other_format_is_written(shell, graded):
     assert [form for form, text in zip(forms, said, strict=True) if text] == forms
 
 
+@pytest.mark.more("starts the grader; what is imported is read from the sources")
 def test_the_page_is_written(shell, graded):
     assert "<svg" in shell.grader("report", graded / "result.json", "--format", "html").stdout

@@ -21,6 +21,7 @@ from interfaces.build import PACKAGES
 
 from .conftest import ROOT, Environment
 
+pytestmark = pytest.mark.more("builds wheels; test_install_script.py has what is installed when")
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 RELEASES = ("jazzy", "kilted")
 
@@ -182,7 +183,6 @@ def test_where_ros_is_sourced_nothing_of_ours_stands_for_a_package_of_ros(
     assert call.stdout == "[] []\n", call.stderr
 
 
-@pytest.mark.more("builds two wheels")
 def test_a_deleted_module_is_not_in_the_next_wheel(
     checkout: Path, ros_sourced: Environment
 ) -> None:
