@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import os
 import re
-import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
+import pytest
+
+from grader.batch import grade, pool
+from grader.cli import main
+from grader.run.processes import levels
+from tests.programs import ROOT
+
+CONTROLLER = (ROOT / "tests" / "submissions" / "square_controller.py").read_text(encoding="utf-8")
 #: Only what hangs takes so long [s].
 DEADLINE_S = 240.0
 #: When it was run, and how long that took.
@@ -17,6 +26,11 @@ CLOCKS = re.compile(rb'("wall_s"|"date"): [^,\n]+')
 OF_ALL = ("class.json", "gradebook.csv", "gradebook.jsonl", "index.html")
 #: Of each student; the page tells how long the run took, as the result does.
 EACH = ("entry.json", "result.json", "output.txt", "canvas.png")
+ENV = {
+    **os.environ,
+    "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
+    "PYTHONUNBUFFERED": "1",
+}
 
 
 @dataclass(frozen=True)
@@ -26,24 +40,29 @@ class Class:
     handed_in: Path
     exercise: Path
 
-    def grade(self, out: Path, *words: str) -> subprocess.CompletedProcess[str]:
-        """`grader batch`, to its end."""
-        command = self.command(out, *words)
-        return subprocess.run(
-            command, env=ENV, text=True, capture_output=True, timeout=DEADLINE_S, check=False
-        )
-
-    def command(self, out: Path, *words: str) -> list[str]:
-        """The words of the call."""
-        common = [str(self.handed_in), "--out", str(out), "--exercise", str(self.exercise)]
-        return [sys.executable, "-P", "-m", "grader", "batch", *common, *words]
+    def words(self, out: Path) -> tuple[Path | str, ...]:
+        """What `grader batch` is to be told."""
+        return self.handed_in, "--out", out, "--exercise", self.exercise
 
 
-ENV = {
-    **os.environ,
-    "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
-    "PYTHONUNBUFFERED": "1",
-}
+def command(*words: Path | str) -> list[str]:
+    """`grader batch` as a process."""
+    return [sys.executable, "-P", "-m", "grader", "batch", *map(str, words)]
+
+
+def batch(*words: Path | str) -> tuple[int, str]:
+    """Call `grader batch` in this process; the exit code, and what it said."""
+    said = io.StringIO()
+    with redirect_stdout(said), redirect_stderr(said):
+        # one at a time: another worker of the tests has the other core
+        code = main(["batch", *map(str, words), "--jobs", "1"])
+    return code, said.getvalue()
+
+
+def work_here(patch: pytest.MonkeyPatch) -> None:
+    """Have the workers' work done in this process: a start of one takes longer than most of it."""
+    patch.setattr(levels, "_only", "")
+    patch.setattr(pool, "work", lambda tasks, *_, **__: ((t, grade.done(t)) for t in tasks))
 
 
 def told(out: Path) -> dict[str, bytes]:
@@ -53,3 +72,9 @@ def told(out: Path) -> dict[str, bytes]:
     return {
         path.relative_to(out).as_posix(): CLOCKS.sub(rb"\1: -", path.read_bytes()) for path in files
     }
+
+
+def rows(path: Path) -> dict[str, dict[str, str]]:
+    """Return the rows of a table by their first column."""
+    found = csv.DictReader(path.read_text("utf-8-sig").splitlines())
+    return {next(iter(row.values())): row for row in found}

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import io
 import shutil
-from contextlib import redirect_stderr, redirect_stdout
+import subprocess
 from functools import partial
 from pathlib import Path
 
 import pytest
 
-from grader.cli import main
 from tests import once
+from tests.files import lay
 from tests.grader.batch import named_class
-from tests.grader.batch.classes import ROOT, Class
+from tests.grader.batch.classes import CONTROLLER, DEADLINE_S, ENV, Class, batch, command, work_here
+from tests.programs import ROOT
 
-CONTROLLER = (ROOT / "tests" / "submissions" / "square_controller.py").read_text(encoding="utf-8")
-HANDED_IN = {
-    "crashes": "import rclpy\nx = 1 / 0\n",
-    "leaves": "raise SystemExit(3)\n",
-    "right": CONTROLLER,
-    "twin": CONTROLLER,
+HANDED_IN: dict[str, str | bytes] = {
+    "broken.zip": b"PK and nothing more",
+    "crashes.py": "import rclpy\nx = 1 / 0\n",
+    "leaves.py": "raise SystemExit(3)\n",
+    "right/square.py": CONTROLLER,
+    "twin/square.py": CONTROLLER,
 }
 #: One run of each, and no points for others.
 QUICK = """exercise: own_square
@@ -30,10 +30,7 @@ points: {drives: 5, sides: 25, corners: 20, straight: 10, returns: 15, stops: 10
 
 
 def _make(folder: Path) -> None:
-    handed_in = folder / "handed_in"
-    (handed_in / "nobody").mkdir(parents=True)
-    for name, source in HANDED_IN.items():
-        (handed_in / f"{name}.py").write_text(source, encoding="utf-8")
+    (lay(folder / "handed_in", HANDED_IN) / "nobody").mkdir()
     own = folder / "own_square"  # not an installed one: it has to be where it is judged
     leave = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "grader" / "exercises" / "square", own, ignore=leave)
@@ -45,32 +42,49 @@ def _make(folder: Path) -> None:
 
 @pytest.fixture(scope="session")
 def small_class() -> Class:
-    """Four who have handed in something, and one who has not; nobody changes it."""
+    """Five who have handed in something, and one who has not; nobody changes it."""
     folder = once.folder(_make, "a small class", HANDED_IN, QUICK)
     return Class(folder / "handed_in", folder / "own_square" / "quick.yaml")
 
 
-def _grade(small_class: Class, folder: Path, *words: str) -> None:
-    # one at a time: another worker of the tests has the other core
-    command = small_class.command(folder / "class", *words, "--jobs", "1")
-    assert main(command[command.index("batch") :]) == 0
+def _grade(small_class: Class, folder: Path) -> None:
+    words = command(*small_class.words(folder / "class"), "--jobs", "2")
+    done = subprocess.run(words, env=ENV, text=True, capture_output=True, timeout=DEADLINE_S)
+    assert done.returncode == 0, done.stderr
+    (folder / "said.txt").write_text(done.stdout + done.stderr, "utf-8")
 
 
 @pytest.fixture(scope="session")
 def graded(small_class: Class) -> Path:
-    """The same class, graded in one go on this machine; nobody changes it."""
+    """The same class, graded by a process on this machine; nobody changes it.
+
+    `said.txt` beside it has what the call has printed.
+    """
     return once.folder(partial(_grade, small_class), "graded", HANDED_IN, QUICK) / "class"
+
+
+@pytest.fixture
+def out(graded: Path, tmp_path: Path) -> Path:
+    """The class, a test's own."""
+    return Path(shutil.copytree(graded, tmp_path / "graded" / "class"))
+
+
+@pytest.fixture
+def in_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    work_here(monkeypatch)
 
 
 def _make_named(small: Class, folder: Path) -> None:
     named_class.hand_in(folder / "handed_in")
     hidden = ["--pseudonyms", folder / "keys" / "key", "--names", folder / "named"]
-    said = io.StringIO()
-    for words in (["--out", folder / "class"], ["--out", folder / "hidden", *hidden]):
-        words += [folder / "handed_in", "--jobs", "1", "--exercise", small.exercise]
-        with redirect_stderr(said), redirect_stdout(said):
-            assert main(["batch", *map(str, words)]) == 0
-    (folder / "said.txt").write_text(said.getvalue(), "utf-8")
+    said = []
+    with pytest.MonkeyPatch.context() as patch:
+        work_here(patch)
+        for more in (["--out", folder / "class"], ["--out", folder / "hidden", *hidden]):
+            code, text = batch(folder / "handed_in", "--exercise", small.exercise, *more)
+            assert code == 0, text
+            said.append(text)
+    (folder / "said.txt").write_text("".join(said), "utf-8")
 
 
 @pytest.fixture(scope="session")

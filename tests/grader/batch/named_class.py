@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 from grader.reports.csv import table
-from tests.grader.batch.classes import ROOT
+from tests.grader.batch.classes import CONTROLLER
 
 AT = "2026-11-01T12:00Z"
 #: id, name, group, number in Moodle. The first two hand in the same files, Eve nothing.
@@ -17,7 +16,6 @@ MEMBERS = (
     ("jg4715", "Jürgen Größe", "Team Nord", "105"),
     ("ef4716", "Eve Fontaine", "", "106"),
 )
-CONTROLLER = (ROOT / "tests" / "submissions" / "square_controller.py").read_text(encoding="utf-8")
 
 
 def hand_in(folder: Path) -> None:
@@ -40,12 +38,6 @@ def place(folder: Path, whose: str, files: dict[str, str]) -> None:
     into.mkdir()
     for name, text in files.items():
         (into / name).write_text(text, "utf-8")
-
-
-def rows(path: Path) -> dict[str, dict[str, str]]:
-    """Return the rows of a table by their first column."""
-    found = csv.DictReader(path.read_text("utf-8-sig").splitlines())
-    return {next(iter(row.values())): row for row in found}
 
 
 def with_text(folder: Path, *texts: str) -> list[str]:

@@ -14,8 +14,9 @@ from grader.batch import batch, forget
 from grader.batch.entry import Entry, HandIn, Person, entries
 from grader.batch.store import Store
 from grader.cli import main
-from tests.grader.batch.classes import Class, told
-from tests.grader.batch.named_class import rows, with_text
+from tests.grader.batch import classes
+from tests.grader.batch.classes import Class, rows, told
+from tests.grader.batch.named_class import with_text
 
 Call = Callable[..., int]
 
@@ -38,17 +39,12 @@ def call(out: Path, small_class: Class) -> Call:
     return lambda student, *words: main(["forget", student, *common, *words])
 
 
-@pytest.mark.parametrize("student", ["zm4711", "ZM4711 ", "zoë müller", "zm4711@uni.example"])
-def test_a_student_goes_and_a_run_that_another_shares_stays(
-    student: str,
-    out: Path,
-    call: Call,
-    small_class: Class,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    before = rows(out / "gradebook.csv")
+def test_a_student_goes_and_a_run_that_another_shares_stays_until_the_last_who_has_it_goes(
+    out, call, small_class, capsys
+):
+    before, key = rows(out / "gradebook.csv"), Entry.read(out / "submissions" / "zm4711").key
     runs = sorted((out / "store").glob("*/*"))
-    assert call(student, "--yes") == 0
+    assert call("zm4711", "--yes") == 0
     assert with_text(out, "zm4711") == []
     del before["zm4711"]
     assert rows(out / "gradebook.csv") == before
@@ -57,17 +53,11 @@ def test_a_student_goes_and_a_run_that_another_shares_stays(
     recording = out / "submissions" / "bs4712" / "recording"
     assert main(["check", str(recording), "--exercise", str(small_class.exercise)]) == 0
     assert "the next grader batch grades" in capsys.readouterr().out.replace("\n", " ")
-
-
-def test_a_run_goes_with_the_last_who_has_it(out: Path, call: Call) -> None:
-    key = Entry.read(out / "submissions" / "zm4711").key
-    assert call("zm4711", "--yes") == 0
-    assert Store(out).has(key)
     assert call("bs4712", "--yes") == 0
     assert not Store(out).has(key)
 
 
-def test_a_group_keeps_its_hand_in_without_this_member(out: Path, call: Call) -> None:
+def test_a_group_keeps_its_hand_in_without_this_member(out, call):
     assert call("jg4715", "--yes") == 0
     assert with_text(out, "jg4715", "Größe") == []
     row = rows(out / "gradebook.csv")["dk4714"]
@@ -82,41 +72,40 @@ def test_a_group_keeps_its_hand_in_without_this_member(out: Path, call: Call) ->
 
 
 def test_the_next_call_without_the_student_finds_all_graded(
-    named: Path, out: Path, call: Call, small_class: Class, capsys: pytest.CaptureFixture[str]
-) -> None:
+    named, out, call, small_class, tmp_path
+):
     assert call("jg4715", "--yes") == 0
     before = told(out)
-    handed_in = out.parent / "handed_in"
-    shutil.copytree(named / "handed_in", handed_in)
+    handed_in = Path(shutil.copytree(named / "handed_in", tmp_path / "handed_in"))
     roster = (handed_in / "roster.csv").read_text("utf-8").splitlines(keepends=True)
     left = "".join(line for line in roster if "jg4715" not in line)
     (handed_in / "roster.csv").write_text(left, "utf-8")
-    words = [str(handed_in), "--out", str(out), "--exercise", str(small_class.exercise)]
-    assert main(["batch", *words]) == 0
-    assert "4 hand-ins of 4 graded before" in capsys.readouterr().err
+    code, said = classes.batch(*Class(handed_in, small_class.exercise).words(out))
+    assert (code, "4 hand-ins of 4 graded before" in said) == (0, True), said
     assert told(out) == before
 
 
-@pytest.mark.parametrize("student", ["zm4711", "jg4715"])
+PLACES = [
+    *((Store, "take_out", times) for times in range(3)),
+    *((batch, "write_outputs", 0), (forget, "remove", 0), (forget, "render", 1)),
+]
+
+
 @pytest.mark.parametrize(
-    ("room", "name", "times"),
+    ("student", "room", "name", "times"),
     [
-        *((Store, "take_out", times) for times in range(3)),
-        (batch, "write_outputs", 0),
-        (forget, "remove", 0),
-        (forget, "render", 1),
+        *(("jg4715", *place) for place in PLACES[1:]),
+        ("zm4711", *PLACES[0]),
+        *(
+            pytest.param(*each, marks=pytest.mark.more("the other student is cut off there"))
+            for each in (("jg4715", *PLACES[0]), *(("zm4711", *place) for place in PLACES[1:]))
+        ),
     ],
 )
 def test_a_call_that_was_cut_off_is_finished_by_the_next(
-    student: str,
-    room: object,
-    name: str,
-    times: int,
-    out: Path,
-    call: Call,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    shutil.copytree(out, whole := out.parent / "whole")
+    student, room, name, times, out, call, monkeypatch
+):
+    others = {path.name for path in (out / "submissions").iterdir() if student not in path.name}
     real = getattr(room, name)
     left = iter(range(times))
 
@@ -130,16 +119,13 @@ def test_a_call_that_was_cut_off_is_finished_by_the_next(
         assert call(student, "--yes") in (0, 130)  # not all calls of this name are made for each
     assert call(student, "--yes") in (0, 2)
     assert with_text(out, student) == []
-    others = sorted(
-        path.name for path in (whole / "submissions").iterdir() if student not in path.name
-    )
-    assert {*others} <= {path.name for path in (out / "submissions").iterdir()}
+    assert others <= {path.name for path in (out / "submissions").iterdir()}
     assert not (out / "changes.csv").exists()
 
 
 def test_a_class_that_was_regraded_by_an_edited_exercise_asks_for_it(
-    out: Path, tmp_path: Path, small_class: Class, capsys: pytest.CaptureFixture[str]
-) -> None:
+    out, tmp_path, small_class, capsys
+):
     own = small_class.exercise
     edited = Path(shutil.copytree(own.parent, tmp_path / "edited")) / own.name
     text = own.read_text(encoding="utf-8")
@@ -154,11 +140,10 @@ def test_a_class_that_was_regraded_by_an_edited_exercise_asks_for_it(
     assert "and square is one of 'square'" in capsys.readouterr().err.replace("\n", " ")
 
 
-def test_nothing_changes_without_yes(
-    out: Path, call: Call, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize("student", ["zm4711", "ZM4711 ", "zoë müller", "zm4711@uni.example"])
+def test_nothing_changes_without_yes(student, out, call, capsys):
     before = {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.is_file()}
-    assert call("zm4711") == 0
+    assert call(student) == 0
     said = capsys.readouterr().out.replace("\n", "")
     for path in ("submissions/zm4711", "aside/zm4711"):
         assert f"- goes: {out / path}" in said
@@ -175,15 +160,13 @@ def test_nothing_changes_without_yes(
     ],
 )
 def test_an_unknown_student_is_refused_with_those_who_may_be_meant(
-    student: str, said: str, out: Path, call: Call, capsys: pytest.CaptureFixture[str]
-) -> None:
+    student, said, out, call, capsys
+):
     assert call(student, "--yes") == 2
     assert said in capsys.readouterr().err.replace("\n", " ")
 
 
-def test_two_of_one_name_are_told_apart_by_their_ids(
-    out: Path, call: Call, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_two_of_one_name_are_told_apart_by_their_ids(out, call, capsys):
     nobody = Entry.read(out / "submissions" / "ef4716")
     other = HandIn("x1", (Person("x1", "Eve Fontaine"),), problem=nobody.hand_in.problem)
     (out / "submissions" / "x1").mkdir()
@@ -194,7 +177,7 @@ def test_two_of_one_name_are_told_apart_by_their_ids(
     assert "ef4716" in rows(out / "gradebook.csv")
 
 
-def test_a_group_s_new_folder_is_never_that_of_somebody_else(out: Path, call: Call) -> None:
+def test_a_group_s_new_folder_is_never_that_of_somebody_else(out, call):
     nobody = Entry.read(out / "submissions" / "ef4716")
     folder = out / "submissions" / "dk4714"
     folder.mkdir()
@@ -205,9 +188,7 @@ def test_a_group_s_new_folder_is_never_that_of_somebody_else(out: Path, call: Ca
     assert Entry.read(out / "submissions" / "dk4714-2").state == "judged"
 
 
-def test_under_pseudonyms_a_student_is_named_by_that(
-    named: Path, out: Path, call: Call, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_under_pseudonyms_a_student_is_named_by_that(named, out, call, capsys):
     shutil.rmtree(out)
     shutil.copytree(named / "hidden", out)
     whose = {row["id"]: who for who, row in rows(named / "named" / "pseudonyms.csv").items()}

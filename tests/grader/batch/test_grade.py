@@ -22,9 +22,7 @@ from grader.run.processes import levels
         (GraderFailure("the simulator died"), "failed"),
     ],
 )
-def test_only_what_may_pass_is_to_be_tried_again(
-    monkeypatch: pytest.MonkeyPatch, error: Exception, state: str
-) -> None:
+def test_only_what_may_pass_is_to_be_tried_again(monkeypatch, error, state):
     def make(task: Task) -> None:
         raise error
 

@@ -30,7 +30,7 @@ def workers_that(monkeypatch: pytest.MonkeyPatch, then: str) -> None:
     monkeypatch.setattr(pool, "_COMMAND", ("-c", ANSWERS.format(then=then)))
 
 
-def test_every_task_is_answered_by_some_worker(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_task_is_answered_by_some_worker(monkeypatch):
     workers_that(monkeypatch, "pass")
     done = {task.key: answer for task, answer in pool.work(tasks(7), 3, PATIENT_S)}
     assert {key: (a.state, str(a.message)) for key, a in done.items()} == {
@@ -38,9 +38,7 @@ def test_every_task_is_answered_by_some_worker(monkeypatch: pytest.MonkeyPatch) 
     }
 
 
-def test_a_worker_that_dies_loses_its_own_task_alone_and_that_is_told(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_worker_that_dies_loses_its_own_task_alone_and_that_is_told(monkeypatch):
     workers_that(monkeypatch, 'task["key"] == "1" and os.kill(os.getpid(), 9)')
     done = {task.key: answer for task, answer in pool.work(tasks(4), 2, PATIENT_S)}
     assert {key for key, answer in done.items() if answer.state == "done"} == {"0", "2", "3"}
@@ -57,12 +55,12 @@ def test_a_worker_that_dies_loses_its_own_task_alone_and_that_is_told(
         b'{"state": "failed", "message": "x", "more": 1}',
     ],
 )
-def test_a_line_that_is_no_answer_is_refused(line: bytes) -> None:
+def test_a_line_that_is_no_answer_is_refused(line):
     with pytest.raises(ValueError):
         strict_json.of_line(Answer, line)
 
 
-def test_who_dies_once_is_asked_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_who_dies_once_is_asked_again(monkeypatch, tmp_path):
     mark = tmp_path / "died"
     then = f"os.path.exists({str(mark)!r}) or (open({str(mark)!r}, 'w').close(), os._exit(3))"
     workers_that(monkeypatch, then)
@@ -71,9 +69,7 @@ def test_who_dies_once_is_asked_again(monkeypatch: pytest.MonkeyPatch, tmp_path:
 
 
 @pytest.mark.parametrize("times", [1, 2])
-def test_who_cannot_now_is_asked_again_as_a_new_process(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, times: int
-) -> None:
+def test_who_cannot_now_is_asked_again_as_a_new_process(monkeypatch, tmp_path, times):
     log = tmp_path / "asked"
     then = (
         f"open({str(log)!r}, 'a').write(f'{{os.getpid()}}\\n'); "
@@ -89,19 +85,16 @@ def test_who_cannot_now_is_asked_again_as_a_new_process(
     assert len(set(log.read_text().split())) == 2
 
 
-def test_who_answers_nothing_sensible_is_told_as_failed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_who_answers_nothing_sensible_has_failed_and_who_never_answers_is_ended(monkeypatch):
     workers_that(monkeypatch, 'print("hello", flush=True)')
     ((_, answer),) = pool.work(tasks(1), 1, PATIENT_S)
     assert answer.state == "failed"
-
-
-def test_who_never_answers_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     workers_that(monkeypatch, "__import__('time').sleep(600)")
     ((_, answer),) = pool.work(tasks(1), 1, patience_s=0.5)
     assert (answer.state, "SIGKILL" in str(answer.message)) == ("failed", sys.platform == "linux")
 
 
-def test_what_makes_tasks_may_fail_and_that_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_makes_tasks_may_fail_and_that_is_raised(monkeypatch):
     workers_that(monkeypatch, "pass")
 
     def broken():
@@ -112,7 +105,7 @@ def test_what_makes_tasks_may_fail_and_that_is_raised(monkeypatch: pytest.Monkey
         list(pool.work(broken(), 2, PATIENT_S))
 
 
-def test_no_worker_outlives_who_asks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_worker_outlives_who_asks(monkeypatch):
     started = []
     start = pool.start
     monkeypatch.setattr(pool, "start", lambda **_: started.append(start()) or started[-1])

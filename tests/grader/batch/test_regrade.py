@@ -6,15 +6,16 @@ import csv
 import shutil
 from argparse import Namespace
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from grader.batch import grade, pool, regrade
+from grader.batch import regrade
 from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
 from grader.batch.store import RECORDING, UNFINISHED, Store
-from grader.cli import GRADER_FAILED, regrading
+from grader.cli import GRADER_FAILED, main, regrading
 from grader.errors import ExerciseError, UsageError
 from grader.exercise.loading import load_exercise
 from grader.judging import judge, load_recordings
@@ -34,34 +35,22 @@ def old(small_class) -> str:
     return str(small_class.exercise)
 
 
-@pytest.fixture
-def new(small_class, tmp_path) -> str:
-    own = Path(shutil.copytree(small_class.exercise.parent, tmp_path / "own_square"))
+@pytest.fixture(scope="module")
+def new(small_class, tmp_path_factory) -> str:
+    place = tmp_path_factory.mktemp("new") / "own_square"
+    own = Path(shutil.copytree(small_class.exercise.parent, place))
     (own / "changed.yaml").write_text(CHANGED)
     return str(own / "changed.yaml")
 
 
 @pytest.fixture
-def out(graded, tmp_path) -> Path:
+def out(out, in_process) -> Path:
     """The class, graded by the old one; right and twin share a run."""
-    return Path(shutil.copytree(graded, tmp_path / "class"))
+    return out
 
 
-@pytest.fixture(autouse=True)
-def in_process(request, monkeypatch):
-    """The workers' work in this process, but where real ones are asked for."""
-    if "real_workers" not in request.fixturenames:
-        tasks_done = lambda tasks, *_: ((task, grade.done(task)) for task in tasks)  # noqa: E731
-        monkeypatch.setattr(pool, "work", tasks_done)
-
-
-@pytest.fixture
-def real_workers() -> None:
-    pass
-
-
-def call(out: Path, rubric: str, *, apply: bool = False, into: Path | None = None) -> int:
-    words = Namespace(regrade=out, exercise=rubric, apply=apply, out=into, assignment="")
+def call(out: Path, rubric: str, *, apply: bool = False) -> int:
+    words = Namespace(regrade=out, exercise=rubric, apply=apply, out=None, assignment="")
     return regrading.run(words, 1, "student")
 
 
@@ -73,11 +62,13 @@ def scores(out: Path) -> dict[str, float | None]:
     return {entry.id: entry.score for entry in entries(out)}
 
 
-def expected(out: Path, rubric: str) -> dict[str, float]:
+@cache
+def expected(graded: Path, rubric: str) -> dict[str, float]:
     """The scores that judging in memory finds."""
-    runs = {id: Store(out).run(Entry.read(out / "submissions" / id).key) for id in JUDGED}
-    exercise = load_exercise(rubric)
-    return {id: judge(load_recordings(run / RECORDING), exercise).score for id, run in runs.items()}
+    keys = {id: Entry.read(graded / "submissions" / id).key for id in JUDGED}
+    found = {key: load_recordings(Store(graded).run(key) / RECORDING) for key in {*keys.values()}}
+    scores = {key: judge(each, load_exercise(rubric)).score for key, each in found.items()}
+    return {id: scores[key] for id, key in keys.items()}
 
 
 def tree(folder: Path) -> dict[str, bytes]:
@@ -85,23 +76,41 @@ def tree(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
 
 
-def test_who_changes_and_by_which_check_is_what_judging_in_memory_finds(out, new, real_workers):
-    found = regrade.regrade(out, new, jobs=1)
-    right = rows(found.table)["right"]
-    assert (float(right["before"]), float(right["after"])) == (85, expected(out, new)["right"])
+def test_who_changes_and_by_which_check_is_what_judging_in_memory_finds(
+    graded, new, tmp_path, capsys
+):
+    """By a worker of its own."""
+    look = tmp_path / "look"
+    words = ["batch", "--regrade", str(graded), "--exercise", new, "--out", str(look)]
+    assert main([*words, "--jobs", "1"]) == 0
+    table, said = capsys.readouterr()
+    assert (look / "changes.csv").read_text() == table
+    right = rows(table)["right"]
+    assert (float(right["before"]), float(right["after"])) == (85, expected(graded, new)["right"])
     words = {"sides": "lost", "corners": "gained", "stops": "lost", "drives": "", "late": ""}
     assert words.items() <= right.items()
-    assert rows(found.table).keys() == {"right", "twin"}
-    assert str(found.headline) == "2 of 5 change: 0 get more points, 2 get fewer points."
-    (note,) = map(str, found.notes)
-    assert note.startswith("4 of 4: The recording was made with limits.total_s ")
+    assert rows(table).keys() == {"right", "twin"}
+    for told in (
+        "2 of 6 change: 0 get more points, 2 get fewer points.",
+        "4 of 4: The recording was made with limits.total_s ",
+        "The class was not changed.",
+    ):
+        assert told in " ".join(said.split())
 
 
-def test_the_same_rubric_changes_nothing(out, old):
+def test_by_the_same_rubric_nothing_changes_but_what_is_missing_is_told(out, old):
+    """As the recording of somebody else, which is not judged for a hand-in."""
+    right, leaves = (Entry.read(out / "submissions" / id).key for id in ("right", "leaves"))
+    shutil.rmtree(Store(out).run(leaves))
+    shutil.copytree(Store(out).run(right), Store(out).run(leaves))
+    (out / "submissions" / "crashes" / "entry.json").write_text("{")
     found = regrade.regrade(out, old, 1)
-    assert rows(found.table) == {}
+    assert rows(found.table).keys() == {"leaves"}
     assert str(found.headline).startswith("0 of 5 change: ")
-    assert found.notes == ()
+    assert [str(note) for note in found.notes] == ["The class is not finished: 5 of 6."]
+    ((entry, why),) = found.failures
+    assert entry.id == "leaves"
+    assert str(why).startswith("its recording is not the one that its result was made of.")
 
 
 def test_another_deduction_for_lateness_has_a_word_of_its_own(graded, monkeypatch):
@@ -137,48 +146,27 @@ def test_what_cannot_be_judged_again_is_told_and_stays_as_it_is(out, new, capsys
     assert scores(out)["twin"] == float(rows(said.out)["twin"]["after"])
 
 
-def test_the_recording_of_somebody_else_is_not_judged_for_a_hand_in(out, old):
-    right, leaves = (Entry.read(out / "submissions" / id).key for id in ("right", "leaves"))
-    shutil.rmtree(Store(out).run(leaves))
-    shutil.copytree(Store(out).run(right), Store(out).run(leaves))
-    ((entry, why),) = regrade.regrade(out, old, 1).failures
-    assert entry.id == "leaves"
-    assert str(why).startswith("its recording is not the one that its result was made of.")
-
-
-def test_who_is_missing_since_a_file_is_damaged_is_told(out, old):
-    (out / "submissions" / "leaves" / "entry.json").write_text("{")
-    notes = regrade.regrade(out, old, 1).notes
-    assert [str(note) for note in notes] == ["The class is not finished: 4 of 5."]
-
-
-def test_without_apply_the_table_is_written_and_nothing_else(out, new, tmp_path, capsys):
-    before = tree(out)
+def test_nobody_is_changed_unless_applied_and_the_way_back_leads_to_the_old_results(
+    out, graded, old, new, tmp_path, capsys
+):
+    files, before = tree(out), {entry.id: entry.result for entry in entries(out)}
     (out / "changes.csv").symlink_to(tmp_path / "elsewhere")
-    for into in (None, tmp_path / "look"):
-        assert call(out, new, into=into) == 0
-        said = capsys.readouterr()
-        assert ((into or out) / "changes.csv").read_text() == said.out
-        assert "The class was not changed." in said.err
+    assert call(out, new) == 0
+    said = capsys.readouterr()
+    assert (out / "changes.csv").read_text() == said.out
+    assert "The class was not changed." in said.err
     (out / "changes.csv").unlink()
-    assert tree(out) == before
+    assert tree(out) == files
     assert not (tmp_path / "elsewhere").exists()
 
-
-def test_applied_everybody_has_the_new_result_and_the_way_back_leads_to_the_old_ones(
-    out, old, new, capsys
-):
-    before = {entry.id: entry.result for entry in entries(out)}
     assert call(out, new, apply=True) == 0
     exercise, found = load_exercise(new), {entry.id: entry for entry in entries(out)}
     assert ClassFile.read(out).exercise_sha256 == exercise.sha256
     assert {(e.exercise_sha256, e.max_score) for e in found.values()} == {(exercise.sha256, 85)}
-    assert scores(out) == {**expected(out, new), "nobody": 0.0}
+    assert scores(out) == {**expected(graded, new), "broken": 0.0, "nobody": 0.0}
     for id in JUDGED:
         assert (found[id].folder / RECORDING / "recording.mcap").is_file()
         assert (found[id].folder / "report.html").stat().st_size > 1000
-    capsys.readouterr()
-    assert (call(out, new), rows(capsys.readouterr().out)) == (0, {})
     assert call(out, old, apply=True) == 0
     assert {entry.id: entry.result for entry in entries(out)} == before
 
@@ -186,13 +174,13 @@ def test_applied_everybody_has_the_new_result_and_the_way_back_leads_to_the_old_
 MIDDLE = "the middle place stands for the others"
 
 
-@pytest.mark.parametrize("after", others_are_more(MIDDLE, range(4), 2))
+@pytest.mark.parametrize("after", others_are_more(MIDDLE, range(5), 2))
 def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
-    out, old, new, monkeypatch, after
+    out, graded, old, new, monkeypatch, after
 ):
     """And the same call again does the rest."""
     put, calls = Store.put, iter(range(99))
-    sides = {load_exercise(path).sha256: expected(out, path) for path in (old, new)}
+    sides = {load_exercise(path).sha256: expected(graded, path) for path in (old, new)}
 
     def interrupted(self, key, place):
         if next(calls) == after:
@@ -204,11 +192,11 @@ def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
         with pytest.raises(KeyboardInterrupt):
             call(out, new, apply=True)
     found = {entry.id: entry for entry in entries(out)}
-    assert found.keys() == {*JUDGED, "nobody"}
+    assert found.keys() == {*JUDGED, "broken", "nobody"}
     assert all(found[id].score == sides[found[id].exercise_sha256][id] for id in JUDGED)
     assert ClassFile.read(out).exercise_sha256 == load_exercise(old).sha256
     call(out, new, apply=True)
-    assert scores(out) == {**expected(out, new), "nobody": 0.0}
+    assert scores(out) == {**sides[load_exercise(new).sha256], "broken": 0.0, "nobody": 0.0}
     assert ClassFile.read(out).exercise_sha256 == load_exercise(new).sha256
     assert not (out / UNFINISHED).exists()
 

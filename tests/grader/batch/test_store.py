@@ -1,5 +1,6 @@
 """What is in its place is whole; what was not finished goes."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from grader.batch import store
 from grader.batch.store import RECORDING, RUN, STUDENTS, Store
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
-from tests.files import lay_too_deep
+from tests.files import lay, lay_too_deep
 
 
 def made(store: Store, text: str, *names: str) -> Path:
@@ -21,26 +22,19 @@ def made(store: Store, text: str, *names: str) -> Path:
     return place
 
 
-def test_a_run_and_all_who_share_it_come_to_their_places(tmp_path: Path) -> None:
+def test_a_run_and_all_who_share_it_come_to_their_places_and_the_last_one_stays(tmp_path):
     with Store.opened(tmp_path / "class") as store:
-        store.put("abcd", made(store, "one", "alice", "bob"))
+        for text in ("one", "two"):
+            store.put("abcd", made(store, text, "alice", "bob"))
         (store.out / "class.json").touch()
         assert store.has("abcd")
-        assert (store.student("bob") / RECORDING / "bag").read_text() == "one"
-    assert sorted(path.name for path in (tmp_path / "class").iterdir()) == [
-        *("class.json", "store", "submissions")
-    ]
+        for folder in (store.run("abcd"), store.student("alice"), store.student("bob")):
+            assert (folder / RECORDING / "bag").read_text() == "two"
+    there = sorted(path.name for path in (tmp_path / "class").iterdir())
+    assert there == ["class.json", "store", "submissions"]
 
 
-def test_a_later_grading_takes_the_place_of_an_earlier_one(tmp_path: Path) -> None:
-    with Store.opened(tmp_path) as store:
-        for text in ("one", "two"):
-            store.put("abcd", made(store, text, "alice"))
-        assert (store.run("abcd") / RECORDING / "bag").read_text() == "two"
-        assert (store.student("alice") / RECORDING / "bag").read_text() == "two"
-
-
-def test_what_an_interrupted_call_left_is_gone_with_the_next(tmp_path: Path) -> None:
+def test_what_an_interrupted_call_left_is_gone_with_the_next(tmp_path):
     leftover = tmp_path / ".unfinished" / "x" / "students" / "alice"
     leftover.mkdir(parents=True)
     with Store.opened(tmp_path) as store:
@@ -48,7 +42,7 @@ def test_what_an_interrupted_call_left_is_gone_with_the_next(tmp_path: Path) -> 
         assert not store.student("alice").exists()
 
 
-def test_a_folder_with_the_submissions_themselves_is_refused(tmp_path: Path) -> None:
+def test_a_folder_with_the_submissions_themselves_is_refused(tmp_path):
     alice = tmp_path / "submissions" / "alice" / "node.py"
     alice.parent.mkdir(parents=True)
     alice.write_text("x = 1\n")
@@ -60,7 +54,7 @@ def test_a_folder_with_the_submissions_themselves_is_refused(tmp_path: Path) -> 
     assert [path.name for path in tmp_path.iterdir()] == ["submissions"]
 
 
-def test_two_do_not_write_into_one_class(tmp_path: Path) -> None:
+def test_two_do_not_write_into_one_class(tmp_path):
     with (
         Store.opened(tmp_path),
         pytest.raises(UsageError, match="another grading writes into"),
@@ -69,27 +63,33 @@ def test_two_do_not_write_into_one_class(tmp_path: Path) -> None:
         pass
 
 
-def folder(at: Path, source: str, *junk: str) -> Path:
-    (at / "pkg").mkdir(parents=True)
-    (at / "pkg" / "node.py").write_text(source)
-    for name in junk:
-        (at / name).mkdir()
-        (at / name / "file").write_text(str(at))
-    return at
+@pytest.fixture
+def alice_and_bob(tmp_path):
+    """Two who have handed in the same folder."""
+    return [lay(tmp_path / who, {"pkg/node.py": "x = 1\n"}) for who in ("alice", "bob")]
 
 
-def test_what_git_and_python_leave_beside_does_not_count(tmp_path: Path) -> None:
-    plain = folder(tmp_path / "alice", "x = 1\n")
-    clone = folder(tmp_path / "bob", "x = 1\n", ".git", "__pycache__")
-    assert store.of_hand_in(plain, "") == store.of_hand_in(clone, "")
+def keys(folders):
+    return {store.of_hand_in(folder, "") for folder in folders}
 
 
-def test_one_letter_makes_another_key(tmp_path: Path) -> None:
-    one, other = folder(tmp_path / "a", "x = 1\n"), folder(tmp_path / "b", "x = 2\n")
-    assert store.of_hand_in(one, "") != store.of_hand_in(other, "")
+def test_one_letter_makes_another_key_and_what_git_and_python_leave_beside_none(alice_and_bob):
+    lay(alice_and_bob[1], {".git/file": "bob's", "__pycache__/file": "bob's"})
+    os.mkfifo(alice_and_bob[0] / "pipe")  # is not waited for
+    assert len(keys(alice_and_bob)) == 1
+    lay(alice_and_bob[1], {"pkg/node.py": "x = 2\n"})
+    assert len(keys(alice_and_bob)) == 2
 
 
-def test_a_file_that_an_export_renamed_counts_by_the_name_that_it_had(tmp_path: Path) -> None:
+def test_what_is_too_deep_for_a_run_is_too_deep_for_a_key(alice_and_bob):
+    for top in alice_and_bob:
+        lay_too_deep(top)
+    assert len(keys(alice_and_bob)) == 1
+    lay(alice_and_bob[1], {"pkg/node.py": "x = 2\n"})
+    assert len(keys(alice_and_bob)) == 2
+
+
+def test_a_file_that_an_export_renamed_counts_by_the_name_that_it_had(tmp_path):
     renamed, plain = tmp_path / "mueller_123_456_node.py", tmp_path / "node.py"
     for path in (renamed, plain):
         path.write_text("x = 1\n")
@@ -97,26 +97,7 @@ def test_a_file_that_an_export_renamed_counts_by_the_name_that_it_had(tmp_path: 
     assert store.of_hand_in(renamed, "") != store.of_hand_in(plain, "")
 
 
-def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
-    import os
-
-    top = folder(tmp_path / "alice", "x = 1\n")
-    if not hasattr(os, "mkfifo"):
-        pytest.skip("no pipes with names")
-    os.mkfifo(top / "pipe")
-    assert store.of_hand_in(top, "") == store.of_hand_in(folder(tmp_path / "bob", "x = 1\n"), "")
-
-
-def test_what_is_too_deep_for_a_run_is_too_deep_for_a_key(tmp_path: Path) -> None:
-    alice, bob = (folder(tmp_path / name, "x = 1\n") for name in ("alice", "bob"))
-    for top in (alice, bob):
-        lay_too_deep(top)
-    assert store.of_hand_in(alice, "") == store.of_hand_in(bob, "")
-    (bob / "pkg" / "node.py").write_text("x = 2\n")
-    assert store.of_hand_in(alice, "") != store.of_hand_in(bob, "")
-
-
-def test_what_a_run_depends_on_is_in_its_key_and_the_rubric_is_not(tmp_path: Path) -> None:
+def test_what_a_run_depends_on_is_in_its_key_and_the_rubric_is_not(tmp_path):
     challenge = load_exercise("turtlesim_challenge")
     (tmp_path / "points.yaml").write_text("exercise: turtlesim_challenge\npoints: {moves: 6}\n")
     (tmp_path / "time.yaml").write_text("exercise: turtlesim_challenge\nlimits: {total_s: 99}\n")

@@ -17,11 +17,10 @@ from grader.batch.entry import ENTRY, Entry, entries
 from grader.batch.page.thumb import THUMB, Thumb
 from grader.batch.pool import Answer
 from grader.batch.store import RECORDING, STUDENTS, Store
-from grader.cli import main
 from grader.errors import UsageError
+from grader.message import msg
 from grader.result.result import RESULT
-from tests.grader.batch.classes import Class
-from tests.grader.batch.conftest import HANDED_IN
+from tests.grader.batch.classes import batch
 
 #: More than any file of ours; none of it is on the disk [bytes].
 HUGE = 2**33
@@ -89,35 +88,30 @@ NO_RESULT: dict[str, Callable[[dict[str, Any]], object]] = {
 
 
 @pytest.fixture
-def out(graded: Path, tmp_path: Path) -> Path:
-    """The class, a test's own."""
-    return Path(shutil.copytree(graded, tmp_path / "class"))
+def folder(graded: Path, tmp_path: Path) -> Path:
+    """A hand-in's folder of the class, a test's own."""
+    copy = Path(shutil.copytree(Store(graded).student("right"), tmp_path / "right"))
+    assert Entry.read(copy).state == "judged"
+    return copy
 
 
-@pytest.mark.parametrize("name", [ENTRY, RESULT])
 @pytest.mark.parametrize("how", NO_FILE)
-def test_what_is_no_file_of_ours_is_neither_waited_for_nor_read_whole(
-    out: Path, name: str, how: str
-) -> None:
-    folder = Store(out).student("right")
-    replaced(folder / name, NO_FILE[how])
-    with pytest.raises(UsageError):
-        Entry.read(folder)
-    assert "right" not in {entry.id for entry in entries(out)}
+def test_what_is_no_file_of_ours_is_neither_waited_for_nor_read_whole(folder, how):
+    for name in (RESULT, ENTRY):
+        replaced(folder / name, NO_FILE[how])
+        with pytest.raises(UsageError, match=name):
+            Entry.read(folder)
+    replaced(folder / THUMB, NO_FILE[how])
+    assert Thumb.read(folder) is None
 
 
-@pytest.mark.parametrize("what", NO_ENTRY)
-def test_an_entry_whose_values_cannot_be_is_none(out: Path, what: str) -> None:
-    folder = Store(out).student("right")
-    changed(folder / ENTRY, NO_ENTRY[what])
-    with pytest.raises(UsageError):
-        Entry.read(folder)
-
-
-@pytest.mark.parametrize("what", NO_RESULT)
-def test_a_result_that_is_not_that_of_its_entry_is_none(out: Path, what: str) -> None:
-    folder = Store(out).student("right")
-    changed(folder / RESULT, NO_RESULT[what])
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [*((ENTRY, each) for each in NO_ENTRY.values()), *((RESULT, e) for e in NO_RESULT.values())],
+    ids=[*NO_ENTRY, *NO_RESULT],
+)
+def test_an_entry_or_a_result_whose_values_cannot_be_is_none(folder, name, change):
+    changed(folder / name, change)
     with pytest.raises(UsageError):
         Entry.read(folder)
 
@@ -130,35 +124,27 @@ def test_a_result_that_is_not_that_of_its_entry_is_none(out: Path, what: str) ->
     ],
     ids=str,
 )
-def test_a_class_file_whose_values_cannot_be_is_named(out: Path, values: dict[str, Any]) -> None:
-    changed(out / CLASS, lambda data: data.update(values))
+def test_a_class_file_whose_values_cannot_be_is_named(graded, tmp_path, values):
+    shutil.copy(graded / CLASS, tmp_path)
+    changed(tmp_path / CLASS, lambda data: data.update(values))
     with pytest.raises(UsageError, match=r"class\.json is damaged: \w+"):
-        ClassFile.read(out)
+        ClassFile.read(tmp_path)
 
 
-@pytest.mark.parametrize("how", NO_FILE)
-def test_what_pages_show_of_a_run_is_left_out_where_it_is_no_file_of_ours(
-    out: Path, how: str
-) -> None:
-    folder = Store(out).student("right")
-    replaced(folder / THUMB, NO_FILE[how])
-    assert Thumb.read(folder) is None
-
-
-def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(out: Path) -> None:
-    kept = Store(out).student("right") / export.SOURCE
+def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(folder):
+    kept = folder / export.SOURCE
     (source,) = kept.iterdir()
     replaced(source, is_huge)
     (file,) = export.kept(kept)
     assert len(file.data) == export.MAX_SOURCE_BYTES
-    link = out / "link"
+    link = folder / "link"
     link.symlink_to(kept)
     assert export.kept(link) == []
 
 
 def test_whatever_was_changed_in_a_class_the_same_call_ends_as_before(
-    out: Path, graded: Path, small_class: Class
-) -> None:
+    out, graded, small_class, in_process
+):
     folders = {entry.id: entry.folder for entry in entries(out)}
     runs = {entry.id: Store(out).run(entry.key) for entry in entries(out) if entry.key}
     # its recording is cut off, and its result is gone
@@ -175,14 +161,14 @@ def test_whatever_was_changed_in_a_class_the_same_call_ends_as_before(
     # nothing was handed in, it says
     changed(folders["leaves"] / ENTRY, lambda entry: entry.update(state="nothing"))
     changed(folders["nobody"] / ENTRY, lambda entry: entry.update(max_score=1e300))
-    words = small_class.command(out, "--jobs", "1")
-    assert main(words[words.index("batch") :]) == 0
+    code, said = batch(*small_class.words(out))
+    assert code == 0, said
     for name in ("gradebook.csv", "gradebook.jsonl"):
         assert (out / name).read_bytes() == (graded / name).read_bytes(), name
     assert len(entries(out)) == len(folders)
 
 
-def test_no_link_in_a_run_is_followed_into_a_student_s_folder(tmp_path: Path) -> None:
+def test_no_link_in_a_run_is_followed_into_a_student_s_folder(tmp_path):
     secret = tmp_path / "secret"
     secret.mkdir()
     (secret / "token.py").write_text("x = 1\n")
@@ -201,7 +187,7 @@ def test_no_link_in_a_run_is_followed_into_a_student_s_folder(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("name", ["store", "submissions", "aside"])
-def test_a_class_of_which_a_part_is_a_link_is_not_written_into(tmp_path: Path, name: str) -> None:
+def test_a_class_of_which_a_part_is_a_link_is_not_written_into(tmp_path, name):
     elsewhere, out = tmp_path / "elsewhere", tmp_path / "class"
     for folder in (elsewhere, out):
         folder.mkdir()
@@ -214,16 +200,19 @@ def test_a_class_of_which_a_part_is_a_link_is_not_written_into(tmp_path: Path, n
     assert list(elsewhere.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("answer", "why"),
+    [
+        (Answer("done"), "what a worker sent back cannot be used"),
+        (Answer("unfit", msg("there is less here")), "there is less here"),
+    ],
+)
 def test_a_worker_that_made_nothing_fails_for_its_hand_ins_and_nobody_else(
-    small_class: Class,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    nothing = Answer("done")
-    monkeypatch.setattr(pool, "work", lambda tasks, jobs: ((task, nothing) for task in tasks))
-    words = small_class.command(tmp_path / "class")
-    assert main(words[words.index("batch") :]) == 3
-    assert "what a worker sent back cannot be used" in capsys.readouterr().err
+    small_class, tmp_path, monkeypatch, answer, why
+):
+    monkeypatch.setattr(pool, "work", lambda tasks, jobs: ((task, answer) for task in tasks))
+    code, said = batch(*small_class.words(tmp_path / "class"))
+    assert (code, why in said) == (3, True), said
     states = {entry.id: entry.state for entry in entries(tmp_path / "class")}
-    assert states == {"nobody": "unusable", **dict.fromkeys(HANDED_IN, "failed")}
+    failed = {"broken", "crashes", "leaves", "right", "twin"}
+    assert states == {"nobody": "unusable", **dict.fromkeys(failed, "failed")}

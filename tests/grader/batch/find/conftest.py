@@ -1,5 +1,13 @@
 """For all tests of finding."""
 
-from tests.grader.batch.find.exports import finder
+from contextlib import ExitStack
 
-__all__ = ["finder"]
+import pytest
+
+from tests.grader.batch.find.exports import Finder
+
+
+@pytest.fixture
+def finder():
+    with ExitStack() as stack:
+        yield Finder(stack)

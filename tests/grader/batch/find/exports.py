@@ -8,25 +8,10 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from grader.batch.entry import HandIn
 from grader.batch.find.finding import Found, find
 
 NODE = "def main():\n    pass\n"
-
-
-def lay(root: Path, files: dict[str, str | bytes | None]) -> Path:
-    """Files by their names; None makes an empty folder."""
-    root.mkdir(parents=True, exist_ok=True)
-    for name, content in files.items():
-        path = root / name
-        if content is None:
-            path.mkdir(parents=True)
-            continue
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    return root
 
 
 def packed(files: dict[str, str | bytes]) -> bytes:
@@ -49,12 +34,6 @@ class Finder:
 
     def by_id(self, submissions: Path, **options: Any) -> dict[str, HandIn]:
         return {each.id: each for each in self(submissions, **options).hand_ins}
-
-
-@pytest.fixture
-def finder():
-    with ExitStack() as stack:
-        yield Finder(stack)
 
 
 def content(hand_in: HandIn) -> set[str]:

@@ -24,19 +24,30 @@ NOON = datetime(2026, 11, 1, 12, tzinfo=UTC)
         "1793534400123",
     ],
 )
-def test_a_moment_is_read(text: str) -> None:
+def test_a_moment_is_read(text):
     assert read_time(text) == NOON
 
 
-def test_without_a_zone_it_is_local_time() -> None:
+def test_without_a_zone_it_is_local_time():
     assert read_time("2026-11-01 12:00") == datetime(2026, 11, 1, 12).astimezone()
     assert read_time("20261101") == datetime(2026, 11, 1).astimezone()
 
 
 @pytest.mark.parametrize(
-    "text", ["", "soon", "2026-13-01", "2026-11-01T25:00", "2026-11-01T12:00+99:00", "12345", "-1"]
+    "text",
+    [
+        "",
+        "soon",
+        "2026-13-01",
+        "2026-11-01T25:00",
+        "2026-11-01T12:00+99:00",
+        "12345",
+        "-1",
+        "Tuesday, 1 Foo 2026, 6:00 PM",
+        "31 June 2026, 13:00 PM",
+    ],
 )
-def test_what_is_no_moment_is_none(text: str) -> None:
+def test_what_is_no_moment_is_none(text):
     assert read_time(text) is None
 
 
@@ -48,10 +59,5 @@ def test_what_is_no_moment_is_none(text: str) -> None:
         ("1 December 2026, 18:00", 18),
     ],
 )
-def test_moodles_english_times_are_local(text: str, hour: int) -> None:
+def test_moodles_english_times_are_local(text, hour):
     assert read_time(text) == datetime(2026, 12, 1, hour).astimezone()
-
-
-@pytest.mark.parametrize("text", ["Tuesday, 1 Foo 2026, 6:00 PM", "31 June 2026, 13:00 PM"])
-def test_no_time_of_moodles_is_none(text: str) -> None:
-    assert read_time(text) is None

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from tests.grader.batch.find.exports import NODE, Finder, content, lay, noted, packed
+from tests.files import lay
+from tests.grader.batch.find.exports import NODE, content, noted, packed
 
 GRADEBOOK = (
     "Student,ID,SIS User ID,SIS Login ID,Section,Spiral (9)\n"
@@ -15,7 +14,7 @@ GRADEBOOK = (
 )
 
 
-def test_names_say_who_late_and_what_it_was_called(tmp_path: Path, finder: Finder) -> None:
+def test_names_say_who_late_and_what_it_was_called(tmp_path, finder):
     export = {
         "müllerzoë_1001_5001_turtle_controller.py": NODE,
         "leebob_LATE_1002_5002_my_pkg_12_34_x.zip": packed({"node.py": NODE}),
@@ -36,26 +35,24 @@ def test_names_say_who_late_and_what_it_was_called(tmp_path: Path, finder: Finde
     assert bob.filename == "my_pkg_12_34_x.zip"
     assert by_id["Zz9yY"].people[0].columns["Late"] == "yes"
     assert str(by_id["1005"].problem) == "Only a text or a link was handed in, and no file."
+    assert by_id["1006"].people[0].columns["Exported as"] == "linker_LATE_1006_link.html"
     assert by_id["1007"].name == "van_der_berg"
 
 
-def test_files_of_one_student_are_one_submission(tmp_path: Path, finder: Finder) -> None:
+def test_files_of_one_student_are_one_submission(tmp_path, finder):
     export = {
         "ann_1_11_setup.py": "",
         "ann_1_12_part-1.py": NODE,
         "ann_1_13_part-2.py": NODE,
         "ann_1_14_.DS_Store": "",
+        "ann_1_text.html": "",
     }
-    assert content(finder.by_id(lay(tmp_path / "c", export))["1"]) == {
-        "setup.py",
-        "part-1.py",
-        "part-2.py",
-    }
+    ann = finder.by_id(lay(tmp_path / "c", export))["1"]
+    assert content(ann) == {"setup.py", "part-1.py", "part-2.py"}
+    assert ann.people[0].columns["Exported as"] == "ann_1_11_setup.py"
 
 
-def test_a_file_that_was_handed_in_again_gets_its_own_name_back(
-    tmp_path: Path, finder: Finder
-) -> None:
+def test_a_file_that_was_handed_in_again_gets_its_own_name_back(tmp_path, finder):
     export = {
         "ann_1_21_node-1.py": NODE,
         "bob_LATE_2_12_pkg-2.zip": packed({"third.py": NODE}),
@@ -66,7 +63,7 @@ def test_a_file_that_was_handed_in_again_gets_its_own_name_back(
     assert (ann.attempt, bob.attempt, cy.attempt) == (2, 3, 2)
 
 
-def test_the_gradebook_is_a_roster(tmp_path: Path, finder: Finder) -> None:
+def test_the_gradebook_is_a_roster(tmp_path, finder):
     export = {"müllerzoë_1001_5001_node.py": NODE, "leebob_1002_5002_node.py": NODE}
     gradebook = tmp_path / "gradebook.csv"
     gradebook.write_text(GRADEBOOK, encoding="utf-8")
@@ -78,15 +75,3 @@ def test_the_gradebook_is_a_roster(tmp_path: Path, finder: Finder) -> None:
     ]
     assert found.hand_ins[0].people[0].columns["SIS Login ID"] == "zoe"
     assert noted(found, "Not in gradebook.csv", "leebob")
-
-
-def test_a_text_or_a_link_alone_tells_canvass_id(tmp_path: Path, finder: Finder) -> None:
-    files = {
-        "ann_1_text.html": "",
-        "bob_2_link.html": "",
-        "cy_3_4_x.py": NODE,
-        "cy_3_text.html": "",
-    }
-    by_id = finder.by_id(lay(tmp_path / "c", files))
-    told = {id: each.people[0].columns["Exported as"] for id, each in by_id.items()}
-    assert told == {"1": "ann_1_text.html", "2": "bob_2_link.html", "3": "cy_3_4_x.py"}

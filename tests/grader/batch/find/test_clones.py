@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.grader.batch.find.exports import NODE, Finder, lay, noted
+from tests.files import lay
+from tests.grader.batch.find.exports import NODE, noted
 
 SCORES = (
     "username,first_name,last_name,email,section,score,max_score,datetime,submission_tag\n"
@@ -21,7 +22,7 @@ def clones(root: Path, *names: str) -> Path:
     return root
 
 
-def test_a_clone_is_called_by_its_student(tmp_path: Path, finder: Finder) -> None:
+def test_a_clone_is_called_by_its_student(tmp_path, finder):
     root = clones(tmp_path / "spiral-submissions", "spiral-anna", "spiral-bob")
     found = finder(lay(root, {"notes.txt": ""}))
     assert [(each.id, each.path, each.at) for each in found.hand_ins] == [
@@ -33,7 +34,7 @@ def test_a_clone_is_called_by_its_student(tmp_path: Path, finder: Finder) -> Non
     assert noted(found, "are no repositories", "notes.txt")
 
 
-def test_classroom_50_says_who_was_to_hand_in_and_when(tmp_path: Path, finder: Finder) -> None:
+def test_classroom_50_says_who_was_to_hand_in_and_when(tmp_path, finder):
     """The longest end counts: `cs-spiral-anna-b` is not the hand-in of `b`."""
     root = tmp_path / "cs-spiral_submissions"
     for user in ("anna-b", "anna-c"):
@@ -48,9 +49,7 @@ def test_classroom_50_says_who_was_to_hand_in_and_when(tmp_path: Path, finder: F
     assert str(by_id["b"].problem) == "Nothing was handed in."
 
 
-def test_two_repositories_that_may_be_one_students_are_nobodys(
-    tmp_path: Path, finder: Finder
-) -> None:
+def test_two_repositories_that_may_be_one_students_are_nobodys(tmp_path, finder):
     root = clones(tmp_path / "c", "hw-ann", "hw-x-ann", "hw-bob")
     found = finder(lay(root, {"roster.csv": "username,name\nann,Ann\nbob,Bob\n"}))
     assert sorted(each.name for each in found.hand_ins if each.path) == ["Bob", "ann", "x-ann"]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from pathlib import Path
 
-from tests.grader.batch.find.exports import NODE, Finder, content, lay, noted
+from tests.files import lay
+from tests.grader.batch.find.exports import NODE, content, noted
 
 METADATA = """\
 ---
@@ -63,12 +64,12 @@ def export(root: Path, metadata: str = METADATA) -> Path:
             "assignment_9_export/submission_102/pkg/setup.py": "",
             "assignment_9_export/submission_102/pkg/pkg/node.py": NODE,
             "assignment_9_export/submission_103/late.py": NODE,
-            "assignment_9_export/submission_105": None,
+            "assignment_9_export/submission_105/.DS_Store": "",
         },
     )
 
 
-def test_the_metadata_say_who_and_when(tmp_path: Path, finder: Finder) -> None:
+def test_the_metadata_say_who_and_when(tmp_path, finder):
     found = finder(export(tmp_path / "g"))
     by_id = {each.id: each for each in found.hand_ins}
     assert sorted(by_id) == ["007", "008+1e3", "105", "gone@example.org"]
@@ -83,13 +84,13 @@ def test_the_metadata_say_who_and_when(tmp_path: Path, finder: Finder) -> None:
     assert noted(found, "Several attempts", "Ann")
 
 
-def test_damaged_metadata_leave_the_folders(tmp_path: Path, finder: Finder) -> None:
+def test_damaged_metadata_leave_the_folders(tmp_path, finder):
     found = finder(export(tmp_path / "g", METADATA + "\n  - {"))
     assert [each.id for each in found.hand_ins] == ["101", "102", "103", "105"]
     assert noted(found, "Names, ids and times are missing", "submission_metadata.yml", "line")
 
 
-def test_no_tag_of_a_stranger_is_followed(tmp_path: Path, finder: Finder) -> None:
+def test_no_tag_of_a_stranger_is_followed(tmp_path, finder):
     ran = tmp_path / "ran"
     path = f"!!python/object/apply:pathlib.Path ['{ran}']"
     metadata = (
@@ -102,7 +103,7 @@ def test_no_tag_of_a_stranger_is_followed(tmp_path: Path, finder: Finder) -> Non
     assert by_id["a@b.c"].path
 
 
-def test_a_member_of_a_group_is_in_his_newest_hand_in_alone(tmp_path: Path, finder: Finder) -> None:
+def test_a_member_of_a_group_is_in_his_newest_hand_in_alone(tmp_path, finder):
     ann, bob = "  - :name: Ann\n    :sid: s1\n", "  - :name: Bob\n    :sid: s2\n"
 
     def told(number: int, people: str, day: int) -> str:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
 import unicodedata
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 
 from grader.batch.find.plain import Pattern
 from grader.errors import UsageError
-from tests.grader.batch.find.exports import NODE, Finder, content, lay, noted, packed
+from tests.files import lay
+from tests.grader.batch.find.exports import NODE, content, noted, packed
 
 
-def test_each_file_and_folder_is_a_student(tmp_path: Path, finder: Finder) -> None:
+def test_each_file_and_folder_is_a_student(tmp_path, finder):
     files = {
         "alice.py": NODE,
         "bob/pkg/setup.py": "",
@@ -45,7 +46,7 @@ def test_each_file_and_folder_is_a_student(tmp_path: Path, finder: Finder) -> No
     assert noted(found, "grades.xlsx", "README.md")
 
 
-def test_of_two_with_one_name_the_archive_is_taken(tmp_path: Path, finder: Finder) -> None:
+def test_of_two_with_one_name_the_archive_is_taken(tmp_path, finder):
     found = finder(lay(tmp_path / "c", {"a.py": NODE, "a.zip": packed({"x.py": NODE})}))
     assert [each.filename for each in found.hand_ins] == ["a.zip"]
     assert noted(found, "a folder or archive has the same name: a.py")
@@ -59,9 +60,7 @@ def test_of_two_with_one_name_the_archive_is_taken(tmp_path: Path, finder: Finde
         {"src/pkg/setup.py": "", "build/x": "", "install/y": ""},
     ],
 )
-def test_a_single_submission_is_refused(
-    tmp_path: Path, finder: Finder, files: dict[str, str]
-) -> None:
+def test_a_single_submission_is_refused(tmp_path, finder, files):
     with pytest.raises(UsageError, match=r"is one submission.* Use: grader run"):
         finder(lay(tmp_path / "alice", files))
     archive = tmp_path / "alice.zip"
@@ -70,7 +69,7 @@ def test_a_single_submission_is_refused(
         finder(archive)
 
 
-def test_what_is_nothing_of_a_class_is_refused(tmp_path: Path, finder: Finder) -> None:
+def test_what_is_nothing_of_a_class_is_refused(tmp_path, finder):
     for path, why in (
         (lay(tmp_path / "a", {"node.py": NODE}) / "node.py", "is one submission"),
         (lay(tmp_path / "b", {"x.pdf": ""}) / "x.pdf", "neither a folder of submissions"),
@@ -81,30 +80,30 @@ def test_what_is_nothing_of_a_class_is_refused(tmp_path: Path, finder: Finder) -
             finder(path)
 
 
-def test_what_a_class_was_graded_into_is_no_student(tmp_path: Path, finder: Finder) -> None:
-    files = {"alice.py": NODE, "graded/class.json": "{}", "graded/store": None}
+def test_what_a_class_was_graded_into_is_no_student(tmp_path, finder):
+    files = {"alice.py": NODE, "graded/class.json": "{}", "graded/store/x": ""}
     assert [each.id for each in finder(lay(tmp_path / "c", files)).hand_ins] == ["alice"]
 
 
-def test_names_of_strangers_are_made_harmless(tmp_path: Path, finder: Finder) -> None:
+def test_names_of_strangers_are_made_harmless(tmp_path, finder):
     names = [
-        "a\nb.py",
-        "\x1b[31mred\x07.py",
         "..evil...py",
-        "x\u202egnp.py",
         "=HYPERLINK(1).py",
         "-rf.py",
         "CON.py",
         "con.py",
         "nul.tar.gz",
+        "%2e%2e.py",
         "Zoë.py",
         "zoe.py",
         "ZOE.py",
         "李.py",
         "王.py",
+        "\x1b[31mred\x07.py",
+        "x\u202egnp.py",
+        "a\nb.py",
         "ж" * 100 + ".py",
         "a" * 200 + ".py",
-        "%2e%2e.py",
         unicodedata.normalize("NFD", "Ångström.py"),
         os.fsdecode(b"caf\xe9.py"),
     ]
@@ -113,10 +112,7 @@ def test_names_of_strangers_are_made_harmless(tmp_path: Path, finder: Finder) ->
     # "..evil" begins with a point: hidden files are no hand-ins
     assert len({id.casefold() for id in ids}) == len(ids) == len(names) - 1
     for each in found.hand_ins:
-        assert set(each.id) <= set(
-            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@+-"
-        )
-        assert each.id[0] not in ".-" and each.id[-1] not in ".-" and len(each.id) <= 81
+        assert re.fullmatch(r"[a-zA-Z0-9_@+]([a-zA-Z0-9._@+-]{,79}[a-zA-Z0-9_@+])?", each.id)
         assert each.id.partition(".")[0].upper() not in ("CON", "NUL")
         assert not set(each.name) & set("\n\x1b\x07\u202e")
         assert not any(set(str(note)) & set("\n\x1b\x07\u202e") for note in found.notes)
@@ -124,24 +120,14 @@ def test_names_of_strangers_are_made_harmless(tmp_path: Path, finder: Finder) ->
     assert "Ångström" in [each.name for each in found.hand_ins]
 
 
-def test_the_files_of_a_hand_in_are_not_looked_at_through_links(
-    tmp_path: Path, finder: Finder
-) -> None:
+def test_the_files_of_a_hand_in_are_not_looked_at_through_links(tmp_path, finder):
     folder = lay(tmp_path / "c", {"Bob_8_assignsubmission_file_node.py": NODE})
     (folder / "Eve_9_assignsubmission_file_node.py").symlink_to("/etc/passwd")
     by_id = finder.by_id(folder)
-    assert by_id["9"].path is None
-    assert content(by_id["8"]) == {"node.py"}
+    assert (by_id["9"].path, content(by_id["8"])) == (None, {"node.py"})
 
 
-def test_a_link_that_leads_nowhere_is_told(tmp_path: Path, finder: Finder) -> None:
-    folder = lay(tmp_path / "c", {"alice.py": NODE})
-    (folder / "bob.py").symlink_to("nowhere")
-    told = finder.by_id(folder)["bob"].problem
-    assert str(told) == "What was handed in is a link that leads nowhere."
-
-
-def test_a_link_to_a_folder_is_refused_and_nobody_else_is(tmp_path: Path, finder: Finder) -> None:
+def test_a_link_to_a_folder_is_refused_and_nobody_else_is(tmp_path, finder):
     lay(tmp_path / "secret", {"node.py": NODE})
     folder = lay(tmp_path / "c", {"ok.py": NODE})
     (folder / "eve").symlink_to(tmp_path / "secret")
@@ -158,7 +144,7 @@ def test_a_link_to_a_folder_is_refused_and_nobody_else_is(tmp_path: Path, finder
     assert not any(each.path for each in found.hand_ins if each.id != "ok")
 
 
-def test_what_is_no_file_is_never_opened(tmp_path: Path, finder: Finder) -> None:
+def test_what_is_no_file_is_never_opened(tmp_path, finder):
     folder = lay(tmp_path / "c", {"ok.py": NODE})
     for name in ("bob.py", "carol.zip", "roster.csv"):
         os.mkfifo(folder / name)
@@ -170,7 +156,7 @@ def test_what_is_no_file_is_never_opened(tmp_path: Path, finder: Finder) -> None
     assert all("neither a file nor a folder" in problem for problem in told.values())
 
 
-def test_names_of_files_are_taken_apart(tmp_path: Path, finder: Finder) -> None:
+def test_names_of_files_are_taken_apart(tmp_path, finder):
     files = {
         "s1_Ann Lee_1_20261101T120000Z.py": NODE,
         "s1_Ann Lee_2_20261102T120000Z.zip": b"",
@@ -186,7 +172,7 @@ def test_names_of_files_are_taken_apart(tmp_path: Path, finder: Finder) -> None:
     assert noted(found, "Several attempts", "Ann Lee")
 
 
-def test_folders_are_taken_apart_too(tmp_path: Path, finder: Finder) -> None:
+def test_folders_are_taken_apart_too(tmp_path, finder):
     files = {
         "ann@x.org/2026-11-01_12-00-00+0100/node.py": NODE,
         "ann@x.org/2026-10-01_12-00-00+0100/node.py": NODE,
@@ -204,7 +190,7 @@ def test_folders_are_taken_apart_too(tmp_path: Path, finder: Finder) -> None:
     assert bob.at is None and noted(found, "soon is no time")
 
 
-def test_a_file_gets_its_own_name_back(tmp_path: Path, finder: Finder) -> None:
+def test_a_file_gets_its_own_name_back(tmp_path, finder):
     files = {"lab3-s1-A-my-node.py": NODE, "lab3-s2-B-x.tar.gz": b""}
     pattern = "lab3-{id}-{section}-{filename}"
     one, two = finder(lay(tmp_path / "c", files), pattern=pattern).hand_ins
@@ -224,25 +210,25 @@ def test_a_file_gets_its_own_name_back(tmp_path: Path, finder: Finder) -> None:
         ("{id}//x", "empty folders"),
     ],
 )
-def test_a_pattern_that_makes_no_sense_says_why(pattern: str, why: str) -> None:
+def test_a_pattern_that_makes_no_sense_says_why(pattern, why):
     with pytest.raises(UsageError, match=why):
         Pattern(pattern)
 
 
-def test_a_pattern_that_fits_nothing_says_what_there_is(tmp_path: Path, finder: Finder) -> None:
+def test_a_pattern_that_fits_nothing_says_what_there_is(tmp_path, finder):
     folder = lay(tmp_path / "c", {"alice.py": NODE, "bob.py": NODE})
     with pytest.raises(UsageError, match=r"fits none of what was found: alice\.py, bob\.py"):
         finder(folder, pattern="{id}_{name}")
 
 
-def test_files_of_one_attempt_are_one_submission(tmp_path: Path, finder: Finder) -> None:
+def test_files_of_one_attempt_are_one_submission(tmp_path, finder):
     files = {"ann_1_x.py": NODE, "ann_2_setup.py": "", "ann_2_node.py": NODE, "bob_1_x.py": NODE}
     by_id = finder.by_id(lay(tmp_path / "c", files), pattern="{id}_{attempt}_{filename}")
     assert content(by_id["ann"]) == {"setup.py", "node.py"}
     assert (by_id["ann"].attempt, by_id["bob"].attempt) == (2, 1)
 
 
-def test_no_name_keeps_a_pattern_busy(tmp_path: Path, finder: Finder) -> None:
+def test_no_name_keeps_a_pattern_busy(tmp_path, finder):
     """A regular expression would try all ways to part it: 10 million millions."""
     folder = lay(tmp_path / "c", {"_" * 200 + "x.py": NODE, "1_2_3_4_5_6_7_1_.py": NODE})
     found = finder(folder, pattern="{id}_{a}_{b}_{c}_{d}_{e}_{f}_{attempt}_")

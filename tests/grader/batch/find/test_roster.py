@@ -11,7 +11,8 @@ from grader.batch.find.joining import UNCLEAR
 from grader.batch.find.roster import Roster, read_roster
 from grader.errors import UsageError
 from grader.message import NOTHING
-from tests.grader.batch.find.exports import NODE, Finder, lay, noted
+from tests.files import lay
+from tests.grader.batch.find.exports import NODE, noted
 
 FILES = {"alice.py": NODE, "bob.py": NODE}
 
@@ -36,7 +37,7 @@ def who(found: Roster) -> list[tuple[str, str]]:
     ],
     ids=["plain", "bom", "sep", "utf-16", "cp1252", "quotes"],
 )
-def test_a_table_is_read_however_it_was_saved(tmp_path: Path, content: str | bytes) -> None:
+def test_a_table_is_read_however_it_was_saved(tmp_path, content):
     assert who(roster(tmp_path, content)) == [("z1", "Zoë Müller"), ("b2", "Bob")]
 
 
@@ -65,13 +66,11 @@ def test_a_table_is_read_however_it_was_saved(tmp_path: Path, content: str | byt
         ("Name\nAnn Lee\n", [("Ann Lee", "Ann Lee")]),
     ],
 )
-def test_the_columns_of_course_systems_are_known(
-    tmp_path: Path, content: str, expected: list[tuple[str, str]]
-) -> None:
+def test_the_columns_of_course_systems_are_known(tmp_path, content, expected):
     assert who(roster(tmp_path, content)) == expected
 
 
-def test_a_table_that_is_none_says_so(tmp_path: Path) -> None:
+def test_a_table_that_is_none_says_so(tmp_path):
     for content, why in (
         ("", "is empty"),
         ("colour,size\nred,1\n", "no column that says who somebody is: it has colour, size"),
@@ -84,7 +83,7 @@ def test_a_table_that_is_none_says_so(tmp_path: Path) -> None:
         read_roster(tmp_path / "nothing.csv")
 
 
-def test_a_roster_adds_names_and_whoever_handed_in_nothing(tmp_path: Path, finder: Finder) -> None:
+def test_a_roster_adds_names_and_whoever_handed_in_nothing(tmp_path, finder):
     table = "id,name,at\nALICE,Alice A,2026-11-01T12:00:00Z\ncarol,Carol C,\ncarol,Twice,\n,,x\n"
     found = finder(lay(tmp_path / "c", {**FILES, "Roster.csv": table}))
     assert [(each.id, each.name, str(each.problem)) for each in found.hand_ins] == [
@@ -98,7 +97,7 @@ def test_a_roster_adds_names_and_whoever_handed_in_nothing(tmp_path: Path, finde
     assert noted(found, "several rows of the same id", "carol")
 
 
-def test_names_join_where_one_person_alone_has_them(tmp_path: Path, finder: Finder) -> None:
+def test_names_join_where_one_person_alone_has_them(tmp_path, finder):
     files = {"Zoë Müller.py": NODE, "Ann_Lee.py": NODE, "Lee, Ann.py": NODE, "Bo Lee.py": NODE}
     table = "id,name\ns1,Zoë Müller\ns2,Ann Lee\ns3,Bo Lee\ns4,bo lee\n"
     found = finder(lay(tmp_path / "c", {**files, "roster.csv": table}))
@@ -110,8 +109,8 @@ def test_names_join_where_one_person_alone_has_them(tmp_path: Path, finder: Find
 
 @pytest.mark.parametrize("names", [("s1.py", "alice@x.org.zip"), ("S1.py", "s1/node.py")])
 def test_two_of_one_student_are_kept_apart_where_nothing_tells_which_is_newer(
-    tmp_path: Path, finder: Finder, names: tuple[str, str]
-) -> None:
+    tmp_path, finder, names
+):
     table = "id,name,email\ns1,Alice,alice@x.org\n"
     files = {**dict.fromkeys(names, NODE), "roster.csv": table}
     found = finder(lay(tmp_path / "c", files))
@@ -121,7 +120,7 @@ def test_two_of_one_student_are_kept_apart_where_nothing_tells_which_is_newer(
     assert noted(found, "not clear which hand-in is theirs: Alice (s1)")
 
 
-def test_nobody_gets_anothers_place_by_his_name(tmp_path: Path, finder: Finder) -> None:
+def test_nobody_gets_anothers_place_by_his_name(tmp_path, finder):
     """Names can be chosen, in Moodle, Canvas and GitHub alike."""
     files = {
         "Ann Lee_1_assignsubmission_file/node.py": NODE,
@@ -143,12 +142,12 @@ def test_nobody_gets_anothers_place_by_his_name(tmp_path: Path, finder: Finder) 
     assert noted(found, "Some ids stand there with several names")
 
 
-def test_another_table_of_scores_is_no_roster(tmp_path: Path, finder: Finder) -> None:
+def test_another_table_of_scores_is_no_roster(tmp_path, finder):
     found = finder(lay(tmp_path / "c", {**FILES, "scores.csv": "colour\nred\n"}))
     assert [each.id for each in found.hand_ins] == ["alice", "bob"]
 
 
-def test_an_absence_never_beats_a_hand_in(tmp_path: Path, finder: Finder) -> None:
+def test_an_absence_never_beats_a_hand_in(tmp_path, finder):
     table = "student number,username,name\nbob,x,Bee\n99,bob,Cee\n"
     found = finder(lay(tmp_path / "c", {"bob.py": NODE, "roster.csv": table}))
     by_id = {each.id: each for each in found.hand_ins}
@@ -159,7 +158,7 @@ def test_an_absence_never_beats_a_hand_in(tmp_path: Path, finder: Finder) -> Non
     assert not noted(found, "Several attempts")
 
 
-def test_an_id_of_the_roster_is_not_the_same_name_of_a_file(tmp_path: Path, finder: Finder) -> None:
+def test_an_id_of_the_roster_is_not_the_same_name_of_a_file(tmp_path, finder):
     table = "student number,username,name\n7,zoe,Zed\nbob,7,Bee\n99,bob,Cee\n"
     files = {f"{name}.py": NODE for name in ("7", "bob", "zoe")}
     found = finder(lay(tmp_path / "c", {**files, "roster.csv": table}))
@@ -168,16 +167,7 @@ def test_an_id_of_the_roster_is_not_the_same_name_of_a_file(tmp_path: Path, find
     assert noted(found, "not clear which hand-in is theirs: Bee (bob), Cee (99)")
 
 
-def test_two_of_one_name_are_told_to_be_ambiguous(tmp_path: Path, finder: Finder) -> None:
-    files = {f"Max Muster_{number}_assignsubmission_file/node.py": NODE for number in (1, 2)}
-    table = "First name,Last name,ID number\nMax,Muster,900\nMax,Muster,901\nMia,Other,1\n"
-    found = finder(lay(tmp_path / "c", {**files, "roster.csv": table}))
-    problems = {each.id: each.problem for each in found.hand_ins if not each.path}
-    assert sorted(problems.items())[1:] == [("900", UNCLEAR), ("901", UNCLEAR)]
-    assert noted(found, "not clear which hand-in is theirs: Max Muster (900), Max Muster (901)")
-
-
-def test_times_that_cannot_be_read_are_told(tmp_path: Path) -> None:
+def test_times_that_cannot_be_read_are_told(tmp_path):
     found = roster(tmp_path, "id,at\nzoe,2026-11-30T23:00:00\nbob,yesterday\n7,2026-13-45\nx,\n")
     (note,) = map(str, found.notes)
     assert "bob: yesterday, 7: 2026-13-45" in note
@@ -185,7 +175,7 @@ def test_times_that_cannot_be_read_are_told(tmp_path: Path) -> None:
     assert "local time" in note
 
 
-def test_moodles_worksheet_says_when_it_was_handed_in(tmp_path: Path) -> None:
+def test_moodles_worksheet_says_when_it_was_handed_in(tmp_path):
     title, said = "Last modified (submission)", '"Tuesday, 1 December 2026, 6:00 PM"'
     table = f"Identifier,Full name,{title}\nParticipant 7,Ann,{said}\nParticipant 8,Bob,-\n"
     found = roster(tmp_path, table)

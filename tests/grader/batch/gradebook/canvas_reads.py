@@ -90,7 +90,7 @@ def _decimal(text: str) -> str:
 
 
 def feedback_zip(
-    content: bytes, submissions: Mapping[int, Collection[int]], groups: Collection[str] = ()
+    content: bytes, submissions: Mapping[int, Collection[int]]
 ) -> tuple[dict[int, tuple[str, bytes]], list[str]]:
     """Comments by user, each a file; and the names that are ignored.
 
@@ -101,8 +101,6 @@ def feedback_zip(
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         for path in archive.namelist():
             name = path.rpartition("/")[2]
-            for group in groups:
-                name = name.removeprefix(f"{group}_")
             parts = [part for part in name.split("_") if part != "LATE"]
             user, file, *_ = ([int(p) for p in parts if re.fullmatch(r"\d+", p)] + [0, 0])[:2]
             if parts[-1].startswith("link") or file not in submissions.get(user, ()):

@@ -33,7 +33,7 @@ def written(out: Path) -> dict[str, bytes]:
     return {path.relative_to(out).as_posix(): path.read_bytes() for path in found}
 
 
-def test_the_same_class_gives_the_same_bytes(tmp_path: Path) -> None:
+def test_the_same_class_gives_the_same_bytes(tmp_path):
     people = (in_worksheet(0), in_canvas(1), person(2))
     for name, wall_s, isolation in (("a", 4.25, "domain 17"), ("b", 9.5, "domain 3")):
         circumstances = {"run": run(wall_s=wall_s, isolation=isolation)}
@@ -43,23 +43,18 @@ def test_the_same_class_gives_the_same_bytes(tmp_path: Path) -> None:
     assert len(written(tmp_path / "a")) == 8
 
 
-def test_an_export_that_there_is_no_more_goes(tmp_path: Path) -> None:
+def test_an_export_that_there_is_no_more_goes(tmp_path):
     write(tmp_path, [judged(tmp_path, in_worksheet(0))], TITLE)
     assert "export/moodle-feedback.zip" in written(tmp_path)
-    notes = write(tmp_path, [judged(tmp_path, person(0))], TITLE)
-    assert written(tmp_path).keys() == {
-        *("gradebook.csv", "gradebook.jsonl", "export/feedback.zip", "export/notes.txt")
-    }
-    assert len(notes) == 1
-    assert "--roster" in str(notes[0])
+    (note,) = write(tmp_path, [judged(tmp_path, person(0))], TITLE)
+    ours = {"gradebook.csv", "gradebook.jsonl"}
+    assert written(tmp_path).keys() == {*ours, "export/feedback.zip", "export/notes.txt"}
+    assert "--roster" in str(note)
+    assert write(tmp_path, [], TITLE) == []  # nobody at all is a class too
+    assert written(tmp_path).keys() == ours
 
 
-def test_nobody_at_all_is_a_class_too(tmp_path: Path) -> None:
-    assert write(tmp_path, [], TITLE) == []
-    assert written(tmp_path).keys() == {"gradebook.csv", "gradebook.jsonl"}
-
-
-def test_who_is_left_out_is_told(tmp_path: Path) -> None:
+def test_who_is_left_out_is_told(tmp_path):
     lower = in_worksheet(0, **{"Maximum Grade": "20,00"})
     others = [judged(tmp_path, person(number)) for number in range(1, 6)]
     failed = without_result("failed", in_worksheet(7))
@@ -73,20 +68,23 @@ def test_who_is_left_out_is_told(tmp_path: Path) -> None:
     assert (tmp_path / "export/notes.txt").read_text().splitlines() == list(map(str, notes))
 
 
-def test_numbers_that_may_be_those_of_groups_are_told(tmp_path: Path) -> None:
-    by_name = Person("1", "Team 1", {"Identifier": "Participant 17"})
-    (note,) = write(tmp_path, [judged(tmp_path, by_name)], TITLE)
-    assert "numbers of groups" in str(note)
+@pytest.mark.parametrize(
+    ("columns", "told"),
+    [
+        ({"Identifier": "Participant 17"}, ["numbers of groups"]),
+        (
+            {"SIS User ID": "sis-9"},
+            ["which assignment 'Spiral' is", "Not in Canvas's feedback: Xaver"],
+        ),
+    ],
+)
+def test_what_is_missing_for_an_import_is_told(tmp_path, columns, told):
+    notes = write(tmp_path, [judged(tmp_path, Person("x", "Xaver", columns))], TITLE)
+    assert len(notes) == len(told)
+    assert all(text in str(note) for text, note in zip(told, notes, strict=True))
 
 
-def test_of_canvas_it_is_told_what_is_missing(tmp_path: Path) -> None:
-    nameless = Person("x", "Xaver", {"SIS User ID": "sis-9"})
-    note, other = write(tmp_path, [judged(tmp_path, nameless)], TITLE)
-    assert "which assignment 'Spiral' is" in str(note)
-    assert "Not in Canvas's feedback: Xaver" in str(other)
-
-
-def test_a_student_reads_nothing_of_what_is_hidden(tmp_path: Path) -> None:
+def test_a_student_reads_nothing_of_what_is_hidden(tmp_path):
     hidden = verdict("secret", "failed", 0, rationale="The hidden start.", visible="after_due")
     listed = [*MIXED, hidden]
     entry = judged(tmp_path, in_worksheet(0), verdicts=listed, max_score=50)
@@ -98,51 +96,37 @@ def test_a_student_reads_nothing_of_what_is_hidden(tmp_path: Path) -> None:
     assert before.sentence(grade).startswith("Graded automatically: 18.33 of 40 points.")
 
 
-def test_a_page_tells_a_student_why_nothing_could_be_started() -> None:
-    entry = without_result("unusable", person(0), message="There is no <Python> file.")
-    page = Feedback().page(entry)
-    assert b"There is no &lt;Python&gt; file." in page
-
-
-def test_what_a_node_printed_is_text_in_a_page(tmp_path: Path) -> None:
+def test_what_strangers_wrote_is_text_in_a_page(tmp_path):
+    unusable = without_result("unusable", person(0), message="There is no <Python> file.")
+    assert b"There is no &lt;Python&gt; file." in Feedback().page(unusable)
     page = Feedback().page(judged(tmp_path, person(0)))
     assert b"&lt;script&gt;alert(1)" in page
     assert b"<script>alert(1)" not in page
 
 
-def test_a_page_does_not_tell_when_a_line_was_logged_or_where_an_object_lay(
-    tmp_path: Path,
-) -> None:
-    pages = []
-    for at, place in (("1795326736.957123456", "0x7f01aa"), ("1795326999.000000001", "0x7f02bb")):
-        entry = judged(tmp_path / place, person(0))
-        line = f"[INFO] [{at}] [node]: <Pose object at {place}33445566>\n"
-        (entry.folder / "output.txt").write_text(line)
-        pages.append(Feedback().page(entry))
-    assert pages[0] == pages[1]
-    assert b"[INFO] [...] [node]: &lt;Pose object at 0x...&gt;" in pages[0]
+def test_a_page_does_not_tell_when_a_line_was_logged_or_where_an_object_lay(tmp_path):
+    entry = judged(tmp_path, person(0))
+    line = "[INFO] [1795326736.957123456] [node]: <Pose object at 0x7f01aa33445566>\n"
+    (entry.folder / "output.txt").write_text(line)
+    assert b"[INFO] [...] [node]: &lt;Pose object at 0x...&gt;" in Feedback().page(entry)
 
 
-def test_zips_have_no_dates_and_are_whole(tmp_path: Path) -> None:
-    write(tmp_path, [judged(tmp_path, in_worksheet(n)) for n in (3, 1, 2)], TITLE)
+def test_zips_have_no_dates_and_tables_as_many_cells_in_each_row(tmp_path):
+    class_ = [judged(tmp_path, in_worksheet(n)) for n in (3, 1, 2)]
+    class_ += [judged(tmp_path, in_canvas(n)) for n in (12, 13)]
+    write(tmp_path, class_, TITLE)
     with zipfile.ZipFile(tmp_path / "export/moodle-feedback.zip") as archive:
         assert archive.testzip() is None
         assert {member.date_time for member in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
         assert archive.namelist() == sorted(archive.namelist())
-
-
-def test_every_table_has_as_many_cells_in_each_row(tmp_path: Path) -> None:
-    class_ = [judged(tmp_path, in_worksheet(n)) for n in range(12)]
-    class_ += [judged(tmp_path, in_canvas(n)) for n in range(12, 24)]
-    write(tmp_path, class_, TITLE)
-    tables = {name: data for name, data in written(tmp_path).items() if name.endswith(".csv")}
+    tables = [data for name, data in written(tmp_path).items() if name.endswith(".csv")]
     assert len(tables) == 4
-    for content in tables.values():
+    for content in tables:
         rows = list(csv.reader(io.StringIO(content.decode("utf-8-sig")), strict=True))
         assert {len(row) for row in rows} == {len(rows[0])}
 
 
-def test_no_link_in_the_place_of_an_export_is_followed(tmp_path: Path) -> None:
+def test_no_link_in_the_place_of_an_export_is_followed(tmp_path):
     out, elsewhere = tmp_path / "class", tmp_path / "elsewhere"
     for folder in (out, elsewhere):
         folder.mkdir()
@@ -162,7 +146,7 @@ def rows(entries):
     return list(csv.DictReader(io.StringIO(text[1:]), strict=True))
 
 
-def test_each_member_of_a_group_has_a_row(tmp_path: Path) -> None:
+def test_each_member_of_a_group_has_a_row(tmp_path):
     first, second = rows([judged(tmp_path, person(0), person(2), deducted=3)])
     assert (first["id"], second["id"], second["name"]) == ("s0", "s2", "李小龙")
     assert {first["group"], second["group"]} == {"s0; s2"}
@@ -172,7 +156,7 @@ def test_each_member_of_a_group_has_a_row(tmp_path: Path) -> None:
     assert [first[check] for check in ("starts", "draws", "rests")] == ["10.00", "8.33", "0.00"]
 
 
-def test_nobody_pays_for_the_grader_and_nothing_is_worth_nothing() -> None:
+def test_nobody_pays_for_the_grader_and_nothing_is_worth_nothing():
     class_ = [
         without_result("nothing", person(0)),
         without_result("unusable", person(1), message="No Python file."),
@@ -183,23 +167,21 @@ def test_nobody_pays_for_the_grader_and_nothing_is_worth_nothing() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_no_name_is_a_formula_or_breaks_a_row(name: str) -> None:
+def test_no_name_is_a_formula_or_breaks_a_row(name):
     (row,) = rows([without_result("nothing", Person("s1", name))])
     assert not row["name"].startswith(tuple("=+-@\t"))
     assert row["name"].removeprefix("'") == " ".join(name.split())
     assert None not in row
 
 
-def test_a_check_may_be_called_as_a_column_is(tmp_path: Path) -> None:
-    from tests.grader.reports.samples import verdict
-
+def test_a_check_may_be_called_as_a_column_is(tmp_path):
     listed = [verdict("final"), verdict("=1+1")]
     entry = judged(tmp_path, person(0), verdicts=listed, score=20, max_score=20)
     (row,) = rows([entry])
     assert (row["final"], row["final (check)"], row["'=1+1"]) == ("20.00", "10.00", "10.00")
 
 
-def test_lines_of_json_have_everything_as_it_is(tmp_path: Path) -> None:
+def test_lines_of_json_have_everything_as_it_is(tmp_path):
     class_ = [
         judged(tmp_path, person(3), person(6), deducted=30),
         without_result("failed", person(1), message="Why."),

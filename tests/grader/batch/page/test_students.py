@@ -12,27 +12,21 @@ from tests.grader.batch.page.classes import entry, result, student
 GOOD = {"a": 10.0}
 
 
-def test_a_name_is_one_plain_line_of_bounded_length():
+def test_a_name_is_one_plain_line_of_bounded_length_or_the_id():
     (one,) = students([entry("x", name="A\x1b[31m\u202eB\n" + "C" * 500)])
     assert one.name.startswith("A\ufffdB C")
     assert len(one.name) == 80
+    (nameless,) = students([entry("4711")])
+    assert (nameless.name, nameless.id) == ("4711", "4711")
 
 
-def test_who_has_no_name_is_called_by_the_id():
-    (one,) = students([entry("4711")])
-    assert (one.name, one.id) == ("4711", "4711")
-
-
-def test_numbers_count_all_and_follow_neither_ids_nor_names():
-    everybody = students(entry(f"s{k:02}", name=f"Name {k:02}") for k in range(30))
+def test_numbers_count_all_and_follow_neither_ids_nor_names_nor_the_order_of_entries():
+    listed = [entry(f"s{k:02}", name=f"Name {k:02}") for k in range(30)]
+    everybody = students(listed)
+    assert everybody == students(reversed(listed))
     numbers = [one.number for one in everybody]
     assert sorted(numbers) == list(range(1, 31))
     assert numbers != sorted(numbers)
-
-
-def test_a_number_does_not_depend_on_the_order_of_the_entries():
-    listed = [entry(f"s{k}") for k in range(9)]
-    assert students(listed) == students(reversed(listed))
 
 
 def test_the_report_is_beside_the_page_and_only_where_there_is_one():

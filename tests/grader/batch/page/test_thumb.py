@@ -42,6 +42,7 @@ def read(folder, data):
 
 def test_it_is_the_picture_and_the_way_of_the_nominal_run(spiral, tmp_path):
     made = read(tmp_path, thumb(spiral))
+    assert thumb(spiral) == thumb(Recordings(drive(Spiral())))
     with Image.open(io.BytesIO(base64.b64decode(made.picture.partition(",")[2]))) as picture:
         assert picture.size == (EDGE_PX, EDGE_PX)
     (piece,) = made.path
@@ -50,10 +51,6 @@ def test_it_is_the_picture_and_the_way_of_the_nominal_run(spiral, tmp_path):
     assert piece[-2:] == pytest.approx(end, abs=2)
     assert 50 < len(piece) // 2 <= 300
     assert len(made.picture) < 6000
-
-
-def test_the_same_recording_makes_the_same_bytes(spiral):
-    assert thumb(spiral) == thumb(Recordings(drive(Spiral())))
 
 
 def test_noise_weighs_no_more_than_a_spiral_may(spiral, tmp_path):
@@ -135,12 +132,9 @@ def test_no_point_is_farther_off_than_the_tolerance(points):
     assert off(points, line) <= 5.0 + 1e-6
 
 
-def test_a_straight_line_is_its_two_ends():
+def test_a_straight_line_is_its_two_ends_and_cut_where_it_was_nowhere():
     points = np.column_stack([np.arange(100.0), np.arange(100.0)])
     assert simplified(points, 0.5).tolist() == [[0, 0], [99, 99]]
-
-
-def test_a_line_is_cut_where_it_was_nowhere():
     x = np.array([np.nan, 1, 2, np.inf, 3, np.nan, 4, 5])
     assert [piece.tolist() for piece in pieces(x, x)] == [[[1, 1], [2, 2]], [[4, 4], [5, 5]]]
     assert pieces(x[:0], x[:0]) == []
