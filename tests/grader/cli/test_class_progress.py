@@ -34,8 +34,8 @@ def _graded(store: Store, number: int, path: Path | None) -> HandIn:
 
 @pytest.mark.parametrize("each_s", [0.5, 25.0, 400.0])
 def test_after_ten_runs_the_time_left_is_right_however_slow_and_however_many_are_missing(
-    each_s: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    each_s, tmp_path, monkeypatch
+):
     store, clock, shown = Store(tmp_path), Clock(), list[Progress]()
 
     def seen(*columns: str, **options: object) -> Progress:

@@ -8,7 +8,6 @@ import pytest
 
 from grader import system
 from grader.cli import main
-from grader.course.kinds import KINDS
 from grader.exercise.places import names
 
 
@@ -37,10 +36,9 @@ def test_the_challenge_comes_by_itself(tmp_path, capsys, monkeypatch):
     assert not list(tmp_path.rglob(".git"))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_folder_with_something_in_it_stays_as_it_is(tmp_path, capsys, kind):
+def test_a_folder_with_something_in_it_stays_as_it_is(tmp_path, capsys):
     (tmp_path / "mine.txt").write_text("mine")
-    assert new(tmp_path, kind=kind) == 2
+    assert new(tmp_path) == 2
     assert "is not empty; give a new folder, nothing was written" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
@@ -74,15 +72,16 @@ def test_the_help_lists_the_exercises(capsys, verb):
     assert all(name in said for name in names())
 
 
-def test_an_exercise_that_is_named_twice_comes_once(tmp_path):
-    assert new(tmp_path / "course", "--exercises", "talker", "talker", kind="gradescope") == 0
-    readme = (tmp_path / "course" / "README.md").read_text()
-    assert readme.count("| `talker` |") == 1
-
-
-def test_kilted_has_its_extra_and_its_names(tmp_path):
-    assert new(tmp_path / "course", "--ros", "kilted") == 0
+def test_release_points_and_language_are_taken_over_and_an_exercise_named_twice_once(tmp_path):
+    words = ["--ros", "kilted", "--pass-points", "72.5", "--lang", "fr"]
+    once = "turtlesim_challenge"
+    assert new(tmp_path, *words, "--exercises", once, once) == 0
     assert "turtlesim_py[kilted]==" in workflow(tmp_path)
+    assert 'PASS_POINTS: "72.5"' in workflow(tmp_path)
+    readme, sheet = (tmp_path / name / "README.md" for name in (".", f"templates/{once}"))
+    assert readme.read_text().count(f"| `{once}` |") == 1
+    assert "## The first week" in readme.read_text()  # steps are in English, sheets are not
+    assert "Comment l'essayer" in sheet.read_text()
     (starter,) = tmp_path.rglob("turtle_controller.py")
     assert "turtlesim_msgs" in starter.read_text()
 
@@ -162,15 +161,3 @@ def test_an_option_that_cannot_be_used_is_told(tmp_path, capsys, kind, words, wh
     assert new(tmp_path / "course", *words, kind=kind) == 2
     assert why in capsys.readouterr().err
     assert not (tmp_path / "course").exists()
-
-
-def test_points_to_pass_are_taken_over(tmp_path):
-    assert new(tmp_path / "a", "--pass-points", "72.5") == 0
-    assert 'PASS_POINTS: "72.5"' in workflow(tmp_path / "a")
-
-
-def test_sheets_are_in_the_teacher_s_language_and_steps_in_english(tmp_path):
-    assert main(["course", "new", str(tmp_path / "c"), "--for", "gradescope", "--lang", "fr"]) == 0
-    assert "## The first week" in (tmp_path / "c" / "README.md").read_text()
-    sheet = tmp_path / "c" / "starters" / "turtlesim_challenge" / "README.md"
-    assert "Comment l'essayer" in sheet.read_text()

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[3]
+from tests.programs import ROOT
+from tests.tiers import others_are_more
+
 INTERRUPTED = """
 import sys
 
@@ -24,16 +25,21 @@ sys.exit(main(["run", "x.py"]))
 """
 
 
+MODULES = [
+    ("grader.cli.options", "grader"),
+    ("grader.cli.run", "grader"),
+    ("grader.run.processes.started_process", "grader"),
+    ("grader.cli.grade_one", "grader run"),
+    ("numpy", "grader run"),
+    ("yaml", "grader run"),
+]
+
+
 @pytest.mark.parametrize(
     ("module", "who"),
-    [
-        ("grader.cli.options", "grader"),
-        ("grader.cli.run", "grader"),
-        ("grader.run.processes.started_process", "grader"),
-        ("grader.cli.grade_one", "grader run"),
-        ("numpy", "grader run"),
-        ("yaml", "grader run"),
-    ],
+    others_are_more(
+        "one before the verb is known and one after", MODULES, "grader.cli.run", "yaml"
+    ),
 )
 def test_it_ends_in_one_line_and_without_a_traceback(module, who):
     env = {**os.environ, "PYTHONPATH": str(ROOT)}

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from grader import cli, system
-from grader.cli import run
+from grader.cli import live, run
 from grader.grading import RUNNERS
 from tests.grader.reports import samples
+from tests.programs import ROOT
 
-ROOT = Path(__file__).parents[3]
 IMPORTED = """
 import json, sys
 import grader.cli
@@ -43,9 +43,7 @@ def imported(*words: str | Path, cwd: Path = ROOT) -> set[str]:
     return set(json.loads(done.stdout.splitlines()[-1]))
 
 
-@pytest.mark.parametrize(
-    "words", [[], ["--help"], ["--version"], ["run", "--help"], ["run", "--nonsense"]]
-)
+@pytest.mark.parametrize("words", [["--version"], ["run", "--help"], ["run", "--nonsense"]])
 def test_who_only_asks_for_help_waits_for_nothing(words):
     assert not DEAR & imported(*words)
 
@@ -58,14 +56,6 @@ def test_the_versions_are_told(capsys):
     assert said.startswith(
         f"grader {system.grader_version()} (Python {system.python_version()}, rclpy "
     )
-
-
-def test_a_run_validates_nothing_of_its_own(tmp_path):
-    node = tmp_path / "node.py"
-    node.write_text("print('over')")
-    modules = imported("run", node, "--out", tmp_path / "out", cwd=tmp_path)
-    assert (tmp_path / "out" / "result.json").exists()
-    assert not {"jsonschema", "grader.cli.check_exercise", "grader.testing"} & modules
 
 
 def test_a_table_of_results_needs_no_terminal_and_no_page(tmp_path):
@@ -81,5 +71,6 @@ def test_the_summary_of_a_verb_is_the_first_line_of_its_module(verb):
     assert str(cli.VERBS[verb]) == (cli.load(verb).__doc__ or "").splitlines()[0]
 
 
-def test_the_clocks_are_those_that_there_are():
+def test_the_clocks_and_speeds_are_those_that_there_are():
     assert set(run.CLOCKS) == RUNNERS.keys()
+    assert tuple(live.SPEEDS) == run.SPEEDS

@@ -10,17 +10,12 @@ import PIL.Image
 import pytest
 
 from tests.browser import clipped, needs_browser, obstacles, open_browser
-from tests.grader.cli.test_live import QUICK
+from tests.grader.cli.test_live import ONE_RUN, QUICK
 from tests.programs import DEADLINE_S, Program
 from tests.turtlesim_py.live.test_in_a_browser import PIXELS, pixels_of
 
 pytestmark = needs_browser
-
-#: One run is seen from its first tick to its last.
-EXERCISE = "exercise: turtlesim_challenge\nvaried_runs:\n  count: 0\n"
-
-
-more = pytest.mark.more("a wide screen; the narrow one is in `make test`")
+WIDTH = 375
 
 
 @pytest.fixture(scope="module")
@@ -29,15 +24,14 @@ def browser():
         yield opened
 
 
-@pytest.mark.parametrize("width", [375, pytest.param(1280, marks=more)])
-def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_path, width, browser):
-    (tmp_path / "one_run.yaml").write_text(EXERCISE)
+def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_path, browser):
+    (tmp_path / "one_run.yaml").write_text(ONE_RUN)
     out = tmp_path / "out"
     words = (str(QUICK), "--live", "--speed", "free", "--out", str(out))
     given = ("run", *words, "--exercise", "one_run.yaml", "--lang", "en")
     with Program("grader", *given, cwd=tmp_path) as program:
         address = re.search(r"http://\S+", program.wait_for_line("See the runs at"))[0]
-        page = browser.new_page(viewport={"width": width, "height": 900}, locale="fr-FR")
+        page = browser.new_page(viewport={"width": WIDTH, "height": 900}, locale="fr-FR")
         page.set_default_timeout(DEADLINE_S * 1000)
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))
@@ -56,28 +50,8 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
         assert np.array_equal(pixels[..., :3], expected)
         for what in ("#controls", "#keys", "#graph"):  # nothing that would drive
             assert page.locator(what).is_hidden()
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
         assert clipped(page) == {}
-        page.set_viewport_size({"width": width, "height": 900})
         assert obstacles(page) == []
         assert errors == []
-        page.close()
-
-
-@pytest.mark.more("what the page and the checks say in each language is told without a run")
-def test_the_page_speaks_the_language_of_the_call_as_the_verdicts_do(tmp_path, browser):
-    (tmp_path / "one_run.yaml").write_text(EXERCISE)
-    words = (str(QUICK), "--live", "--speed", "free", "--lang", "fr", "--out", "out")
-    given = ("run", *words, "--exercise", "one_run.yaml")
-    with Program("grader", *given, cwd=tmp_path) as program:
-        address = re.search(r"http://\S+", program.wait_for_line("token="))[0]
-        page = browser.new_page(locale="zh-CN")
-        page.set_default_timeout(DEADLINE_S * 1000)
-        page.goto(address)
-        page.wait_for_selector("#state:has-text('ce qui est affiché reste.')")
-        assert program.wait() == 0
-        assert page.get_attribute("html", "lang") == "fr"
-        page.select_option("#language", "zh")
-        page.wait_for_selector("#state:has-text('页面上的内容会保留。')")
-        assert page.inner_text("#grading-title") == "检查项的结果"
         page.close()

@@ -19,21 +19,13 @@ from grader.result.result import Result
 from grader.run.opening import marks_of
 from grader.submission.reader import Marks
 from tests.files import lay
-from tests.grader.driving import Spiral, drive
+from tests.grader.batch.classes import batch, work_here
 from tests.grader.testing import exercises
 
 DESCRIPTION = load_exercise("description_package").folder / "reference"
 COMMENT = "# grader: exercise={}\n"
 PACKAGE = '<package><export><grader exercise="{}"/></export></package>'
 NODE = "import turtlesim.msg\n"
-
-
-@pytest.fixture
-def drawn(monkeypatch):
-    """Runs that take no time."""
-    run = drive(Spiral(), ticks=200)
-    monkeypatch.setitem(grading.RUNNERS, "virtual", lambda *_, **__: run)
-    return run
 
 
 def test_a_starter_names_its_exercise_whatever_becomes_of_its_names(tmp_path):
@@ -88,45 +80,35 @@ def test_nothing_else_names_one(tmp_path, files):
     assert marks_of(lay(tmp_path / "mine", files)).exercises == {}
 
 
-def test_what_cannot_be_read_names_none(tmp_path):
-    lay(tmp_path, {"broken.zip": b"PK and nothing more", "notes.txt": ""})
+def test_what_cannot_be_read_and_a_link_out_of_the_hand_in_name_none(tmp_path):
+    files = {"other.py": COMMENT.format("square"), "mine/node.py": "", "notes.txt": ""}
+    lay(tmp_path, files | {"broken.zip": b"PK and nothing more"})
+    (tmp_path / "mine" / "linked.py").symlink_to(tmp_path / "other.py")
     for name in ("broken.zip", "notes.txt", "nothing"):
         assert marks_of(tmp_path / name) == Marks()
-
-
-def test_a_link_out_of_the_hand_in_names_none(tmp_path):
-    lay(tmp_path, {"other.py": COMMENT.format("square"), "mine/node.py": ""})
-    (tmp_path / "mine" / "linked.py").symlink_to(tmp_path / "other.py")
     assert marks_of(tmp_path / "mine").exercises == {}
 
 
 # grader run -----------------------------------------------------------------------------------
 
 
-def test_the_named_exercise_is_used_and_told(tmp_path, capsys, drawn):
+def test_the_named_exercise_is_used_and_told(tmp_path, capsys, in_no_time):
     node = lay(tmp_path, {"node.py": COMMENT.format("square") + NODE}) / "node.py"
     assert main(["run", str(node), "--out", str(tmp_path / "out")]) == 0
     assert "Exercise: square (named in node.py)\n" in capsys.readouterr().err
     assert Result.read(tmp_path / "out" / "result.json").exercise == "square"
     assert grader.grade(node).exercise == "square"
-
-
-def test_who_calls_decides(tmp_path, capsys, drawn):
-    node = lay(tmp_path, {"node.py": COMMENT.format("square") + NODE}) / "node.py"
-    words = ["run", str(node), "--out", str(tmp_path / "out"), "--exercise", "turtlesim_challenge"]
-    assert main(words) == 0
+    words = ["run", str(node), "--exercise", "turtlesim_challenge"]
+    assert main([*words, "--out", str(tmp_path / "other")]) == 0  # who calls decides
     assert "Exercise:" not in capsys.readouterr().err
-    assert Result.read(tmp_path / "out" / "result.json").exercise == "turtlesim_challenge"
+    assert Result.read(tmp_path / "other" / "result.json").exercise == "turtlesim_challenge"
 
 
-def test_the_default_is_not_told(tmp_path):
-    node = lay(tmp_path, {"node.py": COMMENT.format("turtlesim_challenge")}) / "node.py"
-    assert grading.exercise_for(node, marks_of(node)) == ("turtlesim_challenge", NOTHING)
-
-
-def test_of_several_none_counts(tmp_path):
+def test_the_default_is_not_told_and_of_several_none_counts(tmp_path):
     files = {"a.py": COMMENT.format("square"), "b/package.xml": PACKAGE.format("state_publisher")}
     mine = lay(tmp_path / "mine", files)
+    node = lay(tmp_path, {"node.py": COMMENT.format("turtlesim_challenge")}) / "node.py"
+    assert grading.exercise_for(node, marks_of(node)) == ("turtlesim_challenge", NOTHING)
     name, said = grading.exercise_for(mine, marks_of(mine))
     assert name == "turtlesim_challenge"
     assert "several exercises (state_publisher, square), so that none counts" in str(said)
@@ -147,18 +129,14 @@ def test_one_that_is_not_installed_is_asked_for(tmp_path, capsys, name):
 def test_a_package_that_is_plainly_for_another_one_is_told_which(tmp_path, capsys):
     mine = shutil.copytree(DESCRIPTION, tmp_path / "mine")
     said = f"This looks like description_package: grader run {mine} --exercise description_package"
-    words = ["run", str(mine), "--out", str(tmp_path / "out")]
-    assert main(words) == 2
+    assert main(["run", str(mine), "--out", str(tmp_path / "out")]) == 2
     assert said in capsys.readouterr().err
-    assert main([*words, "--exercise", "turtlesim_challenge"]) == 2
-    assert "This looks like" not in capsys.readouterr().err
 
 
-def test_so_is_a_node_that_publishes_what_another_one_asks_for():
-    run = drive(Spiral(), ticks=1)
+def test_so_is_a_node_that_publishes_what_another_one_asks_for(drawn):
     for kind, name in (("sensor_msgs/msg/JointState", "state_publisher"), ("a/msg/B", "")):
         topics = (PublishedTopic("/joint_states", kind),)
-        recordings = grader.Recordings(grader.Recording(run.trace, topics=topics))
+        recordings = grader.Recordings(grader.Recording(drawn.trace, topics=topics))
         assert grading.fitting(Marks(has_program=True), recordings) == name
 
 
@@ -172,25 +150,24 @@ def test_a_guess_is_not_told(marks):
 # grader batch ---------------------------------------------------------------------------------
 
 
-def batch(*words: object) -> int:
-    return main(["batch", *map(str, words), "--jobs", "1"])
-
-
-def test_a_class_is_graded_by_the_exercise_that_its_hand_ins_name(tmp_path, capsys):
+def test_a_class_is_graded_by_the_exercise_that_its_hand_ins_name(
+    tmp_path, in_no_time, monkeypatch
+):
+    work_here(monkeypatch)
     handed_in = lay(tmp_path / "handed_in", {"carol/notes.txt": ""})
-    assert main(["new", str(handed_in / "alice"), "--exercise", "description_package"]) == 0
-    out = tmp_path / "class"
-    assert batch(handed_in, "--out", out) == 0
-    assert "Exercise: description_package (named in package.xml)" in capsys.readouterr().err
-    assert ClassFile.read(out).exercise == "description_package"
-    assert batch("--regrade", out) == 0  # by the same
+    assert main(["new", str(handed_in / "alice"), "--exercise", "square"]) == 0
+    code, said = batch(handed_in, "--out", tmp_path / "class")
+    assert (code, "Exercise: square (named in my_node.py)" in said) == (0, True), said
+    assert ClassFile.read(tmp_path / "class").exercise == "square"
+    code, said = batch("--regrade", tmp_path / "class")  # by the same
+    assert code == 0, said
 
 
-def test_a_class_that_names_several_is_not_graded(tmp_path, capsys):
+def test_a_class_that_names_several_is_not_graded(tmp_path):
     handed_in = tmp_path / "handed_in"
     for who, exercise in (("alice", "description_package"), ("bob", "square")):
         assert main(["new", str(handed_in / who), "--exercise", exercise]) == 0
-    assert batch(handed_in, "--out", tmp_path / "class") == 2
-    said = capsys.readouterr().err
+    code, said = batch(handed_in, "--out", tmp_path / "class")
+    assert code == 2
     assert "several exercises (description_package: alice; square: bob)" in said
     assert not (tmp_path / "class").exists()
