@@ -10,11 +10,11 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 from grader.cli import main
 from grader.strict_json import first_error
 from tests import once
+from tests.grader.reports import samples
 from tests.programs import ROOT
 
 #: Whom the stub runs as where the tests run as root: nobody else has this number.
@@ -41,41 +41,12 @@ def scripts() -> Path:
     return course("gradescope") / "autograders" / EXERCISES[0]
 
 
-VERDICTS: list[dict[str, Any]] = [
-    {
-        "check": name,
-        "title": f"Does {name}",
-        "status": "passed" if score == most else "failed",
-        "score": score,
-        "max_score": most,
-        "rationale": "as seen",
-        "help": "",
-        "evidence": [],
-        "depends_on": [],
-    }
-    for name, score, most in (("moves", 5, 5), ("spiral", 12.5, 95))
-]
-RESULT: dict[str, Any] = {
-    "schema": "turtlesim-grader/result/v1",
-    "exercise": "turtlesim_challenge",
-    "submission": "student",
-    "score": 17.5,
-    "max_score": 100,
-    "verdicts": VERDICTS,
-    "run": {
-        "time": "virtual",
-        "outcome": "finished",
-        "exit_code": None,
-        "ticks": 100,
-        "simulated_s": 1.6,
-        "wall_s": 0.5,
-        "trace_sha256": "0" * 64,
-        "isolation": "",
-        "flags": [],
-    },
-    "varied_runs": [],
-    "artifacts": {"canvas": "canvas.png"},
-}
+RESULT = samples.result(
+    samples.verdict("moves", score=5, max_score=5),
+    samples.verdict("spiral", "failed", 12.5, max_score=95),
+    submission="student",
+    artifacts={"canvas": "canvas.png"},
+)
 #: `grader run` for a submission that holds `does.sh`: a sentence of shell that leaves with the code
 #: that the grader would; it has $out for its results, $errors for what --error-json would hold, and
 #: $tries, a file that lasts. The two descriptors of grade.sh it has not.
@@ -102,13 +73,8 @@ exit $code
 
 def an_error(whose: str, message: str) -> str:
     """A sentence of shell: an error, as the grader would tell of it."""
-    error = {
-        "schema": "turtlesim-grader/error/v1",
-        "whose": whose,
-        "message": message,
-        "max_score": 100.0,
-    }
-    return f"printf %s {shlex.quote(json.dumps(error))} >$errors; exit 2"
+    error = {"schema": "turtlesim-grader/error/v1", "whose": whose, "message": message}
+    return f"printf %s {shlex.quote(json.dumps(error | {'max_score': 100.0}))} >$errors; exit 2"
 
 
 class Machine:

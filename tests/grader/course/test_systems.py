@@ -1,6 +1,6 @@
 """What each system runs of a course, with everything around it imitated.
 
-Most tests use a stub in place of `grader run`; the last ones grade for real.
+A stub stands for `grader run`; the last ones grade for real.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -23,12 +22,7 @@ import yaml
 
 from grader.exercise.places import installed
 from grader.submission.manifest import naming
-from tests.grader.course.machine import (
-    EXERCISES,
-    FOR_THE_REAL_ONE,
-    Machine,
-    an_error,
-)
+from tests.grader.course.machine import EXERCISES, FOR_THE_REAL_ONE, Machine, an_error
 from tests.programs import ROOT
 from tests.tiers import others_are_more
 
@@ -191,25 +185,17 @@ def by_systems(*kept: System, reason: str) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("system", systems, ids=lambda system: system.__name__)
 
 
-each_system = by_systems(*SYSTEMS, reason="")
-
-
 def worth(system: System) -> float:
     """17.5 points, as that system writes them."""
     return 18 if system is on_classroom50 else 17.5  # which has whole points
 
 
-#: Of what the script for all of them decides.
-one_system = by_systems(SYSTEMS[0], reason="that the points arrive is proven of each system")
-
-
-@each_system
-def test_the_points_arrive_of_the_exercise_that_the_staff_has_set(
-    machine: Machine, system: System
-) -> None:
+@by_systems(*SYSTEMS, reason="")
+@pytest.mark.parametrize("is_passed", others_are_more("less is told", [True, False], False))
+def test_the_points_arrive_of_the_exercise_that_the_staff_has_set(machine, system, is_passed):
     """Whatever the hand-in names, and whatever file of a rubric's name lies in it."""
     other, exercise = EXERCISES
-    student = machine.submission("exit 0")
+    student = machine.submission(f"exit {int(not is_passed)}")
     text = (PACKAGE / "package.xml").read_text()
     (student / "package.xml").write_text(naming(text, other, is_manifest=True))
     (student / "rubric.yaml").write_bytes(installed(other).description.read_bytes())
@@ -219,58 +205,39 @@ def test_the_points_arrive_of_the_exercise_that_the_staff_has_set(
     assert yaml.safe_load(rubric.read_text())["exercise"] == exercise
 
 
-@one_system
-def test_too_few_points_arrive_as_well(machine: Machine, system: System) -> None:
-    points, _ = system(machine, HandIn(machine.submission("exit 1")))
-    assert points == worth(system)
-
-
-@by_systems(*SYSTEMS[:3], reason="how others are told of points is proven by those that arrive")
-def test_an_unusable_submission_has_no_points_and_says_why(
-    machine: Machine, system: System
-) -> None:
+@by_systems(on_gitlab, reason="each tells it by the report of errors, which one stands for")
+def test_an_unusable_submission_has_no_points_and_says_why(machine, system):
     points, said = system(machine, HandIn(machine.submission(UNUSABLE)))
     assert points == 0
     assert 'hand in <one> "file".' in said.replace("\\", "")
 
 
-@one_system
-def test_nobody_gets_points_from_a_failure(machine: Machine, system: System) -> None:
-    points, said = system(machine, HandIn(machine.submission("echo 'Points: 100'; exit 3")))
+@by_systems(on_github, reason="that the points arrive is proven of each system")
+@pytest.mark.parametrize(
+    "rubric",
+    others_are_more("grade.sh decides it", ["", f"{FOR_THE_REAL_ONE}points: [nonsense\n"], ""),
+)
+def test_nobody_gets_points_from_a_failure_or_a_mistake_of_the_staff(machine, system, rubric):
+    student = machine.submission("echo 'Points: 100'; exit 3")
+    points, said = system(machine, HandIn(student, rubric=rubric))
     assert points is None
     assert "not your fault" in said
 
 
-@one_system
-def test_a_mistake_of_the_staff_is_no_judgement(machine: Machine, system: System) -> None:
-    rubric = f"{FOR_THE_REAL_ONE}points: [nonsense\n"
-    points, _ = system(machine, HandIn(machine.submission("exit 0"), rubric=rubric))
-    assert points is None
-
-
-# With the real grader
-
-
-a_real_system = by_systems(
-    SYSTEMS[0], reason="the stub proves the system's own part, one system the real grader's"
-)
-
-
-@a_real_system
-def test_a_real_submission_is_graded(system: System) -> None:
+@pytest.mark.more("the stub proves the systems' part, and tests of attacks grade.sh and the grader")
+@by_systems(*SYSTEMS, reason="")
+def test_a_real_submission_is_graded_by_the_real_grader(system):
     """A run that is cut short."""
-    data: dict[str, Any] = {
-        "exercise": "turtlesim_challenge",
-        "title": "Short",
-        "limits": {"first_motion_s": 3, "rest_s": 1, "total_s": 3},
-        "varied_runs": {"count": 0},
-        "points": {"moves": 5},
-    }
+    rubric = """
+exercise: turtlesim_challenge
+limits: {first_motion_s: 3, rest_s: 1, total_s: 3}
+varied_runs: {count: 0}
+points: {moves: 5}
+"""
     with tempfile.TemporaryDirectory() as folder:
         machine = Machine(Path(folder) / system.__name__, real=True)
         student = machine.folder / "student"
         student.mkdir()
         shutil.copy(SPIRAL, student / "turtle_controller.py")
-        given = HandIn(student, rubric=yaml.safe_dump(data), pass_points="5")
-        points, said = system(machine, given)
+        points, said = system(machine, HandIn(student, rubric=rubric, pass_points="5"))
         assert points, said
