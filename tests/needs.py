@@ -53,7 +53,6 @@ SITE = Path(__file__).parents[1] / "build" / "site" / "html"
 NEEDS: dict[str, tuple[Callable[[], bool], str]] = {
     "chromium": (_there(*BROWSERS), _apt("chromium")),
     "container": (_can_contain, BY_ROOT),
-    "git": (_there("git"), _apt("git")),
     "node": (_there("node"), _apt("nodejs", "npm")),
     "pdftotext": (_there("pdftotext"), _apt("poppler-utils")),
     "pgrep": (_there("pgrep"), _apt("procps")),
