@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from typing import Any
 
+from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import Message
 from grader.recording.observations import End, Observations, SourceLine
 from grader.recording.recording import PublishedTopic, Recording, Run
@@ -43,3 +45,14 @@ def run_of(
 @cache
 def _trace() -> Any:
     return drive(Spiral(), ticks=625).trace
+
+
+def expect_said(found: Diagnosis | None, row: Mapping[str, Any]) -> None:
+    """Check that it says some pieces in their order, and by which rule, if the row names one."""
+    assert found is not None
+    said = f"{found.cause!s} {found.help!s}"
+    begin = 0
+    for piece in row["says"]:
+        assert piece in said[begin:], f"{found.key}: {said}"
+        begin = said.index(piece, begin) + len(piece)
+    assert found.key == row.get("key", found.key), said

@@ -41,24 +41,18 @@ def test_at_full_marks_there_is_none_but_for_a_crash():
     assert diagnose(Recordings(RIGHT, (CRASH,)), passed).key == "crashed"
 
 
-def test_a_crash_in_a_varied_run_comes_before_what_only_disturbs_the_nominal_one():
+def test_a_crash_in_a_varied_run_comes_before_what_only_disturbs_the_nominal_one(tmp_path):
     found = diagnose(Recordings(SLOW, (RIGHT, CRASH)), [verdict("a")])
     assert (found.key, found.run, found.time_s, found.place) == ("crashed", 2, 6.0, LINE)
     assert str(found.cause).startswith("In varied run 2: Your node crashed at 6.0 s: KeyError: 4")
-
-
-def test_the_nominal_run_comes_before_the_varied_ones():
     assert diagnose(Recordings(CRASH, (CRASH,)), [verdict("a")]).run == 0
-
-
-def test_a_recording_that_is_judged_again_has_the_same_diagnosis(tmp_path):
     recordings = Recordings(SLOW, (RIGHT, CRASH))
     save_all(recordings, tmp_path)
     verdicts = [verdict("a")]
     assert diagnose(load_all(tmp_path), verdicts) == diagnose(recordings, verdicts)
 
 
-def test_where_no_run_shows_a_cause_it_is_the_check_that_costs_most_with_all_that_wait_for_it():
+def test_the_check_that_costs_most_with_all_that_wait_for_it_is_told_or_the_first():
     seen = (Evidence(1.6, "here", 2.0, 3.0, 1, tick=100),)
     verdicts = [
         verdict("dear", "failed", 5.0, 30.0),
@@ -69,9 +63,6 @@ def test_where_no_run_shows_a_cause_it_is_the_check_that_costs_most_with_all_tha
     assert (found.key, found.check) == (CHECK, "moves")
     assert (str(found.cause), str(found.help)) == ("moves was seen.", "moves help")
     assert (found.run, found.time_s) == (1, 1.6)
-
-
-def test_of_equally_dear_ones_it_is_the_first_and_of_none_failed_the_one_not_judged():
     assert diagnose(Recordings(RIGHT), [verdict("a"), verdict("b")]).check == "a"
     found = diagnose(Recordings(RIGHT), [verdict("a", "passed", 10.0), verdict("b", "not_judged")])
     assert found.check == "b"

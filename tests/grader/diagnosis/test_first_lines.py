@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.diagnosis.diagnose import diagnose
+from grader.diagnosis.diagnosis import CHECK
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Verdict
 from grader.message import plain_text
@@ -13,10 +14,13 @@ from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.scenes.scene import Limits
 from tests import hand_ins, runs
+from tests.grader.diagnosis.cases import expect_said
+from tests.tiers import others_are_more
 
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=10))
 #: What loops for ever is not waited for as long as a student's imports would be.
 PATIENCE = Patience(stall_cpu_s=0.5, start_cpu_s=1.5)
+OTHERS = "test_rules.py has what such runs leave; of each rule one is run for real, of checks all"
 
 
 def said_of(group):
@@ -25,10 +29,18 @@ def said_of(group):
     return {name if "/" in name else f"{group}/{name}": row for name, row in rows.items()}
 
 
+def first_of_each_rule(rows, without=()):
+    rules = {row["key"]: name for name, row in reversed(rows.items())}
+    return [name for rule, name in rules.items() if rule not in without]
+
+
 MISTAKES, TUTORIALS = said_of("first_lines"), said_of("first_lines/tutorials")
+FIRST = first_of_each_rule(MISTAKES)
+OF_CHECKS = [name for name, row in MISTAKES.items() if row["key"] == CHECK]
+WITH_PEERS = first_of_each_rule(TUTORIALS, without=[MISTAKES[name]["key"] for name in FIRST])
 
 
-@pytest.mark.parametrize("name", MISTAKES)
+@pytest.mark.parametrize("name", others_are_more(OTHERS, MISTAKES, *FIRST, *OF_CHECKS))
 def test_the_first_line_is_the_cause(name):
     row, lost = MISTAKES[name], []
     if "check" in row:  # what it found
@@ -37,7 +49,7 @@ def test_the_first_line_is_the_cause(name):
     expect_said(diagnose(Recordings(runs.recorded(name, PLAN, PATIENCE)), lost), row)
 
 
-@pytest.mark.parametrize("name", TUTORIALS)
+@pytest.mark.parametrize("name", others_are_more(OTHERS, TUTORIALS, *WITH_PEERS))
 def test_the_first_line_names_the_mistake_in_a_program_with_peers(name):
     row = TUTORIALS[name]
     expect_said(runs.graded(name, load_exercise(row["exercise"])).diagnosis, row)
@@ -52,13 +64,3 @@ def test_a_program_that_shuts_ros_down_itself_and_spins_on_has_not_crashed():
     loop = f"    {executor}\n    while True:\n        executor.spin_once()\n"
     result = runs.graded(runs.written(of.replace(spin, loop)), load_exercise("action_client"))
     assert (result.score, result.diagnosis) == (100, None)
-
-
-def expect_said(found, row):
-    assert found is not None
-    said = f"{found.cause!s} {found.help!s}"
-    begin = 0
-    for piece in row["says"]:
-        assert piece in said[begin:], f"{found.key}: {said}"
-        begin = said.index(piece, begin) + len(piece)
-    assert found.key == row["key"], said

@@ -23,16 +23,13 @@ def path(*places, speed=1.0, theta=0.0, number=0):
     return DrivenPath(RECORDING, way, number)
 
 
-def test_motion_has_a_first_and_a_last_row_a_length_and_a_rest():
+def test_motion_has_a_first_and_a_last_row_a_length_and_a_rest_without_turns():
     driven = path((1, 1), (1, 1), (4, 5), (4, 6), (4, 6), (4, 6))
     assert driven.moving.tolist() == [False, False, True, True, False, False]
     assert (driven.first, driven.last, driven.rest, driven.stop_tick) == (1, 3, 3, 4)
     assert driven.length_m == 6
     assert driven.length_from(2) == 1
     assert driven.rested_s == pytest.approx(2 * TICK_S)
-
-
-def test_a_turn_on_the_spot_is_no_motion_but_no_rest_either():
     way = path((1, 1), (2, 1), (2, 1), (2, 1)).way
     way.theta[2:] = 0.5
     driven = DrivenPath(RECORDING, way)
@@ -48,35 +45,29 @@ def test_distances_are_to_a_place_and_to_the_nearest_wall():
     assert path((1, 1), (1, driven.size_m)).wall == 1
 
 
-def test_it_is_cut_where_a_pose_is_no_number():
+def test_it_is_cut_where_a_pose_is_no_number_and_before_ticks():
     driven = path((1, 1), (2, 1), (math.nan, 1), (math.inf, 1), (3, 1))
     assert driven.lost == 2
     assert driven.until_lost().x.tolist() == [1, 2]
     assert driven.steps_m[1] == 1
-
-
-def test_it_is_cut_before_each_of_some_ticks_and_the_longest_stretch_is_the_one_that_moved_most():
     driven = path((1, 1), (1.01, 1), (5, 5), (5.01, 5), (5.02, 5), (9, 9))
     parts = driven.stretches([6, 3, 3])
     assert [part.ticks.tolist() for part in parts] == [[1, 2], [3, 4, 5], [6]]
     assert driven.longest_stretch([3, 6]).ticks.tolist() == [3, 4, 5]
 
 
-def test_a_step_that_its_speed_does_not_explain_is_a_jump():
+def test_between_jumps_that_speed_does_not_explain_it_drove_alone():
     driven = path((1, 1), (1.016, 1), (3, 1), (3.016, 1))
     assert driven.jumping.tolist() == [False, False, True, False]
+    driven = path((1, 1), (3, 3), (3, 3), (3.01, 3), (3.02, 3), (7, 7), (7.01, 7))
+    assert driven.between_jumps().ticks.tolist() == [3, 4, 5]
+    assert path((1, 1), (1, 1)).between_jumps().ticks.tolist() == [2]
 
 
 def test_where_it_was_put_can_be_made_its_first_reading():
     driven = path((1.1, 1), (1.2, 1)).begun_at(Start(1.0, 1.0, 0.5))
     assert (driven.ticks.tolist(), driven.x[0], driven.linear[0]) == ([0, 1, 2], 1.0, 0.0)
     assert driven.first == 0
-
-
-def test_between_jumps_it_drove_alone_from_the_last_place_before_the_first_step():
-    driven = path((1, 1), (3, 3), (3, 3), (3.01, 3), (3.02, 3), (7, 7), (7.01, 7))
-    assert driven.between_jumps().ticks.tolist() == [3, 4, 5]
-    assert path((1, 1), (1, 1)).between_jumps().ticks.tolist() == [2]
 
 
 def test_the_first_return_is_the_nearest_place_of_the_first_visit_after_it_was_away():
@@ -93,9 +84,6 @@ def test_sides_turn_into_each_other_and_those_of_a_closed_path_into_the_first():
     ]
     closed = path(*corners, (1, 1)).sides(0.1, closed_m=0.5)
     assert [side.turn_deg for side in closed] == pytest.approx([90] * 4)
-
-
-def test_a_side_that_a_closed_path_begins_in_the_middle_of_is_one():
     found = path((2, 1), (3, 1), (3, 3), (1, 3), (1, 1), (1.9, 1)).sides(0.05, closed_m=0.5)
     assert [(side.last, side.length_m) for side in found] == [
         *((1, pytest.approx(1.9)), (2, 2), (3, 2), (4, 2))

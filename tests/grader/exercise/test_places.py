@@ -16,6 +16,7 @@ from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
 from grader.testing import drive
+from tests.grader.testing.exercises import refusal
 
 SCENES = ", ".join(extensions.points(extensions.SCENES))
 DESCRIPTION = {
@@ -52,34 +53,27 @@ def rationale(exercise):
     return str(verdict.rationale)
 
 
-def test_a_folder_is_an_exercise_whose_files_import_each_other(tmp_path):
+def test_a_folder_is_an_exercise_by_its_path_that_of_its_yaml_or_as_a_package(
+    tmp_path, monkeypatch
+):
     exercise = load_exercise(write(tmp_path / "corner"))
     assert (exercise.name, exercise.points) == ("corner", {"moves": 10})
     assert rationale(exercise) == "it moved"
-
-
-def test_its_path_may_be_that_of_its_exercise_yaml_or_a_string(tmp_path, monkeypatch):
     write(tmp_path / "corner")
     monkeypatch.chdir(tmp_path)
     assert load_exercise("corner").name == "corner"
     assert load_exercise("corner/exercise.yaml").name == "corner"
-
-
-def test_a_folder_may_be_a_package(tmp_path):
+    assert not list(tmp_path.rglob("*.pyc"))
     folder = write(tmp_path, checks=CHECKS.replace(".shape", "."))
     (folder / "__init__.py").write_text("from .shape import WORDS\n")
     assert rationale(load_exercise(folder)) == "it moved"
 
 
-def test_an_edited_copy_beside_an_exercise_is_one_of_it(tmp_path):
+def test_an_edited_copy_of_this_or_of_an_installed_exercise_may_lie_there(tmp_path):
     folder = write(tmp_path)
     (folder / "hard.yaml").write_text("exercise: corner\ntolerances: {corner_m: 0.1}\n")
     hard = load_exercise(folder / "hard.yaml")
     assert (hard.tolerances, hard.points) == ({"corner_m": 0.1}, {"moves": 10})
-
-
-def test_an_edited_copy_of_an_installed_exercise_may_lie_there_too(tmp_path):
-    folder = write(tmp_path)
     (folder / "hard.yaml").write_text("exercise: square\npoints: {drives: 1}\n")
     assert load_exercise(folder / "hard.yaml").points == {"drives": 1}
 
@@ -93,30 +87,34 @@ def test_two_folders_and_two_versions_of_one_do_not_meet(tmp_path):
     ]
 
 
-def test_nothing_is_left_in_the_folder(tmp_path):
-    load_exercise(write(tmp_path))
-    assert not list(tmp_path.rglob("*.pyc"))
-
-
 @pytest.mark.parametrize(
-    ("files", "words"),
+    ("checks", "words"),
     [
-        ({"checks": "x = 1\n\ndef f(:\n"}, "checks.py, line 3: SyntaxError"),
-        ({"checks": "x = 1\n"}, "checks.py: expected `checks = Checks()`"),
-        ({"checks": "checks = []\n"}, "found a list"),
-        ({"checks": "\nprint(nobody)\n"}, "checks.py, line 2: NameError: name 'nobody'"),
-        ({"checks": "import shape\n"}, "line 1: ModuleNotFoundError: No module named 'shape'"),
-        ({"checks": "import shape\n"}, "by `from . import shape`"),
-        ({"checks": "raise SystemExit\n"}, "checks.py, line 1: SystemExit"),
-        ({"shape": "\n\n1 / 0\n"}, "shape.py, line 3: ZeroDivisionError"),
-        ({"checks": CHECKS.replace("@checks()", "@checks(after=('be',))")}, "line 7: ValueError"),
+        ("x = 1\n\ndef f(:\n", "checks.py, line 3: SyntaxError"),
+        ("x = 1\n", "checks.py: expected `checks = Checks()`"),
+        ("checks = []\n", "found a list"),
+        ("\nprint(nobody)\n", "checks.py, line 2: NameError: name 'nobody'"),
+        ("import shape\n", "line 1: ModuleNotFoundError: No module named 'shape'"),
+        ("import shape\n", "by `from . import shape`"),
+        ("import sys\nsys.exit(0)\n", "checks.py, line 2: SystemExit: 0"),
+        ("raise BaseException('no')\n", "checks.py, line 1: BaseException: no"),
+        ("from . import helper\n", "line 1: ImportError: there is no helper.py beside checks.py"),
+        ("from .helper import x\n", "ModuleNotFoundError: there is no helper.py beside checks.py"),
+        ("from .shape import other\n", "cannot import name 'other'"),
+        ("from .broken import WORDS\n", "broken.py, line 3: ZeroDivisionError"),
+        ("x = 1\0\n", "checks.py: SyntaxError: source code string cannot contain null bytes"),
+        ("x = '\udce9'\n", "checks.py"),
+        (CHECKS.replace("@checks()", "@checks"), "checks.py, line 7: TypeError: write @checks()"),
+        (CHECKS.replace("@checks()", "@checks(after=('be',))"), "line 7: ValueError"),
     ],
 )
-def test_a_mistake_in_its_code_is_told_with_file_and_line(tmp_path, files, words):
-    with pytest.raises(ExerciseError) as error:
-        load_exercise(write(tmp_path, **files))
-    assert words in str(error.value)
-    assert str(tmp_path) in str(error.value)
+def test_a_mistake_in_its_code_is_told_with_the_file(tmp_path, checks, words):
+    folder = write(tmp_path)
+    (folder / "broken.py").write_text("\n\n1 / 0\n")
+    (folder / "checks.py").write_text(checks, errors="surrogateescape")
+    refused = refusal(folder)
+    assert words in refused
+    assert str(tmp_path) in refused
 
 
 @pytest.mark.parametrize(
@@ -124,34 +122,18 @@ def test_a_mistake_in_its_code_is_told_with_file_and_line(tmp_path, files, words
     [
         ({"exercise": "square"}, "'square' is the name of an installed exercise"),
         ({"exercise": ["a"]}, "exercise: expected a name such as my_exercise, found ['a']"),
-        ({"tolerance": {}}, "tolerance: unknown; did you mean 'tolerances'?"),
         ({"limits": {"rest_s": 1}}, "limits: first_motion_s is missing"),
-        ({"limits": {"rest": 1}}, "limits: unknown 'rest'"),
         ({"limits": {"rest_s": "x"}}, "limits: rest_s: expected a number from 0, found 'x'"),
-        ({"varied_runs": {"count": 1.5}}, "varied_runs: count: expected a whole number from 0"),
         ({"varied_runs": [1]}, "varied_runs: expected names with numbers"),
         ({"tolerances": [1]}, "tolerances: expected names with values"),
         ({"points": {"fly": 1}}, "points: no check is named 'fly'; there are moves"),
         ({"scene": "moon"}, f"scene: expected one of {SCENES}, found 'moon'"),
-        ({"starter": "begin"}, "there is no 'begin'"),
+        ({"points": None}, "has no 'points'"),
     ],
 )
 def test_a_mistake_in_its_description_is_named(tmp_path, changes, words):
-    with pytest.raises(ExerciseError) as error:
-        load_exercise(write(tmp_path, {**DESCRIPTION, **changes}))
-    assert words in str(error.value)
-
-
-@pytest.mark.parametrize("missing", ["exercise.yaml", "checks.py"])
-def test_a_folder_that_lacks_a_file_is_told_which(tmp_path, missing):
-    (write(tmp_path) / missing).unlink()
-    with pytest.raises(ExerciseError, match=f"it has no {missing}"):
-        load_exercise(tmp_path)
-
-
-def test_a_key_that_is_missing_is_named(tmp_path):
-    with pytest.raises(ExerciseError, match="has no 'points'"):
-        load_exercise(write(tmp_path, {k: v for k, v in DESCRIPTION.items() if k != "points"}))
+    said = {**DESCRIPTION, **changes}
+    assert words in refusal(write(tmp_path, {k: v for k, v in said.items() if v is not None}))
 
 
 def install(monkeypatch, site, name, value, dist="other"):
@@ -180,8 +162,7 @@ def test_an_installed_package_brings_an_exercise(tmp_path, monkeypatch, value):
 def test_an_installed_exercise_replaces_none_of_the_same_name(tmp_path, monkeypatch):
     write(tmp_path / "others_square", {**DESCRIPTION, "exercise": "square"})
     install(monkeypatch, tmp_path, "square", "others_square")
-    with pytest.raises(ExerciseError, match="others_square of other"):
-        load_exercise("square")
+    assert "others_square of other" in refusal("square")
     assert load_exercise("turtlesim_challenge").points
 
 
@@ -199,40 +180,15 @@ def test_an_entry_point_that_leads_nowhere_is_told(tmp_path, monkeypatch, value,
         load_exercise("corner")
 
 
-@pytest.mark.parametrize(
-    ("checks", "words"),
-    [
-        ("raise BaseException('no')\n", "checks.py, line 1: BaseException: no"),
-        ("import sys\nsys.exit(0)\n", "checks.py, line 2: SystemExit: 0"),
-        ("from . import helper\n", "line 1: ImportError: there is no helper.py beside checks.py"),
-        ("from .helper import x\n", "ModuleNotFoundError: there is no helper.py beside checks.py"),
-        ("from .shape import other\n", "cannot import name 'other'"),
-        ("x = 1\0\n", "checks.py: SyntaxError: source code string cannot contain null bytes"),
-        ("x = '\udce9'\n", "checks.py"),
-        (CHECKS.replace("@checks()", "@checks"), "checks.py, line 7: TypeError: write @checks()"),
-    ],
-)
-def test_what_goes_wrong_in_its_files_is_told_with_the_file(tmp_path, checks, words):
-    folder = write(tmp_path)
-    (folder / "checks.py").write_text(checks, errors="surrogateescape")
-    with pytest.raises(ExerciseError) as error:
-        load_exercise(folder)
-    assert words in str(error.value.message)
-
-
-@pytest.fixture
-def plain_interrupts():
-    """Python's own handler of Ctrl-C, not that of a command line that ran in this process."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
-@pytest.mark.usefixtures("plain_interrupts")
 def test_a_key_on_the_keyboard_is_not_the_exercise_s(tmp_path):
+    # Python's own handler, not that of a command line that ran in this process
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     checks = "import signal\nsignal.raise_signal(signal.SIGINT)\n"
-    with pytest.raises(KeyboardInterrupt):
-        load_exercise(write(tmp_path, checks=checks))
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            load_exercise(write(tmp_path, checks=checks))
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_importing_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_path, capsys):
@@ -244,11 +200,17 @@ def test_importing_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_p
 
 
 @pytest.mark.parametrize(
-    "lay", [lambda file: file.symlink_to("gone.py"), Path.mkdir, os.mkfifo, lambda file: None]
+    ("missing", "lay"),
+    [
+        ("exercise.yaml", lambda file: None),
+        ("checks.py", lambda file: None),
+        ("checks.py", lambda file: file.symlink_to("gone.py")),
+        ("checks.py", Path.mkdir),
+        ("checks.py", os.mkfifo),
+    ],
 )
-def test_what_is_no_file_is_no_checks(tmp_path, lay):
-    folder = write(tmp_path)
-    (folder / "checks.py").unlink()
-    lay(folder / "checks.py")
-    with pytest.raises(ExerciseError, match=r"is not an exercise: it has no checks\.py"):
-        load_exercise(folder)
+def test_what_is_no_file_is_missing(tmp_path, missing, lay):
+    file = write(tmp_path) / missing
+    file.unlink()
+    lay(file)
+    assert f"is not an exercise: it has no {missing}" in refusal(tmp_path)

@@ -91,16 +91,13 @@ def test_an_error_names_the_last_line_of_the_submission_s_own(output, type_, exp
     assert str(how_it_ended(recording)) == f" The node ended with an error: {expected}."
 
 
-def test_an_error_that_cost_nothing_is_told_as_such():
+def test_an_error_that_cost_nothing_and_a_signal_are_told_as_such():
     recording = crashed(CRASH, None)
     assert str(remarks(recording, all_passed=True)[0]) == (
         "After its work was done the node ended with an error: ModuleNotFoundError: No module "
         "named 'turtlesim_messages' (turtle_controller.py, line 3); it costs no points."
     )
     assert str(remarks(recording)[0]).startswith("The node ended with an error: ")
-
-
-def test_a_signal_is_told_only_where_there_was_one():
     run = Run(outcome="killed", exit_code=-9)
     recording = drive(lambda tick, pose, arena: None, ticks=1)
     assert str(how_it_ended(replace(recording, run=run))).endswith("killed (signal 9).")

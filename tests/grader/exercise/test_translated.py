@@ -7,7 +7,6 @@ import json
 import pytest
 import yaml
 
-from grader.errors import ExerciseError
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.exercise.sheet import Start, sheet
@@ -18,6 +17,7 @@ from grader.result import json_file
 from grader.testing import drive
 from grader.translations import ENGLISH, translate, use
 from tests.grader.testing import exercises
+from tests.grader.testing.exercises import refusal
 
 WORDS = {
     "fr": {
@@ -60,18 +60,17 @@ def test_the_sheet_has_the_exercises_words_in_the_users_language(tmp_path):
     assert "| Il envoie des commandes | `commands` |" in text
     assert "Au moins 0.5 m." in text
     assert "\nfar_m: 0.5  # si loin\n" in text
-
-
-def test_what_a_language_leaves_out_is_told_as_the_file_has_it(tmp_path):
     text = sheet_in("zh", load_exercise(written(tmp_path, WORDS)))
     assert text.startswith("# 前进\n\nDrive 0.5 m.\n")
     assert "| It sends commands | `commands` |" in text
     assert "\nfar_m: 0.5\n" in text
-
-
-def test_in_english_nothing_of_them_shows(tmp_path):
     there, without = written(tmp_path / "a", WORDS), written(tmp_path / "b", {})
     assert sheet_in("en", load_exercise(there)) == sheet_in("en", load_exercise(without))
+    one, other = (
+        load_exercise(written(tmp_path / name, words)) for name, words in (("a", WORDS), ("b", {}))
+    )
+    assert one.sha256 == other.sha256
+    assert one.points == other.points
 
 
 def test_a_verdict_takes_the_words_of_its_title_with_it(tmp_path):
@@ -87,14 +86,6 @@ def test_a_verdict_takes_the_words_of_its_title_with_it(tmp_path):
     again = json_file.typed(Verdict, data, phrases)
     assert translate(again.title, "fr") == "Il envoie des commandes"
     assert translate(again.title, "zh") == "It sends commands"
-
-
-def test_words_change_no_hash_and_no_points(tmp_path):
-    one, other = (
-        load_exercise(written(tmp_path / name, words)) for name, words in (("a", WORDS), ("b", {}))
-    )
-    assert one.sha256 == other.sha256
-    assert one.points == other.points
 
 
 @pytest.mark.parametrize(
@@ -115,27 +106,20 @@ def test_words_change_no_hash_and_no_points(tmp_path):
     ],
 )
 def test_a_slip_is_told_where_it_stands(tmp_path, texts, words):
-    with pytest.raises(ExerciseError) as error:
-        load_exercise(written(tmp_path, {"fr": texts}))
-    assert f"exercise.fr.yaml{words}" in str(error.value.message)
+    assert f"exercise.fr.yaml{words}" in refusal(written(tmp_path, {"fr": texts}))
 
 
 def test_a_language_that_there_is_not_is_told(tmp_path):
-    with pytest.raises(ExerciseError) as error:
-        load_exercise(written(tmp_path, {"cn": {"title": "前进"}}))
-    said = str(error.value.message)
+    said = refusal(written(tmp_path, {"cn": {"title": "前进"}}))
     assert "exercise.cn.yaml: expected one of fr, zh as its language, found cn" in said
 
 
-def test_an_edited_copy_keeps_the_texts_of_what_it_does_not_change(tmp_path):
+def test_an_edited_copy_keeps_the_texts_of_what_it_does_not_change_and_has_its_own(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({"exercise": "square", "title": "A smaller square"}))
     exercise = load_exercise(path)
     assert translate(exercise.title, "fr") == "A smaller square"
     assert translate(exercise.task, "fr").startswith("Écrivez un nœud")
-
-
-def test_an_edited_copy_has_translations_beside_it(tmp_path):
     copy = {"exercise": "square", "title": "A smaller square"}
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(copy))
     (tmp_path / "mine.fr.yaml").write_text("title: Un carré plus petit\ntolerances: {side_m: côté}")

@@ -8,8 +8,7 @@ import yaml
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
 from grader.recording.subject import Start
-from grader.testing import drive, twist
-from grader.testing.checking import check_exercise
+from grader.testing import checking, drive, twist
 from turtlesim_py.world.turtle import SIZE_M
 
 NAME = "turtlesim_challenge"
@@ -31,10 +30,10 @@ def test_the_seed_draws_factors_from_the_ranges_and_the_place_of_the_nominal_run
     assert 0.8 <= same.turn <= 0.9
     assert elsewhere.is_as_commanded
     assert exercise.starts(6)[0].speed != same.speed
-
-
-def test_an_edited_copy_with_fewer_runs_has_the_first_of_them(tmp_path):
     assert edited(tmp_path, count=1).starts() == load_exercise(NAME).starts()[:1]
+    asked = edited(tmp_path, count=1, runs=[SAME]).conditions
+    names = [f"varied_runs.1.{name}" for name in ("same", "speed_from", "turn_to")]
+    assert [asked[name] for name in names] == [1, 1.5, 0.9]
 
 
 @pytest.mark.parametrize(
@@ -51,15 +50,6 @@ def test_an_edited_copy_with_fewer_runs_has_the_first_of_them(tmp_path):
 def test_what_cannot_be_drawn_from_is_refused_with_its_line(tmp_path, runs, words):
     with pytest.raises(ExerciseError, match=words):
         edited(tmp_path, count=1, runs=runs)
-
-
-def test_a_recording_of_other_ranges_is_told_from_this_one(tmp_path):
-    conditions = edited(tmp_path, count=1, runs=[SAME]).conditions
-    assert conditions["varied_runs.1.same"] == 1
-    assert (conditions["varied_runs.1.speed_from"], conditions["varied_runs.1.turn_to"]) == (
-        1.5,
-        0.9,
-    )
 
 
 def test_each_student_of_a_secret_has_runs_of_his_own():
@@ -90,10 +80,8 @@ def test_the_factors_hold_for_every_turtle_and_outlive_reset_kill_and_spawn():
         assert way.angular.max() == 0.25
 
 
-def test_the_author_is_warned_of_a_range_that_a_computed_stop_may_pass(tmp_path):
-    mutants = tmp_path / "mutants.yaml"
-    mutants.write_text("right: {solution: solution.py}\nmutants: {}\n")
-    (tmp_path / "solution.py").write_text("")
-    exercise = edited(tmp_path, count=1, runs=[{**SAME, "speed": [1.2, 1.6]}])
-    problems = [problem.text for problem in check_exercise(exercise, mutants=mutants).problems]
-    assert any("drive a circle 1.33 times as large" in str(text) for text in problems)
+@pytest.mark.parametrize(("speed", "is_told"), [(1.2, True), (1.5, False)])
+def test_the_author_is_warned_of_a_range_that_a_computed_stop_may_pass(tmp_path, speed, is_told):
+    exercise = edited(tmp_path, count=1, runs=[{**SAME, "speed": [speed, 1.6]}])
+    told = [str(fault.text) for fault in checking._too_alike(exercise)]
+    assert ["drive a circle 1.33 times as large" in text for text in told] == [True] * is_told

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -28,28 +28,21 @@ numbers = st.floats(width=32) | st.sampled_from(
 )
 ticks = st.integers(0, TICKS + 1)
 turtles = st.sampled_from(["turtle1", "turtle2"])
-channel = st.integers(0, 255)
 doubles = st.floats()
 vectors = st.tuples(doubles, doubles, doubles)
+INPUTS = (
+    *(events.CmdVel, events.SetPen, events.TeleportAbsolute, events.Kill, events.Spawn),
+    *(events.Reset, events.Clear),
+)
+FIELDS = {
+    **{"tick": ticks, "turtle": turtles, "name": turtles, "linear": vectors, "angular": vectors},
+    **dict.fromkeys(("r", "g", "b", "width", "off"), st.integers(0, 255)),
+}
 inputs = st.one_of(
-    st.builds(events.CmdVel, tick=ticks, turtle=turtles, linear=vectors, angular=vectors),
-    st.builds(
-        events.SetPen,
-        tick=ticks,
-        turtle=turtles,
-        r=channel,
-        g=channel,
-        b=channel,
-        width=channel,
-        off=channel,
+    *(
+        st.builds(kind, **{each.name: FIELDS.get(each.name, doubles) for each in fields(kind)})
+        for kind in INPUTS
     ),
-    st.builds(
-        events.TeleportAbsolute, tick=ticks, turtle=turtles, x=doubles, y=doubles, theta=doubles
-    ),
-    st.builds(events.Kill, tick=ticks, name=turtles),
-    st.builds(events.Spawn, tick=ticks, x=doubles, y=doubles, theta=doubles, name=turtles),
-    st.builds(events.Reset, tick=ticks),
-    st.builds(events.Clear, tick=ticks),
     st.builds(
         events.SetParameter,
         tick=ticks,
@@ -81,7 +74,7 @@ def recordings(draw: st.DrawFn) -> Recording:
         events=tuple(sorted(draw(st.lists(inputs, max_size=20)), key=lambda e: e.tick)),
         trajectories={name: draw(ways()) for name in draw(st.sets(turtles))},
         logs=(),
-        canvas=np.full((500, 500, 4), draw(channel), np.uint8),
+        canvas=np.full((500, 500, 4), draw(st.integers(0, 255)), np.uint8),
         window=np.zeros((500, 500, 3), np.uint8),
     )
     start = draw(st.none() | st.builds(Start, x=numbers, y=numbers, theta=numbers))
@@ -102,7 +95,7 @@ def test_whatever_was_recorded_is_judged(name, nominal, varied):
     assert not any("fault of the exercise" in str(verdict.rationale) for verdict in found)
 
 
-def test_a_hundred_thousand_inputs_are_judged():
+def test_thirty_thousand_inputs_are_judged():
     def floods(tick, pose, arena):
         for number in range(200):
             arena.command("turtle1", (float(number), 0.0, 0.0), (0.0, 0.0, 1.0))
@@ -110,7 +103,7 @@ def test_a_hundred_thousand_inputs_are_judged():
         if tick % 2:
             arena.teleport_relative("turtle1", 0.0, 0.0)
 
-    recording = drive(floods, 300)
+    recording = drive(floods, 75)
     for name in NAMES:
         exercise = load_exercise(name)
         varied = tuple(replace(recording, start=start) for start in exercise.starts())

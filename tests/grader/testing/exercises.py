@@ -5,7 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
 import yaml
+
+from grader.errors import ExerciseError
+from grader.exercise.loading import load_exercise
 
 DESCRIPTION = {
     "exercise": "ahead",
@@ -67,3 +71,10 @@ def write(folder: Path, checks: str = CHECKS, mutants: object = MUTANTS, **chang
     (folder / "silent.py").write_text(SOLUTION.replace("publisher.publish(twist)\n", ""))
     (folder / "mutants.yaml").write_text(yaml.safe_dump(mutants, sort_keys=False))
     return folder
+
+
+def refusal(path: Path) -> str:
+    """Return why an exercise cannot be loaded."""
+    with pytest.raises(ExerciseError) as error:
+        load_exercise(path)
+    return str(error.value.message)

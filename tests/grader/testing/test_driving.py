@@ -30,15 +30,13 @@ def test_a_recording_holds_what_was_driven_and_how_it_ended():
     assert drive(a_second_ahead).run.trace_sha256 == recording.run.trace_sha256
 
 
-def test_it_may_be_cut_short_and_start_elsewhere():
+def test_it_may_be_cut_short_start_elsewhere_go_and_come_back():
     start = Start(2.0, 3.0, 0.5)
     recording = drive(a_second_ahead, ticks=10, start=start)
     assert (recording.run.outcome, recording.run.ticks) == ("time_limit", 10)
     assert recording.start == start
     assert TurtleTrace.of(recording.trace).trajectory().x[0] == pytest.approx(2.0, abs=0.1)
 
-
-def test_a_turtle_may_go_and_come_back():
     def kills(tick, pose, arena):
         if tick == 5:
             arena.kill("turtle1")

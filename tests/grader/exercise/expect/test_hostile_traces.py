@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.conftest import CASES
 from tests.grader.exercise.expect.traces import (
     endpoint,
     event,
@@ -116,7 +117,7 @@ messages = st.one_of(
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-@settings(max_examples=20)
+@settings(max_examples=CASES // 2)
 @given(parts=st.lists(endpoints | events | messages, max_size=12), code=st.none() | st.just(0))
 def test_an_expectation_ends_with_a_finding(name: str, parts: list[Any], code: int | None) -> None:
     found = judged(EXPECTED[name], *parts, code=code)

@@ -2,98 +2,40 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
+import math
 
 import pytest
 
 from grader.exercise.check import judge
-from grader.exercise.loading import load_exercise
-from grader.recording.recording import Recording, Recordings
+from grader.recording.recording import Recordings
 from grader.strict_json import to_json
-from grader.testing import drive, pen, twist
-from tests.grader.driving import CENTRE, RED, WHITE, Spiral
+from tests.grader.driving import CENTRE, RED, WHITE, Spiral, drive, pen, spoiled, twist
+from tests.grader.exercises.turtlesim_challenge.judging import (
+    EXERCISE,
+    expect_said,
+    lost,
+    verdicts,
+)
 
 
-def shares(recording: Recording) -> dict[str, float]:
-    """The share of its points that each check gives."""
-    exercise = load_exercise("turtlesim_challenge")
-    verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
-    return {verdict.check: verdict.score / verdict.max_score for verdict in verdicts}
+def commanding(speed, turn=1.0):
+    """A spiral whose commands are made by functions of itself and the tick, or by numbers."""
 
-
-class Clockwise(Spiral):
     def drive(self, tick, arena):
-        self.speed += 0.05
-        twist(arena, self.speed, -1.0)
+        angular = turn(tick) if callable(turn) else turn
+        twist(arena, speed(self, tick) if callable(speed) else speed, angular)
+
+    return spoiled(drive=drive)
 
 
-class OtherColoursAndWidth(Spiral):
-    colors = {1: (10, 20, 30), 2: (0, 0, 0), 3: (250, 250, 0), 4: (0, 250, 250)}
+def faster(by):
+    def speed(self, tick):
+        self.speed += by
+        return self.speed
 
-    def entered(self, quadrant, arena):
-        pen(arena, self.colors[quadrant], 7)
-
-
-class NeverStops(Spiral):
-    def near_edge(self, tick, pose):
-        return False
-
-
-class StopsInTheMiddle(Spiral):
-    def near_edge(self, tick, pose):
-        return tick > 1800
-
-
-class FallsSilentAtTheEdge(Spiral):
-    def stop(self, arena):
-        self.stopped = True
-
-
-class Circle(Spiral):
-    def drive(self, tick, arena):
-        if tick > 1500:
-            self.stop(arena)
-        else:
-            twist(arena, 2.0)
-
-
-class NoPen(Spiral):
-    def entered(self, quadrant, arena):
-        pass
-
-
-class TwoColours(Spiral):
-    colors = {1: WHITE, 2: RED, 3: WHITE, 4: RED}
-
-
-class PenOnEveryPose(Spiral):
-    def watch(self, tick, pose, arena):
-        super().watch(tick, pose, arena)
-        if not self.stopped:
-            pen(arena, self.colors[self.quadrant_of(pose)])
-
-
-class PenALongTimeLate(Spiral):
-    def __init__(self):
-        super().__init__()
-        self.due = {}
-
-    def watch(self, tick, pose, arena):
-        super().watch(tick, pose, arena)
-        for when in [t for t in self.due if t <= tick]:
-            pen(arena, self.due.pop(when))
-
-    def entered(self, quadrant, arena):
-        self.due[len(self.due) + self.tick_now + 62] = self.colors[quadrant]
-
-    def __call__(self, tick, pose, arena):
-        self.tick_now = tick
-        super().__call__(tick, pose, arena)
-
-
-class StandsStill(Spiral):
-    def drive(self, tick, arena):
-        twist(arena, 0.0, 0.0)
+    return speed
 
 
 class PausesOnItsWay(Spiral):
@@ -102,113 +44,186 @@ class PausesOnItsWay(Spiral):
             super().__call__(tick, pose, arena)
 
 
-@pytest.mark.parametrize("controller", [Spiral, Clockwise, OtherColoursAndWidth])
-def test_a_right_solution_gets_every_point(controller):
-    assert set(shares(drive(controller())).values()) == {1}
+class FloodsCommands(Spiral):
+    def __call__(self, tick, pose, arena):
+        super().__call__(tick, pose, arena)
+        if not self.stopped:
+            for _ in range(3):
+                twist(arena, self.speed)
+
+
+class CrashesAtSixSeconds(Spiral):
+    def __call__(self, tick, pose, arena):
+        if tick < 375:
+            super().__call__(tick, pose, arena)
+
+
+class StartsElsewhere(Spiral):
+    def __call__(self, tick, pose, arena):
+        if tick == 1:
+            arena.teleport_absolute("turtle1", CENTRE + 1.0, CENTRE, 0.0)
+        else:
+            super().__call__(tick, pose, arena)
+
+
+OTHER_PENS = spoiled(
+    colors={1: (10, 20, 30), 2: (0, 0, 0), 3: (250, 250, 0), 4: (0, 250, 250)},
+    entered=lambda self, quadrant, arena: pen(arena, self.colors[quadrant], 7),
+)
+RIGHT = {
+    "the reference": Spiral,
+    "clockwise": commanding(faster(0.05), -1.0),
+    "backwards": commanding(lambda self, tick: -faster(0.05)(self, tick)),
+    "other pens": OTHER_PENS,
+    # a wobble that its turns do not cross
+    "swings in and out": commanding(
+        lambda self, tick: max(0.05, faster(0.05)(self, tick) + 0.08 * math.sin(tick / 20))
+    ),
+}
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_a_right_solution_gets_every_point(name):
+    assert lost(verdicts(RIGHT[name], varied=False)) == set()
 
 
 @pytest.mark.parametrize(
-    ("controller", "lost"),
+    ("controller", "names"),
     [
-        (NeverStops, {"edge_stop"}),
-        (StopsInTheMiddle, {"edge_stop"}),
-        (FallsSilentAtTheEdge, {"edge_stop"}),
-        (NoPen, {"pen_per_quadrant", "picture", "no_redundant_calls"}),
-        (TwoColours, {"pen_per_quadrant", "picture"}),
-        (PenOnEveryPose, {"no_redundant_calls"}),
+        (spoiled(near_edge=lambda self, tick, pose: False), {"edge_stop"}),
+        (spoiled(near_edge=lambda self, tick, pose: tick > 1800), {"edge_stop"}),
+        (
+            spoiled(entered=lambda self, quadrant, arena: None),
+            {"pen_per_quadrant", "picture", "no_redundant_calls"},
+        ),
+        (spoiled(colors={1: WHITE, 2: RED, 3: WHITE, 4: RED}), {"pen_per_quadrant", "picture"}),
         (PausesOnItsWay, {"steady_rate"}),
+        (StartsElsewhere, {"spiral"}),
     ],
 )
-def test_a_spoiled_solution_loses_points_where_it_is_spoiled_and_nowhere_else(controller, lost):
-    found = shares(drive(controller()))
-    assert {name for name, share in found.items() if share < 1} == lost
-
-
-def test_a_circle_keeps_the_points_for_start_and_turns_only():
-    found = shares(drive(Circle()))
-    assert 0 < found["spiral"] < 1
-    assert found["edge_stop"] == 0
-
-
-def test_late_colours_lose_pen_points():
-    found = shares(drive(PenALongTimeLate()))
-    assert found["pen_per_quadrant"] < found["spiral"] == 1
+def test_a_spoiled_solution_loses_points_where_it_is_spoiled_and_nowhere_else(controller, names):
+    assert lost(verdicts(controller, varied=False)) == names
 
 
 def test_half_the_colours_earn_half_the_pen_points():
-    assert shares(drive(TwoColours()))["pen_per_quadrant"] == pytest.approx(0.5, abs=0.025)
+    found = verdicts(spoiled(colors={1: WHITE, 2: RED, 3: WHITE, 4: RED}), varied=False)
+    assert found["pen_per_quadrant"].score == pytest.approx(10, abs=0.5)
 
 
-def test_a_turtle_that_never_moves_earns_nothing():
-    assert set(shares(drive(StandsStill(), ticks=900)).values()) == {0}
+def test_who_starts_elsewhere_loses_the_start_only_and_is_told_what_would_be_fine():
+    found = verdicts(StartsElsewhere, varied=False)["spiral"]
+    assert found.score == pytest.approx(0.8 * found.max_score)
+    assert "starts 1.00 m from the centre; 0.5 m is fine" in str(found.rationale)
+    assert "It earned 30 % for the turns and 50 % for the growth." in str(found.rationale)
+
+
+@pytest.mark.parametrize("controller", [commanding(0.0, 0.0), commanding(math.nan)])
+def test_a_turtle_that_never_moves_or_is_nowhere_earns_nothing(controller):
+    assert {each.score for each in verdicts(controller, varied=False, ticks=900).values()} == {0}
 
 
 def test_an_empty_recording_says_that_no_command_came():
-    exercise = load_exercise("turtlesim_challenge")
-    recording = drive(lambda *_: None, ticks=900)
-    first = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)[0]
-    assert str(first.rationale).startswith(
+    found = verdicts(lambda: lambda *_: None, varied=False, ticks=900)
+    assert str(next(iter(found.values())).rationale).startswith(
         "Your node published no velocity command on /turtle1/cmd_vel in 14.4 s"
     )
 
 
-def test_a_path_that_starts_elsewhere_loses_the_start_only():
-    spiral = Spiral()
-
-    def controller(tick, pose, arena):
-        if tick == 1:
-            arena.teleport_absolute("turtle1", CENTRE + 1.0, CENTRE, 0.0)
-        elif tick > 2:
-            spiral(tick, pose, arena)
-
-    found = shares(drive(controller))
-    assert found["spiral"] == pytest.approx(0.8)
-
-
-class SendsNotANumber(Spiral):
-    def drive(self, tick, arena):
-        self.speed += 0.05
-        twist(arena, self.speed if tick < 1500 else float("nan"))
-
-
 def test_a_velocity_that_is_no_number_is_named_and_leaves_finite_evidence():
-    exercise = load_exercise("turtlesim_challenge")
-    recordings = Recordings(drive(SendsNotANumber(), ticks=2500))
-    verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
-    stop = next(verdict for verdict in verdicts if verdict.check == "edge_stop")
-    assert "not a number" in str(stop.rationale)
-    json.dumps([to_json(verdict) for verdict in verdicts], allow_nan=False)
+    late_nan = commanding(lambda self, tick: faster(0.05)(self, tick) if tick < 1500 else math.nan)
+    found = verdicts(late_nan, varied=False, ticks=2500)
+    assert "not a number" in str(found["edge_stop"].rationale)
+    json.dumps([to_json(verdict) for verdict in found.values()], allow_nan=False)
 
 
-def test_a_turtle_that_is_never_anywhere_is_judged_without_a_fault():
-    def nowhere(tick, pose, arena):
-        twist(arena, float("nan"))
-
-    assert set(shares(drive(nowhere, ticks=300)).values()) == {0}
+# Shapes, and what was hardly done -----------------------------------------------------------------
 
 
-def test_a_right_solution_is_right_wherever_it_starts_and_counting_steps_is_not():
-    exercise = load_exercise("turtlesim_challenge")
-    starts = [start for seed in (1, 2, 3) for start in exercise.starts(seed)]
-    for controller, passes in ((Spiral, True), (CountsItsSteps, False)):
-        runs = tuple(drive(controller(), start=start) for start in starts)
-        recordings = Recordings(drive(controller()), runs)
-        verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
-        assert all(v.status == "passed" for v in verdicts if v.check != "edge_stop")
-        stop = next(verdict for verdict in verdicts if verdict.check == "edge_stop")
-        assert (stop.status == "passed") == passes
-        assert (stop.evidence[0].run == 0) == passes
+class ConcentricCircles:
+    """Circles round one place, each reached by driving straight out of the one before."""
+
+    def __call__(self, tick, pose, arena):
+        if tick % 5 != 1:
+            return
+        at, circle = tick % 800, tick // 800
+        radius = 0.5 + 0.5 * circle
+        if at < 800 - 190:
+            twist(arena, 2 * math.pi * radius / (610 * 0.016), 2 * math.pi / (610 * 0.016))
+        elif at < 800 - 130:
+            twist(arena, 0.0, -math.pi / 2 / (60 * 0.016))
+        elif at < 800 - 70:
+            twist(arena, 0.5 / (60 * 0.016), 0.0)
+        else:
+            twist(arena, 0.0, math.pi / 2 / (70 * 0.016))
 
 
-class CountsItsSteps(Spiral):
-    def near_edge(self, tick, pose):
-        return self.speed > 5.1
+def test_a_circle_and_concentric_circles_are_no_spiral():
+    found = verdicts(ConcentricCircles, varied=False, ticks=8000)["spiral"]
+    assert found.score <= 15
+    assert "straight outwards" in str(found.rationale)
+
+    class Circle(Spiral):
+        def drive(self, tick, arena):
+            self.stop(arena) if tick > 1500 else twist(arena, 2.0)
+
+    found = verdicts(Circle, varied=False)
+    assert 0 < found["spiral"].score < found["spiral"].max_score
+    assert found["edge_stop"].score == 0
 
 
-def test_the_evidence_of_a_needless_call_names_tick_and_place():
-    exercise = load_exercise("turtlesim_challenge")
-    recording = drive(PenOnEveryPose())
-    verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
-    (evidence, *_) = next(v.evidence for v in verdicts if v.check == "no_redundant_calls")
-    assert evidence.tick > 0
-    assert evidence.time_s == pytest.approx(evidence.tick * 0.016)
+def test_driving_to_and_fro_is_no_spiral_that_grows():
+    """Half a second ahead, half a second back, turning all the time."""
+
+    def to_and_fro(self, tick):
+        return faster(0.05)(self, tick) * (1 if tick // 31 % 2 else -1)
+
+    assert verdicts(commanding(to_and_fro), varied=False)["spiral"].score <= 15
+    swings = commanding(faster(0.01), lambda tick: 1.0 if tick % 310 < 155 else -1.0)
+    assert "linear.x grew" not in str(verdicts(swings, varied=False)["spiral"].rationale)
+
+
+def slower(self, tick):
+    self.speed = (self.speed or 3.0) - 0.02
+    return self.speed
+
+
+CAUSES = {
+    "linear.x was 10 000 000 m/s in the .* divide by 1e9": ("moves", commanding(1e7)),
+    "linear.x began at .* Begin small": ("spiral", commanding(slower)),
+    "linear.x grew by 1 with each command .* more slowly": ("spiral", commanding(faster(1.0))),
+    "angular.z was 0 in every .* angular.z alone": ("spiral", commanding(faster(0.01), 0.0)),
+    "all were zeros .* ever set": ("moves", commanding(0.0, 0.0)),
+}
+
+
+@pytest.mark.parametrize("words", CAUSES)
+def test_the_commands_tell_the_cause(words):
+    check, controller = CAUSES[words]
+    expect_said(words, verdicts(controller, varied=False)[check])
+
+
+def test_a_loop_that_only_publishes_earns_nothing_of_what_reads_the_pose():
+    # a loop without end, of which the turtle takes one command a step
+    found = verdicts(lambda: lambda tick, pose, arena: twist(arena, 0.55), varied=False)
+    reading = ("edge_stop", "pen_per_quadrant", "picture", "no_redundant_calls")
+    assert {found[name].score for name in reading} == {0}
+    assert found["spiral"].score <= found["spiral"].max_score / 2
+
+
+def test_several_commands_in_each_step_are_no_rate():
+    found = verdicts(FloodsCommands, varied=False)["steady_rate"]
+    assert found.score == 0
+    assert "nothing makes your node wait" in str(found.rationale)
+
+
+def test_what_was_hardly_driven_earns_next_to_nothing_and_blames_the_crash_alone():
+    found = verdicts(CrashesAtSixSeconds, varied=False)
+    assert found["steady_rate"].score + found["no_redundant_calls"].score < 2
+    assert "fewer than the 2 turns" in str(found["no_redundant_calls"].rationale)
+    recording = drive(CrashesAtSixSeconds(), 1000)
+    crashed = dataclasses.replace(recording.run, outcome="crashed", exit_code=1)
+    recordings = Recordings(dataclasses.replace(recording, run=crashed))
+    found = judge(recordings, EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
+    failed = [verdict for verdict in found if verdict.status == "failed"]
+    assert failed
+    assert all(str(verdict.help).startswith("See the error first") for verdict in failed)

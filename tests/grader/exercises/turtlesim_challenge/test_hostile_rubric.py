@@ -6,27 +6,10 @@ import math
 
 import pytest
 
-from grader.exercise.check import judge
-from grader.exercise.loading import load_exercise
-from grader.recording.recording import Recordings
-from grader.testing import drive, twist
-from tests.grader.driving import CENTRE, Spiral
+from tests.grader.driving import CENTRE, Spiral, spoiled, twist
+from tests.grader.exercises.turtlesim_challenge.judging import total, verdicts
+from tests.tiers import others_are_more
 from turtlesim_py.world.arena import Arena
-
-EXERCISE = load_exercise("turtlesim_challenge")
-
-
-def verdicts(controller, varied=True, ticks=4000):
-    starts = EXERCISE.starts() if varied else []
-    runs = tuple(drive(controller(), ticks, start) for start in starts)
-    recordings = Recordings(drive(controller(), ticks), runs)
-    found = judge(recordings, EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
-    return {verdict.check: verdict for verdict in found}
-
-
-def scores(controller, varied=True):
-    return {name: verdict.score for name, verdict in verdicts(controller, varied).items()}
-
 
 # Kind 2: varied runs undone -----------------------------------------------------------------------
 
@@ -55,43 +38,26 @@ class DeadReckoning(Spiral):
         self.pose = self.own.tick()["turtle1"].pose
 
 
-class Resets(DeadReckoning):
-    def back(self, tick, arena):
-        if tick == 1:
-            arena.reset()
-
-
-class ResetsLater(DeadReckoning):
-    begins = 104
+def going_back(calls, begins=4):
+    """Dead reckoning after some calls of the arena, each in a tick."""
 
     def back(self, tick, arena):
-        if tick == 1:
-            twist(arena, 0.1)
-        if tick == 100:
-            arena.reset()
+        for call in calls.get(tick, ()):
+            call(arena)
+
+    return spoiled(DeadReckoning, back=back, begins=begins)
 
 
-class Teleports(DeadReckoning):
-    def back(self, tick, arena):
-        if tick == 1:
-            arena.teleport_absolute("turtle1", CENTRE, CENTRE, 0.0)
+def kill(arena):
+    arena.kill("turtle1")
 
 
-class Respawns(DeadReckoning):
-    def back(self, tick, arena):
-        if tick == 1:
-            arena.kill("turtle1")
-            arena.spawn(CENTRE, CENTRE, 0.0, "turtle1")
+def spawn(arena):
+    arena.spawn(CENTRE, CENTRE, 0.0, "turtle1")
 
 
-class RespawnsLater(DeadReckoning):
-    begins = 30
-
-    def back(self, tick, arena):
-        if tick == 2:
-            arena.kill("turtle1")
-        if tick == 20:
-            arena.spawn(CENTRE, CENTRE, 0.0, "turtle1")
+def teleport(arena):
+    arena.teleport_absolute("turtle1", CENTRE, CENTRE, 0.0)
 
 
 class FeelsTheWalls(DeadReckoning):
@@ -108,18 +74,23 @@ class FeelsTheWalls(DeadReckoning):
             arena.spawn(3.0, 3.0, 0.0, "turtle1")
 
 
-AWAY = [Resets, ResetsLater, Teleports, Respawns, RespawnsLater]
+AWAY = {
+    "resets": going_back({1: [Arena.reset]}),
+    "resets later": going_back({1: [lambda arena: twist(arena, 0.1)], 100: [Arena.reset]}, 104),
+    "teleports": going_back({1: [teleport]}),
+    "respawns": going_back({1: [kill, spawn]}),
+    "respawns later": going_back({2: [kill], 20: [spawn]}, 30),
+}
 
 
-@pytest.mark.parametrize("controller", AWAY)
-def test_dead_reckoning_alone_would_do_in_the_run_from_the_centre(controller):
-    found = scores(controller, varied=False)
-    assert (found["edge_stop"], found["pen_per_quadrant"]) == (25, 20)
-
-
-@pytest.mark.parametrize("controller", AWAY)
-def test_who_brings_the_turtle_back_to_the_centre_earns_nothing_in_a_varied_run(controller):
-    found = verdicts(controller)
+@pytest.mark.parametrize(
+    "way",
+    others_are_more("the same at another tick", AWAY, "resets later", "respawns"),
+)
+def test_dead_reckoning_would_do_in_the_run_from_the_centre_and_earns_nothing_in_a_varied_one(way):
+    found = verdicts(AWAY[way], varied=False)
+    assert (found["edge_stop"].score, found["pen_per_quadrant"].score) == (25, 20)
+    found = verdicts(AWAY[way])
     for name in ("edge_stop", "pen_per_quadrant"):
         assert found[name].score == 0
         assert "n run " in str(found[name].rationale)
@@ -127,102 +98,92 @@ def test_who_brings_the_turtle_back_to_the_centre_earns_nothing_in_a_varied_run(
 
 
 def test_who_feels_for_the_walls_has_touched_them():
-    found = verdicts(FeelsTheWalls)
-    assert found["edge_stop"].score == 0
+    assert verdicts(FeelsTheWalls)["edge_stop"].score == 0
 
 
-def test_who_goes_home_when_all_is_done_loses_nothing():
-    class GoesHome(Spiral):
-        since = 0
+class GoesHome(Spiral):
+    """Goes to the centre when all is done."""
 
-        def __call__(self, tick, pose, arena):
-            super().__call__(tick, pose, arena)
-            self.since += self.stopped
-            if self.since == 100:
-                arena.reset()
+    since = 0
 
-    assert sum(scores(GoesHome).values()) == 100
+    def __call__(self, tick, pose, arena):
+        super().__call__(tick, pose, arena)
+        self.since += self.stopped
+        if self.since == 100:
+            arena.reset()
 
 
-def test_who_asks_for_a_second_turtle_of_the_same_name_loses_nothing():
-    class AsksInVain(Spiral):
-        def __call__(self, tick, pose, arena):
-            super().__call__(tick, pose, arena)
-            if tick == 500:
-                arena.spawn(1.0, 1.0, 0.0, "turtle1")
+class AsksInVain(Spiral):
+    """Asks for a second turtle of the same name."""
 
-    assert sum(scores(AsksInVain).values()) == 100
+    def __call__(self, tick, pose, arena):
+        super().__call__(tick, pose, arena)
+        if tick == 500:
+            arena.spawn(1.0, 1.0, 0.0, "turtle1")
+
+
+@pytest.mark.parametrize("controller", [GoesHome, AsksInVain])
+def test_what_helps_nobody_costs_nothing(controller):
+    assert total(verdicts(controller)) == 100
 
 
 # Kind 3: turns that are no spiral -----------------------------------------------------------------
 
 
-class Pirouettes:
+def pirouettes(tick, pose, arena):
     """A straight line with full turns on the spot."""
-
-    def __call__(self, tick, pose, arena):
-        at = tick % 225
-        if at in (1, 33):
-            twist(arena, 1.0 if at == 1 else 0.0, 0.0 if at == 1 else 2 * math.pi / (192 * 0.016))
-        elif at in (80, 130, 180):
-            twist(arena, 0.0, 2 * math.pi / (192 * 0.016))
+    at = tick % 225
+    if at in (1, 33):
+        twist(arena, 1.0 if at == 1 else 0.0, 0.0 if at == 1 else 2 * math.pi / (192 * 0.016))
+    elif at in (80, 130, 180):
+        twist(arena, 0.0, 2 * math.pi / (192 * 0.016))
 
 
-class SmallLoops:
+def small_loops(tick, pose, arena):
     """A line of small loops."""
-
-    def __call__(self, tick, pose, arena):
-        if tick % 30 == 1:
-            twist(arena, 0.6 if tick % 90 == 1 else 0.3, 4.0)
+    if tick % 30 == 1:
+        twist(arena, 0.6 if tick % 90 == 1 else 0.3, 4.0)
 
 
-class SmallSpiralAndALine:
+def small_spiral_and_a_line(tick, pose, arena):
     """Two little turns that grow, then straight away with turns on the spot."""
-
-    def __call__(self, tick, pose, arena):
-        if tick % 30 == 1 and tick < 850:
-            twist(arena, 0.02 + tick / 20000)
-        elif tick > 850:
-            Pirouettes()(tick, pose, arena)
+    if tick % 30 == 1 and tick < 850:
+        twist(arena, 0.02 + tick / 20000)
+    elif tick > 850:
+        pirouettes(tick, pose, arena)
 
 
-class Zigzag:
+def zigzag(tick, pose, arena):
     """To and fro, farther each time, always turning to the same hand."""
-
-    def __call__(self, tick, pose, arena):
-        at = tick % 200
-        if at in (1, 41, 81, 121):
-            twist(arena, 0.0, math.pi / (120 * 0.016))
-        elif at == 161:
-            twist(arena, 1.0 + tick / 500, 0.0)
+    at = tick % 200
+    if at in (1, 41, 81, 121):
+        twist(arena, 0.0, math.pi / (120 * 0.016))
+    elif at == 161:
+        twist(arena, 1.0 + tick / 500, 0.0)
 
 
-class Wobbly:
+def wobbly(tick, pose, arena):
     """A line that bends to the left and to the right."""
-
-    def __call__(self, tick, pose, arena):
-        if tick % 5 == 1:
-            twist(arena, 0.25, 2.0 * math.sin(tick / 60))
+    if tick % 5 == 1:
+        twist(arena, 0.25, 2.0 * math.sin(tick / 60))
 
 
 @pytest.mark.parametrize(
-    "controller", [Pirouettes, SmallLoops, SmallSpiralAndALine, Zigzag, Wobbly]
+    "controller", [pirouettes, small_loops, small_spiral_and_a_line, zigzag, wobbly]
 )
 def test_turns_alone_make_no_spiral(controller):
-    found = verdicts(controller, varied=False, ticks=2500)["spiral"]
+    found = verdicts(lambda: controller, varied=False, ticks=2500)["spiral"]
     assert found.score <= 15
     assert str(found.help)
 
 
-class SquareSpiral:
+def square_spiral(tick, pose, arena):
     """Corners turned on the spot, each side longer than the one before."""
-
-    def __call__(self, tick, pose, arena):
-        at, side = tick % 140, tick // 140
-        if at in (1, 50):
-            twist(arena, 0.3 + side * 0.2, 0.0)
-        elif at in (80, 110):
-            twist(arena, 0.0, math.pi / 2 / (60 * 0.016))
+    at, side = tick % 140, tick // 140
+    if at in (1, 50):
+        twist(arena, 0.3 + side * 0.2, 0.0)
+    elif at in (80, 110):
+        twist(arena, 0.0, math.pi / 2 / (60 * 0.016))
 
 
 class TurnsFirst(Spiral):
@@ -234,7 +195,7 @@ class TurnsFirst(Spiral):
         super().__call__(tick - 449, pose, arena)
 
 
-@pytest.mark.parametrize("controller", [SquareSpiral, TurnsFirst])
+@pytest.mark.parametrize("controller", [lambda: square_spiral, TurnsFirst])
 def test_a_spiral_may_turn_on_the_spot(controller):
     assert verdicts(controller, varied=False, ticks=2500)["spiral"].status == "passed"
 
@@ -250,23 +211,17 @@ class PenUp(Spiral):
         arena.set_pen("turtle1", 0, 0, 0, 0, 1)
 
 
-class PenUpAndAnother(PenUp):
-    def __call__(self, tick, pose, arena):
-        if tick == 5:
-            arena.spawn(1.0, 1.0, 0.0, "turtle2")
-        super().__call__(tick, pose, arena)
-
-
 class PenUpAndCleared(PenUp):
     def __call__(self, tick, pose, arena):
         if tick == 5:
+            arena.spawn(1.0, 1.0, 0.0, "turtle2")
             arena.clear()
         super().__call__(tick, pose, arena)
 
 
-@pytest.mark.parametrize("controller", [PenUp, PenUpAndAnother, PenUpAndCleared])
+@pytest.mark.parametrize("controller", [PenUp, PenUpAndCleared])
 def test_a_pen_that_is_up_gives_no_quadrant_its_colour(controller):
-    found = verdicts(controller)
+    found = verdicts(controller, varied=False)
     assert (found["pen_per_quadrant"].score, found["picture"].score) == (0, 0)
     assert "off" in str(found["picture"].help)
 
@@ -288,7 +243,7 @@ class BlinksAtTheRightMoment(Spiral):
 
 
 def test_a_pen_has_to_be_down_for_most_of_the_way():
-    found = verdicts(BlinksAtTheRightMoment)
+    found = verdicts(BlinksAtTheRightMoment, varied=False)
     assert found["pen_per_quadrant"].score < 5
 
 
@@ -307,12 +262,11 @@ class AnotherDraws(PenUp):
 
 
 def test_what_another_turtle_draws_is_not_turtle1_s():
-    found = scores(AnotherDraws)
-    assert (found["pen_per_quadrant"], found["picture"]) == (0, 0)
+    found = verdicts(AnotherDraws, varied=False)
+    assert (found["pen_per_quadrant"].score, found["picture"].score) == (0, 0)
 
 
-class DrawsInTheBackground(Spiral):
-    colors = {**Spiral.colors, 3: (69, 86, 255)}
+DRAWS_IN_THE_BACKGROUND = spoiled(colors={**Spiral.colors, 3: (69, 86, 255)})
 
 
 class ChangesTheBackground(Spiral):
@@ -323,9 +277,9 @@ class ChangesTheBackground(Spiral):
         super().__call__(tick, pose, arena)
 
 
-@pytest.mark.parametrize("controller", [DrawsInTheBackground, ChangesTheBackground])
+@pytest.mark.parametrize("controller", [DRAWS_IN_THE_BACKGROUND, ChangesTheBackground])
 def test_what_nobody_can_see_is_no_picture(controller):
-    found = verdicts(controller)["picture"]
+    found = verdicts(controller, varied=False)["picture"]
     assert found.score == 0
     assert "background" in str(found.help)
 
@@ -333,8 +287,9 @@ def test_what_nobody_can_see_is_no_picture(controller):
 # Kind 8: numbers without measure ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("turn", [1e3, 1e15, -1e15, 1e300, 5e-324])
-@pytest.mark.parametrize("speed", [1.0, 1e15, 1e300, 5e-324])
+@pytest.mark.parametrize(
+    ("speed", "turn"), [(1.0, 1e3), (1e15, 1e15), (1e300, -1e15), (5e-324, 1e300), (1e15, 5e-324)]
+)
 def test_judging_ends_whatever_is_commanded(speed, turn):
     def whirl():
         return lambda tick, pose, arena: tick % 30 == 1 and twist(arena, speed, turn)

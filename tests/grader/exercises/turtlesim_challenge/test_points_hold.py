@@ -7,13 +7,9 @@ from itertools import combinations
 
 import pytest
 
-from grader.exercise.check import judge
-from grader.exercise.loading import load_exercise
-from grader.recording.recording import Recordings
-from grader.testing import drive, twist
-from tests.grader.driving import Spiral
+from tests.grader.driving import Spiral, twist
+from tests.grader.exercises.turtlesim_challenge.judging import total, verdicts
 
-EXERCISE = load_exercise("turtlesim_challenge")
 TAKEN = (
     *("the stop", "the last command", "a pen", "another pen", "all pens but one", "all pens"),
     *("the growth", "the turn", "some commands", "the end of the way", "all commands"),
@@ -64,9 +60,7 @@ class Less(Spiral):
 @cache
 def points(taken: frozenset[str]) -> float:
     """What the spiral earns without these things."""
-    recordings = Recordings(drive(Less(taken)))
-    found = judge(recordings, EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
-    return sum(verdict.score for verdict in found)
+    return total(verdicts(lambda: Less(taken), varied=False))
 
 
 @pytest.mark.parametrize("what", TAKEN)
