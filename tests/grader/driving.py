@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from grader.scenes.turtlesim.driving import REST_TICKS
 from grader.testing import drive, pen, twist
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import SIZE_M, Pose
 
-__all__ = ["BLUE", "CENTRE", "GREEN", "RED", "REST_TICKS", "WHITE", "Spiral"]
+__all__ = ["BLUE", "CENTRE", "GREEN", "RED", "REST_TICKS", "WHITE", "Spiral", "spoiled"]
 __all__ += ["drive", "pen", "twist"]  # as grader.testing has them
 
 CENTRE = SIZE_M / 2
@@ -57,3 +59,8 @@ class Spiral:
 
     def entered(self, quadrant: int, arena: Arena) -> None:
         pen(arena, self.colors[quadrant])
+
+
+def spoiled(base: type[Spiral] = Spiral, **parts: Any) -> type[Spiral]:
+    """Return a class that behaves as another one but for some parts: its methods, its colours."""
+    return type("Spoiled", (base,), parts)

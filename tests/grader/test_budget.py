@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
-from pathlib import Path
-
-import pytest
 
 import grader
 from grader.run.limits import CpuBudget
+from tests.files import lay
 
 EXERCISE = """\
 exercise: everywhere
 title: Drive from wherever you start
-cpu_s: 3
+cpu_s: 1.5
 limits: {first_motion_s: 10, rest_s: 5, total_s: 60}
 varied_runs: {count: 3, seed: 1, nearest_m: 1.0, farthest_m: 2.0}
 points: {drives: 1, drives_everywhere: 2, turns: 3}
@@ -61,41 +57,23 @@ rclpy.spin(node)
 """
 
 
-@pytest.fixture
-def exercise(tmp_path: Path) -> Path:
-    folder = tmp_path / "everywhere"
-    folder.mkdir()
-    (folder / "exercise.yaml").write_text(EXERCISE)
-    (folder / "checks.py").write_text(CHECKS)
-    return folder
-
-
-def test_what_a_grading_has_reached_within_its_budget_is_judged(exercise, tmp_path):
+def test_what_a_grading_has_reached_within_its_budget_is_judged(tmp_path):
+    exercise = lay(tmp_path / "everywhere", {"exercise.yaml": EXERCISE, "checks.py": CHECKS})
     (tmp_path / "computes.py").write_text(COMPUTES)
-    spent = "the whole grading used more than 3 s of processor time"
-    done = subprocess.run(
-        [
-            *(sys.executable, "-m", "grader", "run", tmp_path / "computes.py"),
-            *("--exercise", exercise, "--out", tmp_path / "out"),
-        ],
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    result = grader.Result.read(tmp_path / "out" / "result.json")
+    spent = "the whole grading used more than 1.5 s of processor time"
+    recordings = grader.record(tmp_path / "computes.py", exercise)
+    grader.save_recordings(recordings, tmp_path / "kept")
+    result = grader.judge(recordings, exercise)
     runs = [result.run, *result.varied_runs]
     assert {run.outcome for run in runs} == {"killed", "not_run"}
     assert (runs[0].outcome, runs[-1].outcome) == ("killed", "not_run")
     assert all(spent in map(str, run.flags) for run in runs)
     drives, everywhere, turns = result.verdicts
     assert (drives.status, drives.score) == ("passed", 1)
-    assert (everywhere.status, str(everywhere.rationale)) == (
-        "not_judged",
-        f"Not judged: {spent}.",
-    )
+    assert (everywhere.status, str(everywhere.rationale)) == ("not_judged", f"Not judged: {spent}.")
     assert turns.status == "not_judged"
     assert spent in str(result.diagnosis.cause).lower()
-    again = grader.judge(grader.load_recordings(tmp_path / "out" / "recording"), exercise)
+    again = grader.judge(grader.load_recordings(tmp_path / "kept"), exercise)
     assert again.verdicts == result.verdicts
 
 

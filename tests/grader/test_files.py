@@ -10,11 +10,16 @@ from grader import files
 from grader.errors import UsageError
 
 
-def test_a_file_is_written_whole_with_its_folders(tmp_path):
+def test_a_file_is_written_whole_with_its_folders_and_withdrawn(tmp_path):
     path = tmp_path / "new" / "folder" / "a.txt"
     files.write(path, "ä\r\n")
     assert path.read_bytes() == "ä\r\n".encode()
     assert [p.name for p in path.parent.iterdir()] == ["a.txt"]
+    path = tmp_path / "a.txt"
+    path.touch()
+    files.withdraw(path)
+    files.withdraw(path)
+    assert not path.exists()
 
 
 def test_what_cannot_be_written_leaves_what_was_there(tmp_path, monkeypatch):
@@ -31,7 +36,7 @@ def test_what_cannot_be_written_leaves_what_was_there(tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["a.txt"]
 
 
-def test_a_link_stays_a_link(tmp_path):
+def test_a_link_stays_a_link_and_what_is_withdrawn_is_gone(tmp_path):
     (tmp_path / "link").symlink_to(tmp_path / "target")
     files.write(tmp_path / "link", "text")
     assert (tmp_path / "link").is_symlink()
@@ -41,7 +46,7 @@ def test_a_link_stays_a_link(tmp_path):
     assert not (tmp_path / "target").exists()
 
 
-def test_a_pipe_is_simply_written_to(tmp_path):
+def test_what_is_no_file_is_simply_written_to(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     heard: list[str] = []
@@ -53,9 +58,6 @@ def test_a_pipe_is_simply_written_to(tmp_path):
     reader.join()
     assert heard == ["text"]
     assert pipe.is_fifo()
-
-
-def test_a_device_is_simply_written_to():
     files.check_writable(Path("/dev/null"))
     files.write(Path("/dev/null"), "text")
 
@@ -79,27 +81,16 @@ def test_a_descriptor_is_written_to_even_where_its_file_cannot_be_opened(tmp_pat
         files.check_writable(path)
 
 
-def test_a_descriptor_for_reading_is_refused(tmp_path):
+def test_what_could_not_be_written_is_found_out_beforehand_and_nothing_is_made(tmp_path):
     (tmp_path / "a.txt").touch()
     with (tmp_path / "a.txt").open() as file, pytest.raises(UsageError, match="for reading only"):
         files.check_writable(Path(f"/dev/fd/{file.fileno()}"))
-
-
-def test_what_could_not_be_written_is_found_out_beforehand_and_nothing_is_made(tmp_path):
     (tmp_path / "file").touch()
     for path in (tmp_path, tmp_path / "file" / "below"):
         with pytest.raises(UsageError, match=f"cannot write {path}: "):
             files.check_writable(path)
     files.check_writable(tmp_path / "new" / "folder" / "a.txt")
     assert not (tmp_path / "new").exists()
-
-
-def test_what_is_withdrawn_is_gone(tmp_path):
-    path = tmp_path / "a.txt"
-    path.touch()
-    files.withdraw(path)
-    files.withdraw(path)
-    assert not path.exists()
 
 
 def test_a_folder_has_one_writer_at_a_time(tmp_path):

@@ -13,14 +13,15 @@ from pathlib import Path
 
 import psutil
 import pytest
-import yaml
 
 import grader
 from grader import content
 from grader.errors import ExerciseError, GraderFailure, UsageError
 from grader.run import fork_servers
+from tests.tiers import others_are_more
 
 ROOT = Path(__file__).parents[2]
+TIMES = others_are_more("in real time the same is said", ("virtual", "real"), "virtual")
 DRIVES = """
 import rclpy
 from geometry_msgs.msg import Twist
@@ -31,6 +32,12 @@ twist = Twist()
 twist.linear.x = 1.0
 pub.publish(twist)
 rclpy.spin(node)
+"""
+SHORT = """
+exercise: turtlesim_challenge
+limits: {first_motion_s: 2, rest_s: 0.5, total_s: 5}
+varied_runs: {count: 0}
+points: {moves: 5}
 """
 #: What a process is before and after it grades.
 WATCHES = """
@@ -65,16 +72,7 @@ print(len(result))
 def short(tmp_path: Path) -> Path:
     """An exercise whose runs are short, with one run each."""
     path = tmp_path / "short.yaml"
-    path.write_text(
-        yaml.safe_dump(
-            {
-                "exercise": "turtlesim_challenge",
-                "limits": {"first_motion_s": 2, "rest_s": 0.5, "total_s": 5},
-                "varied_runs": {"count": 0},
-                "points": {"moves": 5},
-            }
-        )
-    )
+    path.write_text(SHORT)
     return path
 
 
@@ -107,7 +105,8 @@ def test_it_works_under_asyncio(short, drives):
 
 
 def test_recordings_can_be_had_kept_and_judged_again(short, drives, tmp_path):
-    recordings = grader.record(drives, short, time="virtual")
+    with grader.open_submission(drives) as submission:  # it may be open already
+        recordings = grader.record(submission, short, time="virtual")
     result = grader.judge(recordings, short, submission="drives.py")
     assert (result.score, result.submission) == (5, "drives.py")
     grader.save_recordings(recordings, tmp_path / "kept")
@@ -121,11 +120,6 @@ def test_recordings_can_be_had_kept_and_judged_again(short, drives, tmp_path):
     assert recorded.conditions["limits.total_s"] == 5
 
 
-def test_a_submission_that_is_open_already_can_be_given(short, drives):
-    with grader.open_submission(drives) as submission:
-        assert grader.grade(submission, short).submission == "drives.py"
-
-
 def test_what_cannot_be_used_is_told(drives, short):
     with pytest.raises(grader.GraderError):
         grader.grade("no/such/file.py")
@@ -133,9 +127,12 @@ def test_what_cannot_be_used_is_told(drives, short):
         grader.grade(drives, "chess")
     with pytest.raises(UsageError, match="time: expected one of"):
         grader.grade(drives, short, time="slow")  # type: ignore[arg-type]
+    for seed in ("a", 1.5, True):
+        with pytest.raises(UsageError, match="seed: expected a whole number"):
+            grader.grade(drives, seed=seed)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("time", ["virtual", "real"])
+@pytest.mark.parametrize("time", TIMES)
 def test_a_path_in_an_error_is_that_of_what_was_handed_in(short, tmp_path, time):
     path = tmp_path / "reads.py"
     path.write_text("from pathlib import Path\nopen(Path(__file__).with_name('gains.yaml'))\n")
@@ -201,12 +198,6 @@ def test_importing_it_costs_nothing_until_something_is_asked_for():
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", LAZY], env=env, capture_output=True, text=True)
     assert done.stdout == "well\n", done.stderr
-
-
-@pytest.mark.parametrize("seed", ["a", 1.5, True])
-def test_a_seed_that_is_no_whole_number_is_refused(drives, seed):
-    with pytest.raises(UsageError, match="seed: expected a whole number"):
-        grader.grade(drives, seed=seed)
 
 
 #: Prints whether a run's thread finds the modules that the look at the package needs as well.

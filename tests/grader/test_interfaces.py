@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import subprocess
 from dataclasses import replace
@@ -15,13 +14,16 @@ from grader.diagnosis.diagnose import diagnose
 from grader.exercise.verdict import Verdict
 from grader.message import msg, plain_text
 from grader.recording.recording import OwnInterfaces, Recordings
+from grader.result.result import Result
 from grader.run import virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
 from tests import hand_ins, runs
 from tests.docs.test_examples import environment_with
+from tests.grader.diagnosis.cases import expect_said
 from tests.grader.testing import exercises
+from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 
 FOLDER = runs.SUBMISSIONS / "interfaces"
@@ -47,13 +49,8 @@ def test_a_zip_of_a_workspace_is_one(tmp_path):
         ]
 
 
-def some(names, first):
-    """All of these; `make test` has those that stand for the others."""
-    more = pytest.mark.more("others stand for it")
-    return [pytest.param(name, marks=() if name in first else more) for name in names]
-
-
-@pytest.mark.parametrize("name", some(SAID, ["workspace"]))
+@pytest.mark.more("tests/grader/test_archive.py grades the reference of own_interfaces")
+@pytest.mark.parametrize("name", SAID)
 def test_a_program_uses_its_own_messages_services_and_actions(name):
     result = runs.graded(FOLDER / name)
     recording = runs.recordings(FOLDER / name).nominal
@@ -72,47 +69,25 @@ def lit(tmp_path_factory):
     return environment_with(place / "light", place / "venv")
 
 
-@pytest.fixture
-def grade(request, tmp_path):
-    """Grade a workspace that was judged by hand: its n-th grading, as the result's file has it."""
-
-    def graded(name, number=1):
-        case = JUDGED[name]
-        made = runs.path_of(f"interfaces/judged/{name}")
-        if "exercise" not in case:
-            return runs.graded(made, number=number).to_json()
-        python, out = str(request.getfixturevalue("lit")), tmp_path / f"out{number}"
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize(
+    "name", others_are_more("gradings of the same kind", JUDGED, "a_wrong_cmake")
+)
+def test_a_workspace_gets_what_was_judged_by_hand(request, tmp_path, name):
+    case = JUDGED[name]
+    made = runs.path_of(f"interfaces/judged/{name}")
+    if "exercise" not in case:
+        result = runs.graded(made)
+    else:
+        python, out = str(request.getfixturevalue("lit")), tmp_path / "out"
         words = [python, "-m", "grader", "run", str(made), "--out", str(out)]
         words += ["--exercise", str(LIGHT / case["exercise"])]
         subprocess.run(words, check=True, cwd=tmp_path, capture_output=True)
-        return json.loads((out / "result.json").read_text())
-
-    return graded
-
-
-@pytest.mark.timeout(300)
-@pytest.mark.parametrize("name", some(JUDGED, ["a_wrong_cmake", "otherwise_than_the_exercise_s"]))
-def test_a_workspace_gets_what_was_judged_by_hand(grade, name):
-    result = grade(name)
-    assert result["score"] == JUDGED[name]["score"]
-    assert ("diagnosis" in result) == ("says" in JUDGED[name])
-    found = result.get("diagnosis", {"cause": "", "help": ""})
-    is_in_order(JUDGED[name].get("says", []), f"{found['cause']} {found['help']}")
-
-
-@pytest.mark.more("three gradings each")
-@pytest.mark.timeout(300)
-@pytest.mark.parametrize("name", JUDGED)
-def test_each_grading_of_a_workspace_is_the_same(grade, name):
-    results = [grade(name, number) for number in (1, 2, 3)]
-    same = [
-        (
-            result["verdicts"],
-            [run["trace_sha256"] for run in (result["run"], *result["varied_runs"])],
-        )
-        for result in results
-    ]
-    assert same[0] == same[1] == same[2]
+        result = Result.read(out / "result.json")
+    assert result.score == case["score"]
+    assert (result.diagnosis is not None) == ("says" in case)
+    if "says" in case:
+        expect_said(result.diagnosis, case)
 
 
 def run(path, interfaces=None):
@@ -122,18 +97,17 @@ def run(path, interfaces=None):
         return replace(virtual_time.run(submission, PLAN), interfaces=submission.interfaces)
 
 
-def is_in_order(pieces, text):
-    begin = 0
-    for piece in pieces:
-        assert piece in text[begin:], text
-        begin = text.index(piece, begin)
-
-
-@pytest.mark.parametrize("name", some(WRONG, list(WRONG)[::4]))
+@pytest.mark.parametrize(
+    "name",
+    others_are_more(
+        "tests/grader/submission/test_interfaces.py finds them without a run",
+        WRONG,
+        *("not_listed", "wrong_module", "misspelt_field"),
+    ),
+)
 def test_the_first_lines_say_what_is_wrong(name):
     found = diagnose(Recordings(run(FOLDER / "wrong" / name)), LOST)
-    assert found is not None
-    is_in_order(WRONG[name]["says"], f"{found.cause!s} {found.help!s}")
+    expect_said(found, WRONG[name])
 
 
 def test_a_package_that_package_xml_does_not_name_is_remarked(tmp_path):

@@ -2,30 +2,36 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 
 import grader
 from grader.exercise.loading import load_exercise
-from grader.result.result import Result
 from grader.run.processes import levels
 from grader.run.processes.levels import LANDLOCK, LIMITS
+from tests import archive
+from tests.tiers import others_are_more
+
+NAMES = ("own_interfaces", "talker_listener", "description_package")
 
 
-def graded(name: str, level: str = "") -> Result:
+@pytest.mark.parametrize(
+    ("case", "level", "name"),
+    others_are_more(
+        "tests/attacks does what matters at each level",
+        [(f"{name} at {level}", level, name) for level, name in product((LANDLOCK, LIMITS), NAMES)],
+        f"own_interfaces at {LIMITS}",
+    ),
+)
+def test_a_package_has_the_same_verdict_at_each_level(case: str, level: str, name: str) -> None:
     levels.only(level)
     try:
-        return grader.grade(load_exercise(name).folder / "reference", name)
+        result = grader.grade(load_exercise(name).folder / "reference", name)
     except levels.NotOffered:
         pytest.skip("not offered here")
     finally:
         levels.only("")
-
-
-@pytest.mark.parametrize("level", [LANDLOCK, LIMITS])
-@pytest.mark.parametrize("name", ["own_interfaces", "talker_listener", "description_package"])
-def test_a_package_has_the_same_verdict_at_each_level(name: str, level: str) -> None:
-    if name == "description_package":
-        pytest.importorskip("grader_robots")
-    best, other = graded(name), graded(name, level)
-    assert other.run.isolation.startswith(level)
-    assert (other.score, other.run.trace_sha256) == (100.0, best.run.trace_sha256)
+    assert result.run.isolation.startswith(level)
+    best = archive.result(name, "right")
+    assert (result.score, result.run.trace_sha256) == (100.0, best.run.trace_sha256)

@@ -1,20 +1,20 @@
 """Our own folders and locks are made safely, whatever lies in their places."""
 
 import os
-import shutil
 import socket
 import stat
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from grader import scratch
 from grader.errors import GraderFailure
 from grader.run.processes import cores, network
-
-OTHER = 65534
+from tests.children import NOBODYS_UID
+from tests.needs import needs
 
 
 @pytest.fixture
@@ -59,15 +59,22 @@ def forbidden_file(path: Path) -> None:
 
 def another_s_file(path: Path) -> None:
     path.touch()
-    if os.geteuid() != 0:
-        pytest.skip("needs root to give a file away")
-    os.chown(path, OTHER, OTHER)
+    os.chown(path, NOBODYS_UID, NOBODYS_UID)
 
 
-FOREIGN = [pipe, link, dangling_link, folder, a_socket, forbidden_file, another_s_file]
+def another_s_folder(path: Path) -> None:
+    path.mkdir()
+    os.chown(path, NOBODYS_UID, NOBODYS_UID)
 
 
-@pytest.mark.parametrize("lay", FOREIGN)
+def by_root(lay: Callable[[Path], None]) -> Any:
+    return pytest.param(lay, marks=needs("root"))
+
+
+FOREIGN = [pipe, link, dangling_link, a_socket, forbidden_file, by_root(another_s_file)]
+
+
+@pytest.mark.parametrize("lay", [*FOREIGN, folder])
 def test_what_lies_where_locks_are_looked_for_stops_nobody(
     place: Path, lay: Callable[[Path], None]
 ) -> None:
@@ -96,32 +103,11 @@ def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
     assert stat.S_IMODE(found.st_mode) == 0o600
 
 
-def test_a_lock_that_was_moved_away_is_not_held(
-    place: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    lock_file = scratch.lock_file
-
-    def lock_late(file):  # type: ignore[no-untyped-def]
-        Path(file.name).unlink()
-        return lock_file(file)
-
-    monkeypatch.setattr(scratch, "lock_file", lock_late)
-    assert scratch.acquire_lock("core-0") is None
-    with pytest.raises(GraderFailure, match="removes the locks"), scratch.make_folder():
-        pass
-
-
-@pytest.mark.parametrize("lay", FOREIGN)
+@pytest.mark.parametrize("lay", [*FOREIGN, by_root(another_s_folder)])
 def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(
     place: Path, lay: Callable[[Path], None]
 ) -> None:
-    if lay is folder:
-        if os.geteuid() != 0:
-            pytest.skip("needs root to give a folder away")
-        place.mkdir()
-        os.chown(place, OTHER, OTHER)
-    else:
-        lay(place)
+    lay(place)
     before = place.lstat()
     assert scratch.home() == Path(os.environ["XDG_RUNTIME_DIR"]) / "turtlesim-grader"
     assert scratch.home().stat().st_mode & 0o777 == 0o700
@@ -131,18 +117,17 @@ def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(
     assert not (place.parent.parent / "made by the grader").exists()
 
 
-def test_a_link_to_a_folder_of_ours_is_not_followed(place: Path, tmp_path: Path) -> None:
-    (tmp_path / "mine").mkdir(mode=0o700)
-    place.symlink_to(tmp_path / "mine")
-    with scratch.make_folder():
-        assert list((tmp_path / "mine").iterdir()) == []
-
-
-def test_a_folder_of_ours_that_others_could_write_into_is_closed_to_them(place: Path) -> None:
+def test_a_folder_of_ours_is_closed_to_others_and_a_link_to_one_is_not_followed(
+    place: Path, tmp_path: Path
+) -> None:
     place.mkdir()
     place.chmod(0o777)
     assert scratch.home() == place
     assert stat.S_IMODE(place.stat().st_mode) == 0o700
+    place.rename(tmp_path / "mine")
+    place.symlink_to(tmp_path / "mine")
+    with scratch.make_folder():
+        assert list((tmp_path / "mine").iterdir()) == []
 
 
 def test_where_no_place_is_left_it_says_which_whose_and_what_to_do(
@@ -175,12 +160,17 @@ def test_what_a_run_that_was_killed_leaves_goes_with_the_next_whatever_it_is(pla
     assert outside.is_dir()
 
 
-def test_the_folder_goes_even_if_what_is_in_it_is_forbidden(place: Path) -> None:
+def test_a_folder_of_ours_goes_and_nothing_that_is_in_use(place: Path) -> None:
     with scratch.make_folder() as made:
         (made / "a" / "b").mkdir(parents=True)
         (made / "a").chmod(0)
-    assert not made.exists()
-    shutil.rmtree(place)
+    assert list(place.iterdir()) == []
+    (scratch.home() / "run-dead" / "tmp").mkdir(parents=True)
+    (scratch.home() / "run-dead.lock").touch()
+    with scratch.make_folder() as first, scratch.make_folder() as second:
+        names = {path.name for path in scratch.home().iterdir() if path.is_dir()}
+        assert names == {first.name, second.name}
+    assert list(scratch.home().iterdir()) == []
 
 
 def test_a_lock_has_one_holder_until_he_closes_it(tmp_path: Path) -> None:
@@ -193,35 +183,32 @@ def test_a_lock_has_one_holder_until_he_closes_it(tmp_path: Path) -> None:
         assert scratch.lock_file(third)
 
 
-def test_a_folder_leaves_nothing(place: Path) -> None:
-    with scratch.make_folder() as folder:
-        (folder / "file").write_text("text")
-    assert list(scratch.home().iterdir()) == []
-
-
-def test_what_a_killed_grader_left_is_cleared_and_what_is_in_use_is_not(place: Path) -> None:
-    (scratch.home() / "run-dead" / "tmp").mkdir(parents=True)
-    (scratch.home() / "run-dead.lock").touch()
-    with scratch.make_folder() as first, scratch.make_folder() as second:
-        names = {path.name for path in scratch.home().iterdir() if path.is_dir()}
-        assert names == {first.name, second.name}
-    assert list(scratch.home().iterdir()) == []
-
-
-def test_a_lock_that_another_has_taken_for_a_leftover_is_not_used(
-    place: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """He looked round between two steps of ours, and has removed it."""
-    locked: list[str] = []
+@pytest.fixture
+def locked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The locks that were asked for: another one, who looks round just then, removes the first."""
+    names: list[str] = []
     lock_file = scratch.lock_file
 
     def lock_late(file):  # type: ignore[no-untyped-def]
-        locked.append(file.name)
-        if len(locked) == 1:
+        if not names or names[0] == "each":
             Path(file.name).unlink()
+        names.append(file.name)
         return lock_file(file)
 
     monkeypatch.setattr(scratch, "lock_file", lock_late)
+    return names
+
+
+def test_a_lock_that_another_has_taken_for_a_leftover_is_not_used(
+    place: Path, locked: list[str]
+) -> None:
     with scratch.make_folder() as folder:
         assert folder.is_dir()
         assert Path(locked[1]).stem == folder.name
+
+
+def test_a_lock_that_is_always_moved_away_is_not_held(place: Path, locked: list[str]) -> None:
+    locked.append("each")
+    assert scratch.acquire_lock("core-0") is None
+    with pytest.raises(GraderFailure, match="removes the locks"), scratch.make_folder():
+        pass

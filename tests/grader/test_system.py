@@ -27,8 +27,9 @@ def test_namespaces_that_libc_does_not_know_are_refused(monkeypatch, libc) -> No
         network._as_root()
 
 
-def test_ours_is_that_of_the_installed_package():
+def test_versions_are_those_of_what_is_installed():
     assert system.grader_version() == metadata.version("turtlesim_py")
+    assert sys.version.startswith(system.python_version())
 
 
 def test_rclpy_s_is_in_its_package_xml_where_pip_knows_nothing_of_it(tmp_path, monkeypatch):
@@ -46,7 +47,3 @@ def test_rclpy_s_is_in_its_package_xml_where_pip_knows_nothing_of_it(tmp_path, m
     assert system.grader_version() == "?"
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     assert system.rclpy_version() == "?"
-
-
-def test_python_s_is_this_one_s():
-    assert sys.version.startswith(system.python_version())
