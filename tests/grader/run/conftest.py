@@ -25,7 +25,7 @@ SHORTER = {
     "loops_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
     "starts_a_program": (Limits(3, 0.2, 10), None),
     "breaks_the_grader": (Limits(3, 0.2, 10), None),
-    "stops_itself": (Limits(3, 1, 60), Patience(asleep_s=1.0)),
+    "stops_itself": (Limits(3, 1, 60), Patience(asleep_s=0.3)),
     "attacks_link": (Limits(1, 0.2, 10), None),
     "floods": (Limits(3, 1, 2), None),
     "floods_without_end": (Limits(3, 1, 2), None),

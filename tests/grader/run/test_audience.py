@@ -13,6 +13,7 @@ from grader.scenes.scene import Limits
 from grader.scenes.turtlesim.live import TurtlesimPage
 from tests.grader.run.conftest import LIMITS
 from tests.runs import SUBMISSIONS
+from tests.tiers import others_are_more
 from turtlesim_py.live.feed import News
 from turtlesim_py.world import picture
 from turtlesim_py.world.turtle import Sprite
@@ -50,7 +51,12 @@ class Onlooker:
 
 
 @pytest.mark.parametrize(
-    ("name", "speed"), [("services/all_services", None), ("quick_spiral", 8.0)]
+    ("name", "speed"),
+    others_are_more(
+        "it takes its time",
+        [("services/all_services", None), ("quick_spiral", 8.0)],
+        "services/all_services",
+    ),
 )
 def test_a_run_that_is_seen_is_the_same_run_and_is_seen_to_its_last_pixel(recorded, name, speed):
     unseen = recorded(name)
@@ -67,6 +73,7 @@ def test_a_run_that_is_seen_is_the_same_run_and_is_seen_to_its_last_pixel(record
     assert np.array_equal(onlooker.window(), seen.trace.window)
 
 
+@pytest.mark.more("one in virtual time is seen")
 def test_a_run_in_real_time_is_seen_as_well_from_where_it_starts(tmp_path):
     node = tmp_path / "node.py"
     node.write_text("import rclpy\nrclpy.init()\nrclpy.create_node('still')\n")

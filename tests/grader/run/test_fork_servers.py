@@ -9,17 +9,19 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
 
 from grader.errors import GraderFailure
 from grader.recording.recording import Recording
-from grader.run import fork_servers, virtual_time
+from grader.run import fork_servers, real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.run.processes import FORK_SERVER, levels, network
 from grader.scenes.scene import Limits
+from tests.tiers import others_are_more
 
 ROOT = Path(__file__).parents[3]
 PLAN = Plan(Limits(first_motion_s=0.5, rest_s=0.2, total_s=5))
@@ -114,23 +116,22 @@ def cold(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fork_servers, "server", lambda side: None)
 
 
+#: Where these are refused, a run is kept apart by less.
+REFUSED = [
+    ("the best", set()),
+    ("user namespace", {network._as_root}),
+    ("ROS domain", {network._as_root, network._as_user}),
+]
+
+
 @pytest.mark.parametrize(
-    "level",
-    [
-        "private network",
-        pytest.param("user namespace", marks=pytest.mark.more("as the private network")),
-        pytest.param("ROS domain", marks=pytest.mark.more("keeping apart is tested in isolation")),
-    ],
+    ("apart", "refused"),
+    others_are_more("keeping apart is tested in test_network", REFUSED, "the best"),
 )
 def test_a_forked_submission_finds_all_that_a_started_one_does(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, level: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, apart: str, refused: set[Any]
 ) -> None:
-    refused = {
-        "private network": set(),
-        "user namespace": {network._as_root},
-        "ROS domain": {network._as_root, network._as_user},
-    }
-    monkeypatch.setattr(network, "_refused", refused[level])
+    monkeypatch.setattr(network, "_refused", set(refused))
     monkeypatch.setattr(levels, "_found", {})
     # the same for both runs, and none that any other grader takes
     monkeypatch.setattr(network, "DOMAINS", (39,))
@@ -146,17 +147,14 @@ def test_a_forked_submission_finds_all_that_a_started_one_does(
     assert forked.run.isolation == started.run.isolation
 
 
+OWN = (
+    *("numpy.py", "std_msgs/__init__.py", "geometry_msgs.py", "lark.py", "zlib.py"),
+    "lib/std_srvs.py",
+)
+
+
 @pytest.mark.parametrize(
-    "own",
-    [
-        "numpy.py",
-        "std_msgs/__init__.py",
-        *(
-            pytest.param(name, marks=pytest.mark.more("as the other files"))
-            for name in ("geometry_msgs.py", "lark.py", "zlib.py")
-        ),
-        "lib/std_srvs.py",
-    ],
+    "own", others_are_more("a package stands for the others", OWN, "std_msgs/__init__.py")
 )
 def test_a_submission_s_own_module_is_what_it_imports(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: str
@@ -203,13 +201,10 @@ def test_runs_side_by_side_share_the_servers(tmp_path: Path, fresh: None) -> Non
     assert forks() == (4, 4)
 
 
-@pytest.mark.parametrize(
-    "side",
-    [
-        fork_servers.STUDENT,
-        pytest.param(fork_servers.SIMULATOR, marks=pytest.mark.more("as the student's")),
-    ],
-)
+SIDES = (fork_servers.STUDENT, fork_servers.SIMULATOR)
+
+
+@pytest.mark.parametrize("side", others_are_more("as the student's", SIDES, fork_servers.STUDENT))
 def test_a_server_that_dies_costs_a_start_and_nothing_else(
     tmp_path: Path, forgiven: None, side: str
 ) -> None:
@@ -225,7 +220,7 @@ def test_a_server_that_dies_costs_a_start_and_nothing_else(
     assert second.forks >= 1
 
 
-@pytest.mark.parametrize("side", [fork_servers.STUDENT, fork_servers.SIMULATOR])
+@pytest.mark.parametrize("side", others_are_more("as the student's", SIDES, fork_servers.STUDENT))
 def test_a_server_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgiven: None, side: str
 ) -> None:
@@ -243,13 +238,8 @@ def test_a_server_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
             run.result()
 
 
-@pytest.mark.parametrize(
-    "side",
-    [
-        fork_servers.SIMULATOR,
-        pytest.param(fork_servers.STUDENT, marks=pytest.mark.more("as the simulator's")),
-    ],
-)
+@pytest.mark.more("test_fork_server has one that never comes up")
+@pytest.mark.parametrize("side", SIDES)
 def test_a_server_that_never_comes_up_is_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None, side: str
 ) -> None:
@@ -287,77 +277,61 @@ def test_a_changed_environment_is_another_server_s(
         each._process.wait(20)
 
 
-@pytest.mark.parametrize(
-    ("names", "value"), [("PYTHONPATH", "relative:/opt/ros"), ("PYTHONPATH", ":/opt/ros")]
-)
+@pytest.mark.parametrize("path", ["relative:/opt/ros", ":/opt/ros"])
 def test_there_is_none_where_the_import_path_depends_on_the_folder(
-    monkeypatch: pytest.MonkeyPatch, names: str, value: str
+    monkeypatch: pytest.MonkeyPatch, path: str
 ) -> None:
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
-    monkeypatch.setenv(names, value)
+    monkeypatch.setenv("PYTHONPATH", path)
     assert fork_servers.server(fork_servers.STUDENT) is None
 
 
+def printed(code: str) -> str:
+    """What a program prints that has the servers' module as `servers`."""
+    head = f"import os, sys, threading\nsys.path.insert(0, {str(ROOT)!r})\n"
+    head += "from grader.run import fork_servers as servers\n"
+    words = [sys.executable, "-c", head + code]
+    return subprocess.run(words, stdout=subprocess.PIPE, check=True, cwd=ROOT, text=True).stdout
+
+
 def test_a_fork_of_the_grader_has_servers_of_its_own() -> None:
-    code = f"""
-import os, sys
-sys.path.insert(0, {str(ROOT)!r})
-from grader.run import fork_servers
-fork_servers.warm()
-ours = {{side.pid for side in fork_servers._servers.values()}}
+    printed("""
+servers.warm()
+ours = {side.pid for side in servers._servers.values()}
 child = os.fork()
 if not child:
-    assert not fork_servers._servers
-    theirs = {{fork_servers.server(side).pid for side in ("student", "simulator")}}
-    assert fork_servers.server("student").preloaded()
-    fork_servers.close()
+    assert not servers._servers
+    theirs = {servers.server(side).pid for side in ("student", "simulator")}
+    assert servers.server("student").preloaded()
+    servers.close()
     os._exit(bool(ours & theirs))
 assert os.waitpid(child, 0)[1] == 0
-assert fork_servers.server("student").preloaded()
-assert {{side.pid for side in fork_servers._servers.values()}} == ours
-"""
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
+assert servers.server("student").preloaded()
+assert {side.pid for side in servers._servers.values()} == ours
+""")
 
 
-def test_servers_end_with_the_program_that_has_graded() -> None:
-    code = f"""
-import sys, threading
-sys.path.insert(0, {str(ROOT)!r})
-from grader.run import fork_servers
-thread = threading.Thread(target=fork_servers.warm)
+def test_servers_end_with_the_program_that_has_graded_and_import_nothing_heavy_into_it() -> None:
+    pids, heavy = printed("""
+thread = threading.Thread(target=servers.warm)
 thread.start()
 thread.join()
-print(*(side.pid for side in fork_servers._servers.values()))
-"""
-    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True)
-    pids = [int(word) for word in done.stdout.split()]
-    assert len(pids) == 2
-    assert not any(psutil.pid_exists(pid) for pid in pids)
+print(*(side.pid for side in servers._servers.values()))
+print(*sorted({"numpy", "backports", "rclpy", "PIL", "yaml", "rich"} & set(sys.modules)))
+""").splitlines()
+    assert len(pids.split()) == 2
+    assert not any(psutil.pid_exists(int(pid)) for pid in pids.split())
+    assert heavy == ""
 
 
-def test_warming_up_imports_nothing_heavy() -> None:
-    code = f"""
-import sys
-sys.path.insert(0, {str(ROOT)!r})
-from grader.run import fork_servers
-fork_servers.warm()
-print(*sorted({{"numpy", "backports", "rclpy", "PIL", "yaml", "rich"}} & set(sys.modules)))
-"""
-    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True)
-    assert done.stdout == b"\n"
-
-
+@pytest.mark.more("a run in real time")
 def test_in_real_time_the_simulator_alone_is_forked(tmp_path: Path) -> None:
-    from grader.run import real_time
-
     fork_servers.warm()
-    before = {side: each.forks for side, each in fork_servers._servers.items()}
-    script = tmp_path / "submitted.py"
-    script.write_text("print('here')")
-    with open_submission(script) as submission:
+    before = forks()
+    (tmp_path / "submitted.py").write_text("print('here')")
+    with open_submission(tmp_path / "submitted.py") as submission:
         assert real_time.run(submission, PLAN).output == "here\n"
-    before["simulator"] += 1
-    assert {side: each.forks for side, each in fork_servers._servers.items()} == before
+    assert forks() == (before[0], before[1] + 1)
 
 
 REACHES = f"""

@@ -12,7 +12,6 @@ import pytest
 
 import grader
 from grader.errors import GraderFailure
-from grader.message import msg
 from grader.recording.recording import Recording, Recordings
 from grader.run import handover, real_time, virtual_time
 from grader.run.handover import Plan
@@ -22,12 +21,28 @@ from grader.scenes.scene import Limits
 from grader.scenes.turtlesim.allowance import LONGEST_NAME, MOST_TURTLES
 from tests import runs
 from tests.runs import CHALLENGE, SUBMISSIONS
+from tests.tiers import others_are_more
 from turtlesim_py.world.events import Kill
 
 LIMITS = Limits(first_motion_s=3, rest_s=2, total_s=5)
 PATIENCE = Patience(run_cpu_s=20, simulator_cpu_s=20, asleep_s=1.0)
 #: For a turtle that moves, and for pens that are not set too often.
 MOST_POINTS = 20
+
+
+#: More than these see to.
+LONG = Limits(first_motion_s=30, rest_s=2, total_s=30)
+BUSY = replace(PATIENCE, simulator_cpu_s=0.2)
+#: Name -> how it may end, what a flag says of it, and what it is run with.
+ENDS: dict[str, tuple[set[str], object, Limits]] = {
+    "floods_the_link": ({"killed", "stalled"}, "", LIMITS),
+    "goals_without_end": ({"time_limit"}, "rotation goals", replace(LIMITS, total_s=10)),
+    "asks_and_never_reads": ({"killed"}, "does not read what it has asked for", LIMITS),
+    "lets_no_time_pass": ({"killed"}, hub.VAIN, LIMITS),
+    "sends_without_measure": ({"killed"}, link.TOO_MANY, LONG),
+    "sends_gigabytes": ({"killed"}, link.TOO_MANY, LONG),
+    "thousands_of_topics": ({"finished"}, "", LIMITS),
+}
 
 
 def run(name: str, patience: Patience = PATIENCE, limits: Limits = LIMITS) -> Recording:
@@ -43,6 +58,23 @@ def flags(recording: Recording) -> str:
     return "\n".join(map(str, recording.run.flags))
 
 
+@pytest.mark.parametrize(
+    "name", others_are_more("seconds each; one flood stands for them", ENDS, "floods_the_link")
+)
+def test_a_flood_ends_and_is_told(name: str) -> None:
+    outcomes, flag, limits = ENDS[name]
+    recording = run(name, limits=limits)
+    assert recording.run.outcome in outcomes
+    assert str(flag) in flags(recording)
+    assert len(recording.topics) <= 1_000
+
+
+def test_who_keeps_the_simulator_busy_is_told_so() -> None:
+    recording = run("lets_no_time_pass", BUSY)
+    assert recording.run.outcome == "killed"
+    assert virtual_time.FLOODING.given(seconds="0") in recording.run.flags
+
+
 def test_values_of_unknown_types_are_refused() -> None:
     recording = run("sets_what_is_no_parameter")
     assert (recording.run.outcome, recording.run.exit_code) == ("finished", 0)
@@ -52,6 +84,7 @@ def test_values_of_unknown_types_are_refused() -> None:
     assert recording.run.flags == ()
 
 
+@pytest.mark.more("the clock of a run cannot be set either")
 def test_pictures_are_written_into_the_folder_of_the_run() -> None:
     recording = run("writes_pictures_elsewhere")
     # the folder is not set, and the picture is saved where it always is
@@ -71,6 +104,7 @@ def test_the_clock_of_a_run_cannot_be_stopped() -> None:
     assert "use_sim_time cannot be set" in flags(recording)
 
 
+@pytest.mark.more("four seconds; names are cut by the same allowance")
 def test_there_are_only_so_many_turtles() -> None:
     recording = run("hatches_hundreds")
     assert recording.output.splitlines()[0] == str(MOST_TURTLES - 1)
@@ -80,55 +114,9 @@ def test_there_are_only_so_many_turtles() -> None:
 def test_names_are_cut() -> None:
     recording = run("names_of_megabytes")
     killed = recording.trace.of_kind(Kill)
-    assert killed
     assert max(len(event.name) for event in killed) == LONGEST_NAME
     assert max(len(line.text) for line in recording.trace.logs) < 1_000
     assert "too long" in flags(recording)
-
-
-def test_goals_are_limited() -> None:
-    recording = run("goals_without_end", limits=replace(LIMITS, total_s=10))
-    assert recording.run.outcome == "time_limit"
-    assert "rotation goals" in flags(recording)
-
-
-def test_who_never_reads_does_not_block_the_simulator() -> None:
-    recording = run("asks_and_never_reads")
-    assert recording.run.outcome == "killed"
-    assert msg("its process does not read what it has asked for") in recording.run.flags
-
-
-def test_who_lets_no_time_pass_is_not_waited_for() -> None:
-    recording = run("lets_no_time_pass")
-    assert recording.run.outcome == "killed"
-    assert hub.VAIN in recording.run.flags
-
-
-def test_who_keeps_the_simulator_busy_is_told_so() -> None:
-    recording = run("lets_no_time_pass", replace(PATIENCE, simulator_cpu_s=0.2))
-    assert recording.run.outcome == "killed"
-    assert virtual_time.FLOODING.given(seconds="0") in recording.run.flags
-
-
-@pytest.mark.more("a hundred thousand messages take five seconds, and so do two gigabytes")
-@pytest.mark.parametrize("name", ["sends_without_measure", "sends_gigabytes"])
-def test_who_sends_without_measure_is_ended(name: str) -> None:
-    limits = Limits(first_motion_s=30, rest_s=2, total_s=30)
-    recording = run(name, limits=limits)
-    assert recording.run.outcome == "killed"
-    assert link.TOO_MANY in recording.run.flags
-
-
-def test_a_flood_on_the_link_is_no_failure() -> None:
-    recording = run("floods_the_link")
-    assert recording.run.outcome in ("killed", "stalled")
-    assert len(recording.topics) <= 1_000
-
-
-def test_thousands_of_topics_are_counted_to_a_thousand() -> None:
-    recording = run("thousands_of_topics")
-    assert recording.run.outcome == "finished"
-    assert len(recording.topics) <= 1_000
 
 
 # What kills it nevertheless -------------------------------------------------------------------

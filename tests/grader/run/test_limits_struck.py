@@ -8,10 +8,15 @@ from grader.message import NOTHING, msg
 from grader.run.finish import limits_struck
 from grader.run.limits import LIMITS, size
 from tests.grader.run.conftest import Run
+from tests.tiers import others_are_more
 
 OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <module>\n'
 
 
+by_the_guard = pytest.mark.more("test_limits_guard strikes these limits without a run")
+
+
+@by_the_guard
 @pytest.mark.parametrize("name", ["fills_memory", "fills_shared_memory"])
 def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> None:
     run = recorded(f"limits/{name}").run
@@ -20,6 +25,7 @@ def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> No
     assert any(said in str(flag) for flag in run.flags)
 
 
+@pytest.mark.more("four seconds; a long output is read below")
 def test_an_output_without_end_ends_the_run(recorded: Run) -> None:
     run = recorded("limits/logs_a_flood").run
     assert run.outcome == "killed"
@@ -34,13 +40,14 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize("name", others_are_more("one is kept", REFUSED, "asks_for_memory"))
 def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> None:
     run = recorded(f"limits/{name}").run
     assert run.outcome == "crashed"
     assert any(REFUSED[name] in str(flag) for flag in run.flags), run.flags
 
 
+@by_the_guard
 @pytest.mark.parametrize("name", ["starts_processes", "starts_threads"])
 def test_processes_and_threads_are_counted_together(recorded: Run, name: str) -> None:
     flags = recorded(f"limits/{name}").run.flags

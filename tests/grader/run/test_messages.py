@@ -15,6 +15,7 @@ import pytest
 from grader.message import msg
 from grader.recording.recording import Recording
 from grader.run.clock import executor
+from tests.tiers import others_are_more
 
 OUTPUTS = Path(__file__).parent / "messages"
 
@@ -76,7 +77,17 @@ FLAGS = {
 }
 
 
-@pytest.mark.parametrize("name", RUNS)
+#: Services, actions, QoS, a graph that changes, threads, bytes, what dies and what hangs.
+KEPT = (
+    *("asks_the_dead", "endpoints_come_and_go", "own_action", "own_qos", "own_services"),
+    *("raw_messages", "spawn_while_driving", "threads_publish"),
+)
+OTHERS = "one of each kind is kept"
+
+
+@pytest.mark.parametrize(
+    "name", others_are_more(OTHERS, RUNS, *KEPT, "dies_long_after_command", "lifecycle")
+)
 def test_messages_count_when_they_should(recorded: Recorded, name: str) -> None:
     run = recorded(f"messages/{name}").run
     expected = RUNS[name]
@@ -89,7 +100,9 @@ def test_messages_count_when_they_should(recorded: Recorded, name: str) -> None:
     executor.known() is reversed and sys.version_info[:2] == (3, 11),
     reason="recorded with the order of rclpy 7 and with Python 3.11, which tell some milliseconds",
 )
-@pytest.mark.parametrize("name", sorted(path.stem for path in OUTPUTS.glob("*.txt")))
+@pytest.mark.parametrize(
+    "name", others_are_more(OTHERS, sorted(path.stem for path in OUTPUTS.glob("*.txt")), *KEPT)
+)
 def test_a_program_hears_and_is_told_what_it_should(recorded: Recorded, name: str) -> None:
     output = recorded(f"messages/{name}").output
     assert _without_the_machine(output) == (OUTPUTS / f"{name}.txt").read_text()

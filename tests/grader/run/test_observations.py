@@ -21,6 +21,7 @@ from grader.recording.recording import Recording
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
 from tests import runs
+from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 
 Recorded = Callable[..., Recording]
@@ -54,6 +55,7 @@ def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
     assert (seen.spun_s, seen.returned_s, seen.raised) == (None, 3.0, None)
 
 
+@pytest.mark.more("the traces of two runs are compared elsewhere")
 def test_the_same_is_told_of_two_runs(recorded: Recorded) -> None:
     first, second = recorded("observed/wrong_ends"), recorded("observed/wrong_ends", 2)
     assert first.observations == second.observations
@@ -62,27 +64,27 @@ def test_the_same_is_told_of_two_runs(recorded: Recorded) -> None:
 def test_a_program_that_spins_once_and_is_through_tells_both(recorded: Recorded) -> None:
     seen = recorded("observed/spins_once").observations
     assert (seen.is_known, seen.spun_s, seen.stop) == (True, 0.0, None)
-    assert seen.returned_s is not None
     assert seen.returned_s < 0.1
+
+
+STUCK = [
+    ("calls_in_callback", ("callback", 1.0, "Client.call", 15, PEN)),
+    ("calls_without_spinning", ("call", 0.0, "Client.call", 10, PEN.removeprefix("self."))),
+    ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
+    ("spins_in_callback",
+     ("callback", 0.48, "spin_until_future_complete", 26,
+      "rclpy.spin_until_future_complete(self, answer)")),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("name", "stop"),
-    [
-        ("calls_in_callback", ("callback", 1.0, "Client.call", 15, PEN)),
-        ("calls_without_spinning", ("call", 0.0, "Client.call", 10, PEN.removeprefix("self."))),
-        ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
-        ("spins_in_callback",
-         ("callback", 0.48, "spin_until_future_complete", 26,
-          "rclpy.spin_until_future_complete(self, answer)")),
-    ],
-)  # fmt: skip
+    others_are_more("one of each kind is kept", STUCK, "never_spins", "spins_in_callback"),
+)
 def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(
     recorded: Recorded, name: str, stop: tuple[str, float, str, int, str]
 ) -> None:
     found = recorded(f"misbehaving/{name}").observations.stop
-    assert found is not None
-    assert found.place is not None
     assert (found.kind, found.time_s, found.call, found.place.line, found.place.text) == stop
 
 
@@ -100,43 +102,35 @@ def test_what_ended_it_is_told_with_the_last_line_of_its_own(
 ) -> None:
     seen = recorded(name).observations
     found = seen.raised
-    assert found is not None
-    assert found.place is not None
     assert (found.type, found.time_s, found.place.line, found.place.function) == raised
     assert seen.returned_s is None
-
-
-def test_the_text_that_a_program_leaves_with_is_told(recorded: Recorded) -> None:
-    raised = recorded("observed/says_goodbye").observations.raised
-    assert raised is not None
-    assert raised.text == "bye"
+    assert (found.text == "bye") == name.endswith("goodbye")
 
 
 def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded: Recorded) -> None:
     raised = recorded("observed/aborts").observations.raised
-    assert raised is not None
-    assert (raised.type, raised.place) == (
-        "SIGSEGV",
-        SourceLine("aborts.py", 9, "crash", "ctypes.string_at(1)"),
-    )
+    place = SourceLine("aborts.py", 9, "crash", "ctypes.string_at(1)")
+    assert (raised.type, raised.place) == ("SIGSEGV", place)
 
 
 def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
-    found = recorded("misbehaving/busy_for_ever").observations.stop
-    assert found == Standstill(
-        "loop", 0.096, "", SourceLine("busy_for_ever.py", 13, "", "while True:")
-    )
+    place = SourceLine("busy_for_ever.py", 13, "", "while True:")
+    stop = recorded("misbehaving/busy_for_ever").observations.stop
+    assert stop == Standstill("loop", 0.096, "", place)
+
+
+WAITS = [
+    ("waits_in_vain", 14, "Controller.__init__",
+     "while not self.pen.wait_for_service(timeout_sec=1.0):"),
+    ("waits_for_an_answer", 10, "",
+     "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("name", "line", "function", "text"),
-    [
-        ("waits_in_vain", 14, "Controller.__init__",
-         "while not self.pen.wait_for_service(timeout_sec=1.0):"),
-        ("waits_for_an_answer", 10, "",
-         "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"),
-    ],
-)  # fmt: skip
+    others_are_more("both are diagnosed", WAITS, "waits_for_an_answer"),
+)
 def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
     recorded: Recorded, name: str, line: int, function: str, text: str
 ) -> None:
@@ -147,9 +141,8 @@ def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
 
 def test_who_waits_for_messages_without_spinning_has_heard_them(recorded: Recorded) -> None:
     recording = recorded("observed/waits_for_message")
-    heard = [
-        (end.name, end.used) for end in recording.observations.ends if end.kind == "subscription"
-    ]
+    ends = recording.observations.ends
+    heard = [(end.name, end.used) for end in ends if end.kind == "subscription"]
     assert heard == [("/turtle1/pose", 1)] * 3
     assert standstill.never_spins(Case(recording)) is None
 
@@ -170,13 +163,7 @@ def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(
         ("subscription", "/turtle1/pose", True),
     ]
     assert all(end.used for end in seen.ends)
-    rest = (
-        seen.waits,
-        seen.slow,
-        seen.stop,
-        seen.raised,
-        seen.returned_s,
-    )
+    rest = (seen.waits, seen.slow, seen.stop, seen.raised, seen.returned_s)
     assert rest == ((), (), None, None, None)
 
 
@@ -189,16 +176,15 @@ def in_real_time(name: str) -> Observations:
 
 def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:
     seen = in_real_time("misbehaving/raises_in_callback")
-    assert seen.raised is not None
     assert seen.raised.place == SourceLine("raises_in_callback.py", 17, "on_pose", "print(pose.z)")
     assert [(end.kind, end.name, end.is_met) for end in seen.ends] == [
         ("publisher", "/turtle1/cmd_vel", True),
         ("subscription", "/turtle1/pose", True),
     ]
-    assert seen.spun_s is not None
     assert seen.spun_s < seen.raised.time_s
 
 
+@pytest.mark.more("the other one in real time is kept")
 def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end() -> None:
     seen = in_real_time("misbehaving/calls_in_callback")
     assert (seen.raised, seen.returned_s) == (None, None)
@@ -230,7 +216,6 @@ def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message
     ]
     assert lines[-1] == "AssertionError: The 'x' field must be of type 'float'"
     raised = recording.observations.raised
-    assert raised is not None
     assert raised.place == SourceLine(
         "wrong_colours.py", 19, "Controller.drive", "twist.linear.x = 2"
     )
@@ -258,7 +243,6 @@ def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_o
     recorded: Recorded,
 ) -> None:
     seen = recorded("observed/thread_dies").observations
-    assert seen.raised is not None
     assert seen.raised.place == SourceLine("thread_dies.py", 11, "on_pose", "print(pose.z)")
     assert seen.raised.time_s < 0.1
     assert seen.returned_s == 1.0

@@ -17,6 +17,7 @@ from grader.run.opening import open_submission
 from grader.submission.start import EntryPoint, Script, Submission, Whole
 from tests.files import lay
 from tests.grader.submission.test_entry_points import SETUP, package
+from tests.tiers import others_are_more
 
 FORGES = """
 import os
@@ -56,21 +57,25 @@ def two(folder: Path, before: str) -> Path:
     return folder / "ws"
 
 
+#: What it does -> what it does it by.
+HOSTILE = [
+    ("writes wherever it can", FORGES),
+    ("spoils the module json", "import json\njson.loads = json.dumps = None"),
+    (
+        "spoils the inspection",
+        "from grader.inspection.examining import main, setup_call, steps\n"
+        "main.inspect = setup_call.evaluate = steps.step = lambda *_, **__: None",
+    ),
+    ("ends without a word", "import os\nos._exit(0)"),
+    ("answers twice", "import os\nos.fork()"),
+]
+
+
 @pytest.mark.parametrize(
-    "before",
-    [
-        pytest.param(FORGES, id="writes wherever it can"),
-        pytest.param("import json\njson.loads = json.dumps = None", id="spoils the module json"),
-        pytest.param(
-            "from grader.inspection.examining import main, setup_call, steps\n"
-            "main.inspect = setup_call.evaluate = steps.step = lambda *_, **__: None",
-            id="spoils the inspection",
-        ),
-        pytest.param("import os\nos._exit(0)", id="ends without a word"),
-        pytest.param("import os\nos.fork()", id="answers twice"),
-    ],
+    ("does", "before"),
+    others_are_more("two stand for the others", HOSTILE, HOSTILE[0][0], HOSTILE[2][0]),
 )
-def test_a_set_up_says_nothing_of_another_one(tmp_path: Path, before: str) -> None:
+def test_a_set_up_says_nothing_of_another_one(tmp_path: Path, does: str, before: str) -> None:
     submission = found_in(two(tmp_path, before))
     assert submission.start == EntryPoint("second.turtle_controller", "main")
     assert str(submission.found) == "console script turtle_controller in second/setup.py"
@@ -79,11 +84,10 @@ def test_a_set_up_says_nothing_of_another_one(tmp_path: Path, before: str) -> No
 def test_a_set_up_that_kills_who_inspects_is_found_by_its_files(tmp_path: Path) -> None:
     submission = found_in(lay(tmp_path, with_set_up(KILLS)))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
-    assert str(submission.notes[0]).startswith(
-        "the process that looked at the package left nothing"
-    )
+    assert str(submission.notes[0]).startswith("the process that looked at the package left noth")
 
 
+@pytest.mark.more("it waits as long as the inspection does")
 def test_a_set_up_that_never_ends_is_ended_and_told(tmp_path: Path) -> None:
     submission = found_in(lay(tmp_path, with_set_up("import time\ntime.sleep(1e6)")))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
@@ -92,8 +96,11 @@ def test_a_set_up_that_never_ends_is_ended_and_told(tmp_path: Path) -> None:
     )
 
 
+TARGETS = ("os:system", "json.tool:main", "..bob.node:main", "bob.node:main")
+
+
 @pytest.mark.parametrize(
-    "target", ["os:system", "json.tool:main", "..bob.node:main", "bob.node:main"]
+    "target", others_are_more("as these", TARGETS, "os:system", "bob.node:main")
 )
 def test_a_script_that_is_claimed_is_none_of_another_place(tmp_path: Path, target: str) -> None:
     lay(tmp_path, {"bob/node.py": "def main():\n    pass\n"})

@@ -1,10 +1,11 @@
 """What surrounds the two processes of a run, whatever surrounds the grader."""
 
+from __future__ import annotations
+
 import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import pytest
 
 from grader import scratch
 from grader.errors import NotNow
+from grader.recording.recording import Recording
 from grader.run import environment, real_time, virtual_time
 from grader.run.finish import SimulatorLost
 from grader.run.handover import Plan
@@ -20,26 +22,45 @@ from grader.run.opening import open_submission
 from grader.run.processes import levels, network
 from grader.run.run_context import RunContext
 from grader.scenes.scene import Limits
-from grader.submission.start import Submission
+from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 
 ROOT = Path(__file__).parents[3]
 
 
+CLOCKS = {"virtual": virtual_time.run, "real": real_time.run}
+either_clock = pytest.mark.parametrize(
+    "clock", others_are_more("the same surroundings, some seconds", CLOCKS, "virtual")
+)
+
+
+def recorded(
+    folder: Path, text: str, clock: str = "virtual", *, name: str = "node.py", runs: int = 1
+) -> Recording:
+    """The last of so many runs of a submission."""
+    (folder / name).write_text(text)
+    with open_submission(folder / name) as submission:
+        made = [CLOCKS[clock](submission, Plan(Limits(0.2, 0.2, 2))) for _ in range(runs)]
+    return made[-1]
+
+
+@pytest.fixture
+def unconfined(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A level at which a submission reaches more than its own."""
+    monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
+
+
+OF_ROS_OR_PYTHON = (
+    *("RMW_IMPLEMENTATION", "ROS_LOCALHOST_ONLY", "ROS_STATIC_PEERS", "ROS_SECURITY_ENABLE"),
+    *("RCUTILS_CONSOLE_OUTPUT_FORMAT", "CYCLONEDDS_URI", "FASTRTPS_DEFAULT_PROFILES_FILE"),
+    *("PYTHONPATH", "PYTHONSTARTUP"),
+)
+
+
 def test_nothing_of_the_user_s_ros_or_python_comes_along(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    for name in (
-        "RMW_IMPLEMENTATION",
-        "ROS_LOCALHOST_ONLY",
-        "ROS_STATIC_PEERS",
-        "ROS_SECURITY_ENABLE",
-        "RCUTILS_CONSOLE_OUTPUT_FORMAT",
-        "CYCLONEDDS_URI",
-        "FASTRTPS_DEFAULT_PROFILES_FILE",
-        "PYTHONPATH",
-        "PYTHONSTARTUP",
-    ):
+    for name in OF_ROS_OR_PYTHON:
         monkeypatch.setenv(name, "nonsense")
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     env = environment.environment(tmp_path, {"ROS_DOMAIN_ID": "50"})
@@ -85,16 +106,6 @@ def test_packages_that_the_user_has_installed_for_himself_are_found_in_another_h
     assert environment.environment(tmp_path, {})["PYTHONUSERBASE"] == "/home/ada/.local"
 
 
-either_clock = pytest.mark.parametrize(
-    "clock",
-    [
-        virtual_time,
-        pytest.param(
-            real_time, marks=pytest.mark.more("in real time the recording's place is tried")
-        ),
-    ],
-)
-
 TELLS = """
 import os
 names = [name for name in os.environ if "TOKEN" in name]
@@ -105,14 +116,10 @@ print(names, "a-token" in started_with, os.path.expanduser("~") == os.environ["H
 
 @either_clock
 def test_a_token_never_reaches_a_submission_s_process(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock: str
 ) -> None:
     monkeypatch.setenv("GITHUB_TOKEN", "a-token")
-    script = tmp_path / "tells.py"
-    script.write_text(TELLS)
-    with open_submission(script) as submission:
-        recording = clock.run(submission, Plan(Limits(0.2, 0.2, 2)))
-    assert recording.output == "[] False True\n"
+    assert recorded(tmp_path, TELLS, clock).output == "[] False True\n"
 
 
 def test_a_sourced_ros_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -130,43 +137,43 @@ MISLEADING = (
     "grader/run/simulator.py",
     "grader/__init__.py",
 )
+TELLS_WHERE = """
+import os, sys
+import rclpy
+rclpy.init()
+print('cwd', os.path.basename(os.getcwd()), sys.argv[1:])
+"""
+#: A grader: the clock, where its packages are, what is handed in.
+RUNS = """
+import sys
+from pathlib import Path
+clock, root, path = sys.argv[1:]
+sys.path.insert(0, root)
+from grader.run import real_time, virtual_time
+from grader.run.handover import Plan
+from grader.run.opening import open_submission
+from grader.scenes.scene import Limits
+with open_submission(Path(path)) as submission:
+    recording = globals()[f"{clock}_time"].run(submission, Plan(Limits(0.2, 0.2, 2)))
+print(recording.run.outcome, recording.output)
+"""
 
 
-@pytest.mark.parametrize("time", ["virtual", "real"])
-def test_files_in_the_user_s_folder_do_not_replace_the_simulator(tmp_path: Path, time: str) -> None:
+@either_clock
+def test_files_in_the_user_s_folder_do_not_replace_the_simulator(
+    tmp_path: Path, clock: str
+) -> None:
     for name in MISLEADING:
         (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
         (tmp_path / name).write_text("raise SystemExit('misled')\n")
-    handed_in = tmp_path / "handed_in"
-    handed_in.mkdir()
-    (handed_in / "weg_zurück.py").write_text(
-        "import os, sys\nimport rclpy\nrclpy.init()\n"
-        "print('cwd', os.path.basename(os.getcwd()), sys.argv[1:])\n"
-    )
-    code = f"""
-import sys
-import time
-sys.path.insert(0, {str(ROOT)!r})
-from pathlib import Path
-from grader.run import {time}_time
-from grader.run.handover import Plan
-from grader.scenes.scene import Limits
-from grader.run.finish import SimulatorLost
-from grader.run.opening import open_submission
-with open_submission(Path({str(handed_in / "weg_zurück.py")!r})) as submission:
-    plan = Plan(Limits(0.2, 0.2, 2))
-    recording = {time}_time.run(submission, plan)
-print(recording.run.outcome, recording.output)
-"""
+    handed_in = tmp_path / "handed_in" / "weg_zurück.py"
+    handed_in.parent.mkdir()
+    handed_in.write_text(TELLS_WHERE)
+    misleads = {"PYTHONPATH": str(tmp_path / "nowhere"), "RMW_IMPLEMENTATION": "none"}
     done = subprocess.run(
-        [sys.executable, "-P", "-c", code],
+        [sys.executable, "-P", "-c", RUNS, clock, str(ROOT), str(handed_in)],
         cwd=tmp_path,
-        env={
-            **os.environ,
-            "PYTHONPATH": str(tmp_path / "nowhere"),
-            "RMW_IMPLEMENTATION": "none",
-            "LC_ALL": "POSIX",
-        },
+        env=os.environ | misleads | {"LC_ALL": "POSIX"},
         capture_output=True,
         encoding="utf-8",
         check=False,
@@ -197,13 +204,11 @@ for _ in range(8):
 """
 
 
-@pytest.mark.parametrize("clock", [virtual_time, real_time])
-def test_the_recording_is_out_of_the_submission_s_reach(tmp_path: Path, clock) -> None:
-    script = tmp_path / "looks.py"
-    script.write_text(LOOKS_FOR_THE_RECORDING)
-    with open_submission(script) as submission:
-        plan = Plan(Limits(first_motion_s=2, rest_s=0.3, total_s=9))
-        recording = clock.run(submission, plan)
+@either_clock
+def test_the_recording_is_out_of_the_submission_s_reach(tmp_path: Path, clock: str) -> None:
+    (tmp_path / "looks.py").write_text(LOOKS_FOR_THE_RECORDING)
+    with open_submission(tmp_path / "looks.py") as submission:
+        recording = CLOCKS[clock](submission, Plan(Limits(first_motion_s=2, rest_s=0.3, total_s=9)))
     assert recording.trace.of_kind(CmdVel)
     assert recording.output == ""
 
@@ -225,14 +230,12 @@ raise ValueError("mine")
 
 @either_clock
 def test_a_submission_runs_in_a_copy_and_tells_of_where_it_was_handed_in(
-    tmp_path: Path, clock
+    tmp_path: Path, clock: str
 ) -> None:
-    script = tmp_path / "alice.py"
-    script.write_text(LOOKS_ROUND)
     for name in ("bob.py", "turtlesim.py"):
         (tmp_path / name).write_text("WHOSE = 'a neighbour'\n")
-    with open_submission(script) as submission:
-        recording = clock.run(submission, Plan(Limits(0.2, 0.2, 2)))
+    recording = recorded(tmp_path, LOOKS_ROUND, clock, name="alice.py")
+    script = tmp_path / "alice.py"
     assert recording.output.splitlines() == [
         f"{script} {tmp_path} {tmp_path} ['alice.py']",
         "No module named 'bob'",
@@ -243,11 +246,8 @@ def test_a_submission_runs_in_a_copy_and_tells_of_where_it_was_handed_in(
         '    raise ValueError("mine")',
         "ValueError: mine",
     ]
-    assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "alice.py",
-        "bob.py",
-        "turtlesim.py",
-    ]
+    there = {path.name for path in tmp_path.iterdir()}
+    assert there == {"alice.py", "bob.py", "turtlesim.py"}
 
 
 WRITES = """
@@ -261,28 +261,17 @@ print(sorted(os.listdir()))
 """
 
 
-@pytest.mark.parametrize(
-    ("clock", "level"),
-    [
-        (virtual_time, None),
-        (virtual_time, "limits"),
-        (real_time, None),
-        pytest.param(real_time, "limits", marks=pytest.mark.more("as in virtual time")),
-    ],
-)
+@either_clock
+@pytest.mark.parametrize("level", ["the best", "limits"])
 def test_a_submission_writes_into_its_own_folder_and_no_other_run_sees_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, clock, level: str | None
+    tmp_path: Path, request: pytest.FixtureRequest, clock: str, level: str
 ) -> None:
-    if level:
-        monkeypatch.setattr(levels, "best", lambda isolated: levels.Level(level))
-    script = tmp_path / "writes.py"
-    script.write_text(WRITES)
-    with open_submission(script) as submission:
-        for _ in range(2):
-            recording = clock.run(submission, Plan(Limits(0.2, 0.2, 1)))
-            assert recording.output == "['logs', 'my.db', 'writes.py']\n"
-    assert script.read_text() == WRITES
-    assert [path.name for path in tmp_path.iterdir()] == ["writes.py"]
+    if level == "limits":
+        request.getfixturevalue("unconfined")
+    recording = recorded(tmp_path, WRITES, clock, runs=2)
+    assert recording.output == "['logs', 'my.db', 'node.py']\n"
+    assert (tmp_path / "node.py").read_text() == WRITES
+    assert [path.name for path in tmp_path.iterdir()] == ["node.py"]
 
 
 LEAVES = """
@@ -300,18 +289,11 @@ print(here)
 """
 
 
-def test_nothing_is_left_of_the_folder_of_a_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # elsewhere a submission has a file system of its own, which goes with its process
-    monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
-    script = tmp_path / "leaves.py"
-    script.write_text(LEAVES)
-    with open_submission(script) as submission:
-        for _ in range(2):
-            recording = virtual_time.run(submission, Plan(Limits(0.2, 0.2, 1)))
-            assert recording.run.exit_code == 0, recording.output
-            assert not Path(recording.output.strip()).parent.exists()
+@pytest.mark.usefixtures("unconfined")  # else it has a file system of its own, which goes with it
+def test_nothing_is_left_of_the_folder_of_a_run(tmp_path: Path) -> None:
+    recording = recorded(tmp_path, LEAVES, runs=2)
+    assert recording.run.exit_code == 0, recording.output
+    assert not Path(recording.output.strip()).parent.exists()
     assert Path("/").is_dir()
 
 
@@ -321,6 +303,7 @@ shutil.rmtree(os.path.dirname(os.environ["HOME"]))
 """
 
 
+@pytest.mark.usefixtures("unconfined")  # else it cannot
 def test_a_run_goes_on_when_the_submission_has_taken_its_folder_away_before_the_simulator_came(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -334,12 +317,7 @@ def test_a_run_goes_on_when_the_submission_has_taken_its_folder_away_before_the_
         return start(module, context, *more, **options)
 
     monkeypatch.setattr(virtual_time, "start_simulator", start_when_it_is_gone)
-    # elsewhere it cannot
-    monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
-    script = tmp_path / "takes.py"
-    script.write_text(TAKES_ITS_RUN_AWAY)
-    with open_submission(script) as submission:
-        run = virtual_time.run(submission, Plan(Limits(0.2, 0.2, 1))).run
+    run = recorded(tmp_path, TAKES_ITS_RUN_AWAY).run
     assert (run.time, run.outcome, run.exit_code, run.flags) == ("virtual", "exited", 0, ())
 
 
@@ -374,20 +352,17 @@ def test_locks_that_a_submission_has_taken_are_free_when_its_run_is_over(
     monkeypatch.setattr(scratch, "home", lambda: home)
     for number in network.DOMAINS:
         (home / f"domain-{number}.lock").touch()
-    script = tmp_path / "keeps.py"
-    script.write_text(KEEPS_ALL_LOCKS.format(home=str(home)))
-    with open_submission(script) as submission:
-        recording = real_time.run(submission, Plan(Limits(0.2, 0.2, 2)))
-        assert recording.output == "b'kept'\n"
-        for number in network.DOMAINS:
-            lock = scratch.acquire_lock(f"domain-{number}")
-            assert lock is not None
-            lock.close()
+    recording = recorded(tmp_path, KEEPS_ALL_LOCKS.format(home=str(home)), "real")
+    assert recording.output == "b'kept'\n"
+    for number in network.DOMAINS:
+        lock = scratch.acquire_lock(f"domain-{number}")
+        assert lock is not None
+        lock.close()
 
 
-@pytest.mark.parametrize("run", [virtual_time.run, real_time.run], ids=["virtual", "real"])
+@either_clock
 def test_what_could_not_be_confined_is_not_judged(
-    run: Callable[[Submission, Plan], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    clock: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     prepare = levels.prepare
 
@@ -398,8 +373,7 @@ def test_what_could_not_be_confined_is_not_judged(
 
     levels.here()  # the trial has been good
     monkeypatch.setattr(levels, "prepare", prepare_badly)
-    (tmp_path / "node.py").write_text("print('it runs')\n")
-    with open_submission(tmp_path / "node.py") as submission, pytest.raises(NotNow) as raised:
-        run(submission, Plan(Limits(first_motion_s=2, rest_s=0.2, total_s=60)))
+    with pytest.raises(NotNow) as raised:
+        recorded(tmp_path, "print('it runs')\n", clock)
     assert not isinstance(raised.value, SimulatorLost)
     assert "could not be started" in str(raised.value.message)

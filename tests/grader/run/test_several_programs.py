@@ -15,17 +15,28 @@ from grader.run.opening import open_submission
 from grader.run.processes import levels
 from grader.run.processes.levels import LANDLOCK, LIMITS
 from grader.scenes.scene import Limits
+from tests import runs
+from tests.grader.run import conftest
 from tests.runs import SUBMISSIONS
+from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen
 
 LAUNCHED = SUBMISSIONS / "launched"
 PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=6))
 
 
-def recorded(folder: Path, plan: Plan = PLAN, executable: str | None = None) -> Recording:
+CLOCKS = {"virtual": virtual_time.run, "real": real_time.run}
+either_clock = pytest.mark.parametrize(
+    "clock", others_are_more("the same launch file, for seconds", CLOCKS, "virtual")
+)
+
+
+def recorded(
+    folder: Path, plan: Plan = PLAN, executable: str | None = None, clock: str = "virtual"
+) -> Recording:
     with open_submission(folder, executable) as submission:
-        recording = virtual_time.run(submission, plan)
-    assert recording.run.time == "virtual", recording.run.flags
+        recording = CLOCKS[clock](submission, plan)
+    assert recording.run.time == clock, recording.run.flags
     return recording
 
 
@@ -181,12 +192,13 @@ def package(folder: Path, **programs: str) -> Path:
     return folder / "company"
 
 
-@pytest.mark.parametrize("order", [("controller", "idle"), ("idle", "controller")])
-def test_beside_an_idle_one_a_program_does_what_it_does_alone(
-    tmp_path: Path, order: tuple[str, str]
-) -> None:
+ORDERS = ("controller, idle", "idle, controller")
+
+
+@pytest.mark.parametrize("order", others_are_more("one of both", ORDERS, "idle, controller"))
+def test_beside_an_idle_one_a_program_does_what_it_does_alone(tmp_path: Path, order: str) -> None:
     programs = {"controller": CONTROLLER, "idle": IDLE}
-    folder = package(tmp_path, **{name: programs[name] for name in order})
+    folder = package(tmp_path, **{name: programs[name] for name in order.split(", ")})
     both, alone = recorded(folder), recorded(folder, executable="controller")
     assert both.run.trace_sha256 == alone.run.trace_sha256
 
@@ -222,17 +234,13 @@ def generate_launch_description():
 """.replace("*OTHERS", 'Node(package="company", executable="drives")')
 
 
-def test_what_is_to_start_later_runs_from_then_on_and_what_came_before_is_known(
-    tmp_path: Path,
-) -> None:
+def test_what_is_to_start_later_runs_from_then_on(tmp_path: Path) -> None:
     folder = package(tmp_path, stamps=STAMPS, drives=DRIVES)
     (folder / "launch/all.launch.py").write_text(LATER)
-    recording, again = recorded(folder), recorded(folder)
+    recording = recorded(folder)
     begin = float(said(recording, "stamps-1")[0])
     late = [float(line) - begin for line in said(recording, "stamps-3")]
     assert late == pytest.approx([1.25, 1.75, 2.25], abs=1e-3)
-    assert recording.run.trace_sha256 == again.run.trace_sha256
-    assert recording.output == again.output
 
 
 def test_what_was_to_start_after_the_end_was_not_run(tmp_path: Path) -> None:
@@ -243,11 +251,10 @@ def test_what_was_to_start_after_the_end_was_not_run(tmp_path: Path) -> None:
     assert "stamps-3 was to start at 60 s, when the run was over" in map(str, run.flags)
 
 
-@pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
+@either_clock
 def test_each_program_is_in_the_result_with_how_it_has_ended(tmp_path: Path, clock: str) -> None:
     folder = package(tmp_path, raises=RAISES, stamps=STAMPS, drives=DRIVES)
-    with open_submission(folder) as submission:
-        run = {"virtual": virtual_time.run, "real": real_time.run}[clock](submission, PLAN).run
+    run = recorded(folder, clock=clock).run
     ends = [(each.name, each.exit_code) for each in run.programs]
     assert ends == [("raises-1", 1), ("stamps-2", 0), ("drives-3", None)]
     assert (run.outcome, run.programs[0].outcome) == ("crashed", "crashed")
@@ -303,14 +310,13 @@ def generate_launch_description():
 """
 
 
-@pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
+@either_clock
 def test_what_waits_for_the_end_of_another_starts_then_or_was_not_run(
     tmp_path: Path, clock: str
 ) -> None:
     folder = package(tmp_path, stamps=STAMPS, drives=DRIVES, raises=RAISES, late=STAMPS)
     (folder / "launch/all.launch.py").write_text(AFTER)
-    with open_submission(folder) as submission:
-        recording = {"virtual": virtual_time.run, "real": real_time.run}[clock](submission, PLAN)
+    recording = recorded(folder, clock=clock)
     told = {each.name: each.exit_code for each in recording.run.programs}
     assert [told["drives-1"], told["raises-2"], told["late-4"]] == [None, 1, 0]
     assert len(said(recording, "late-4")) == 3
@@ -321,7 +327,7 @@ def test_what_waits_for_the_end_of_another_starts_then_or_was_not_run(
         assert float(said(recording, "late-4")[0]) == pytest.approx(2.5, abs=0.01)
 
 
-@pytest.mark.parametrize("clock", ["virtual", pytest.param("real", marks=pytest.mark.more)])
+@either_clock
 def test_what_is_to_be_started_again_is_at_its_end(tmp_path: Path, clock: str) -> None:
     folder = package(tmp_path, stamps=STAMPS, drives=DRIVES)
     again = "executable=name, respawn=name == 'stamps', respawn_delay=0.25)"
@@ -329,7 +335,7 @@ def test_what_is_to_be_started_again_is_at_its_end(tmp_path: Path, clock: str) -
     (folder / "launch/all.launch.py").write_text(text)
     with open_submission(folder) as submission:
         notes = list(map(str, submission.notes))
-        recording = {"virtual": virtual_time.run, "real": real_time.run}[clock](submission, PLAN)
+        recording = CLOCKS[clock](submission, PLAN)
     assert "stamps of launch/all.launch.py is started again 3 times at most" in notes
     names = [each.name for each in recording.run.programs]
     assert names == ["drives-1", *["stamps-2"] * len(names[1:])]
@@ -400,7 +406,7 @@ def main():
 """
 
 
-@pytest.mark.more
+@pytest.mark.more("a run in each time")
 def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_path: Path) -> None:
     folder = package(tmp_path, drives=DRIVES, starts=STARTS_A_PROCESS)
     with open_submission(folder) as submission:
@@ -411,6 +417,7 @@ def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_p
     assert [each.name for each in run.programs] == ["drives-1", "starts-2"]
 
 
+@pytest.mark.more("tests/attacks run one of several at each level")
 @pytest.mark.parametrize("level", [LANDLOCK, LIMITS])
 def test_they_run_at_a_lower_level_of_isolation_too(level: str) -> None:
     levels.only(level)
@@ -424,8 +431,7 @@ def test_they_run_at_a_lower_level_of_isolation_too(level: str) -> None:
 
 
 def test_a_program_alone_is_in_the_result_too() -> None:
-    with open_submission(SUBMISSIONS / "quick_spiral.py") as submission:
-        (program,) = virtual_time.run(submission, PLAN).run.programs
+    (program,) = runs.recorded("quick_spiral", Plan(conftest.LIMITS)).run.programs
     told = (program.name, program.package, program.executable)
     assert told == ("quick_spiral.py", "", "quick_spiral.py")
 

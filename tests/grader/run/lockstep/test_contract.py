@@ -14,8 +14,14 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader import system
 from grader.message import NOTHING, msg
+from grader.run import virtual_time
+from grader.run.handover import Plan
 from grader.run.lockstep import contract
-from tests.hand_ins import SUBMISSIONS
+from grader.run.opening import open_submission
+from grader.run.processes import levels
+from grader.scenes.scene import Limits
+from tests.runs import SUBMISSIONS
+from tests.tiers import others_are_more
 
 GROUPS = (contract.ENTITIES, contract.PROGRAM)
 
@@ -38,15 +44,12 @@ def documented(doc: str) -> type:
         (_rclpy, "Subscription", None, "there is no Subscription"),
         (_rclpy.Subscription, "take_message", None, "Subscription has no take_message"),
         (
-            _rclpy,
-            "Client",
+            *(_rclpy, "Client"),
             documented("__init__(self: Client, arg0: Node, arg1: tuple[int, str]) -> None"),
             "Client() takes 2 arguments instead of 4",
         ),
         (
-            _rclpy,
-            "Service",
-            documented("in another form"),
+            *(_rclpy, "Service", documented("in another form")),
             "Service.__init__: ValueError('no signature that we can read')",
         ),
     ],
@@ -109,16 +112,13 @@ def changed_rclpy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[
     return change
 
 
-@pytest.mark.parametrize("side", ["simulator.virtual", "virtual_main.py"])
+SIDES = ("simulator.virtual", "virtual_main.py")
+
+
+@pytest.mark.parametrize("side", others_are_more("one side", SIDES, "simulator.virtual"))
 def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time(
     changed_rclpy: Callable[[str, str], None], side: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from grader.run import virtual_time
-    from grader.run.handover import Plan
-    from grader.run.opening import open_submission
-    from grader.run.processes import levels
-    from grader.scenes.scene import Limits
-
     changed_rclpy(side, "ClockType.STEADY_TIME")
     # a submission that is confined does not see the folder with the change
     monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))

@@ -24,6 +24,7 @@ from grader.run.processes.started_process import SubmissionProcess
 from grader.run.sandbox import view
 from tests.children import in_child
 from tests.grader.run.processes.test_fork_server import COMMAND, ENV
+from tests.tiers import others_are_more
 
 TESTS = Path(__file__).parents[3]
 WEAK = levels.Level("landlock", "same", {"namespaces": "mount: Operation not permitted"})
@@ -44,11 +45,11 @@ def test_the_command_line_knows_the_same_levels() -> None:
     assert run.LEVELS == levels.LEVELS
 
 
-@pytest.mark.parametrize("level", levels.LEVELS)
-def test_a_level_is_as_good_as_those_below(level: str) -> None:
-    found = [each for each in levels.LEVELS if levels.Level(level).is_at_least(each)]
-    assert found == list(levels.LEVELS[levels.LEVELS.index(level) :])
-    assert not levels.Level("").is_at_least(level)
+def test_a_level_is_as_good_as_those_below() -> None:
+    for place, level in enumerate(levels.LEVELS):
+        found = [each for each in levels.LEVELS if levels.Level(level).is_at_least(each)]
+        assert found == list(levels.LEVELS[place:])
+        assert not levels.Level("").is_at_least(level)
 
 
 @pytest.mark.usefixtures("weak")
@@ -145,19 +146,20 @@ print(json.dumps(found))
 """
 
 
-@pytest.mark.skipif(levels.here().level != "namespaces", reason="there is nothing to refuse")
+REFUSED = [
+    ("mount", "landlock", "mount: Operation not permitted"),
+    ("unshare", "landlock", "namespaces of users and networks are refused"),
+    (
+        *("mount at present", "NotNow"),
+        "whether isolation by namespaces is to be had could not be told in 3 tries: "
+        "mount: Cannot allocate memory",
+    ),
+]
+
+
+@pytest.mark.applies(levels.here().level == "namespaces", reason="namespaces can be refused")
 @pytest.mark.parametrize(
-    ("refused", "level", "why"),
-    [
-        ("mount", "landlock", "mount: Operation not permitted"),
-        ("unshare", "landlock", "namespaces of users and networks are refused"),
-        (
-            "mount at present",
-            "NotNow",
-            "whether isolation by namespaces is to be had could not be told in 3 tries: "
-            "mount: Cannot allocate memory",
-        ),
-    ],
+    ("refused", "level", "why"), others_are_more("test_refusal tells them apart", REFUSED, "mount")
 )
 def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(
     refused: str, level: str, why: str
@@ -187,7 +189,7 @@ def warm(request: pytest.FixtureRequest) -> Iterator[ForkServer | None]:
     server.close()
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="others have no mounts of their own here")
+@pytest.mark.applies(os.geteuid() == 0, reason="others have no mounts of their own here")
 def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: ForkServer | None) -> None:
     order = {
         "level": "namespaces",

@@ -87,6 +87,7 @@ def test_a_process_that_does_not_exist_has_no_family() -> None:
     [
         (RunLimits(family_bytes=50 * MIB), "used more than 50 MiB of memory"),
         (RunLimits(tasks=-10), "-10 processes and threads"),
+        (RunLimits(output_bytes=MIB - 1), "printed more than 0 MiB"),
         pytest.param(
             RunLimits(family_files=8),
             "open files and sockets at once",
@@ -98,7 +99,7 @@ def test_too_much_ends_them(limits: RunLimits, said: str) -> None:
     ended = threading.Event()
     with family():
         guard = LimitsGuard(limits)
-        guard.add(os.getpid(), ended.set)
+        guard.add(os.getpid(), ended.set, lambda: MIB)
         assert ended.wait(DEADLINE_S)
         guard.stop()
     assert said in str(guard.remark)

@@ -15,6 +15,7 @@ from grader import scratch
 from grader.errors import NotNow
 from grader.run.processes import network, refusal
 from grader.run.run_context import RunContext, open_context
+from tests.tiers import others_are_more
 
 #: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning
 #: up, as a killed run does.
@@ -45,14 +46,17 @@ os.kill(os.getpid(), 9)
 PIPES = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
 
 
-@pytest.fixture(params=["private network", "ROS domain"])
+DOMAIN = "ROS domain"
+
+
+@pytest.fixture(
+    params=others_are_more("the best way that there is here", ("the best", DOMAIN), "the best")
+)
 def kind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    if request.param == "private network":
-        if network.private_network() is None:
-            pytest.skip("this system allows none")
-    else:
+    """How a run is kept apart."""
+    if request.param == DOMAIN:
         monkeypatch.setattr(network, "_refused", {network._as_root, network._as_user})
-    return str(request.param)
+    return DOMAIN if network.private_network() is None else "private network"
 
 
 def inside(namespaces: Mapping[str, int]) -> list[str]:
@@ -78,6 +82,7 @@ def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind: str) -> None:
         assert talker.communicate()[0].split() == ["up", "0"]
 
 
+@pytest.mark.more("which of them there are depends on the machine")
 @pytest.mark.parametrize("way", [network._as_root, network._as_user])
 def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
     try:
@@ -146,13 +151,12 @@ except NotNow as error:
 """
 
 
+@pytest.mark.applies(network.private_network() is not None, reason="networks are to be had")
 @pytest.mark.parametrize(
     ("most", "told"),
     [("0", "None"), ("1", "net): No space left on device"), ("9", "{'")],
 )
 def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most: str, told: str) -> None:
-    if network.private_network() is None:
-        pytest.skip("this system allows none")
     done = subprocess.run(
         [sys.executable, "-c", FEW_NETWORKS, most],
         env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[4])},
@@ -169,12 +173,6 @@ def test_a_run_context_leaves_nothing(kind: str) -> None:
         assert context.folder.is_dir()
     assert not context.folder.exists()
     assert len(list(Path("/proc/self/fd").iterdir())) == fds
-
-
-def test_the_folder_of_a_run_that_goes_on_is_left_alone() -> None:
-    with scratch.make_folder() as ours, scratch.make_folder() as other:
-        assert ours.is_dir()
-        assert other.is_dir()
 
 
 def test_runs_that_start_together_do_not_clear_each_other_away() -> None:

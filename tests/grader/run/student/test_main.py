@@ -22,6 +22,9 @@ def says():
 
 def fails():
     raise RuntimeError("broken")
+
+class Node:
+    main = staticmethod(says)
 """
 
 
@@ -71,16 +74,19 @@ def test_names_that_may_be_wrong_are_waited_for_together(clock: types.SimpleName
     assert clock.now_s == pytest.approx(4.0, abs=0.1)
 
 
-def start(folder: Path, name: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    (folder / "programs.py").write_text(PROGRAMS)
-    words = [json.dumps([[], [], arguments, []]), "-1", str(folder), f"programs:{name}"]
+def start(
+    folder: Path, name: str, *arguments: str, module: str = "programs"
+) -> subprocess.CompletedProcess[str]:
+    (folder / f"{module}.py").write_text(PROGRAMS)
+    words = [json.dumps([[], [], arguments, []]), "-1", str(folder), f"{module}:{name}"]
     return subprocess.run(
         [sys.executable, MAIN, *words], capture_output=True, text=True, check=False
     )
 
 
-def test_a_program_gets_its_arguments_and_finds_nothing_of_ours(tmp_path: Path) -> None:
-    run = start(tmp_path, "says", "--ros-args", "-r", "__ns:=/a")
+@pytest.mark.parametrize("name", ["says", "Node.main"])
+def test_a_program_gets_its_arguments_and_finds_nothing_of_ours(tmp_path: Path, name: str) -> None:
+    run = start(tmp_path, name, "--ros-args", "-r", "__ns:=/a")
     assert run.returncode == 0, run.stderr
     said = "arguments: ['--ros-args', '-r', '__ns:=/a'] [True, False, False, False]"
     assert run.stdout.splitlines() == [said]
@@ -91,3 +97,9 @@ def test_one_that_fails_is_told_without_our_lines(tmp_path: Path) -> None:
     assert run.returncode == 1
     assert "RuntimeError: broken" in run.stderr
     assert MAIN not in run.stderr
+
+
+def test_a_module_that_is_not_the_submission_s_is_named(tmp_path: Path) -> None:
+    run = start(tmp_path, "says", module="signal")
+    assert run.returncode == 1
+    assert "'signal' is also the name of a module" in run.stderr
