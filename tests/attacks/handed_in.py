@@ -1,7 +1,7 @@
 """What is handed in: for most attacks a folder with a file; for some, the folder is the attack.
 
-A function here makes a submission in a folder and returns what the grader is told to grade. It
-gets the attack's folder, which is `attacker` in the class's.
+A function here makes a submission and returns what the grader is told to grade. It gets the
+attack's folder, which is `attacker` in the class's, its program, and what that may know.
 """
 
 from __future__ import annotations
@@ -10,20 +10,21 @@ import os
 import shutil
 import socket
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 
-SUBMISSIONS = Path(__file__).parent / "submissions"
+Known = Mapping[str, object]
 EMPTY = "import rclpy\n"
 #: What reads these may go to and fro; today's answer is at once, yesterday's took minutes.
 MANY = 30_000
 
 
-def folder(name: str, target: Path, known: str) -> Path:
-    """A folder with one program."""
+def folder(target: Path, program: str, known: Known) -> Path:
+    """A folder with one program, beside it `tools` and `known`: where the canaries are."""
     target.mkdir()
-    shutil.copy(SUBMISSIONS / f"{name}.py", target / "turtle_controller.py")
-    shutil.copy(SUBMISSIONS / "tools.py", target)
-    (target / "known.py").write_text(known)
+    (target / "turtle_controller.py").write_text(program)
+    shutil.copy(Path(__file__).with_name("tools.py"), target)
+    (target / "known.py").write_text("".join(f"{name} = {known[name]!r}\n" for name in known))
     return target
 
 
@@ -70,10 +71,10 @@ def as_second(target: Path) -> None:
         (target / name).write_text(text)
 
 
-def single(name: str, target: Path, known: str) -> Path:
+def single(target: Path, program: str, known: Known) -> Path:
     """A single file, in the folder of all that was handed in."""
     path = target.parent / f"{target.name}.py"
-    shutil.copy(SUBMISSIONS / f"{name}.py", path)
+    path.write_text(program)
     return path
 
 
@@ -85,12 +86,12 @@ def _folder_with(target: Path, text: str = EMPTY, **files: str) -> Path:
     return target
 
 
-def does_not_parse(target: Path) -> Path:
+def does_not_parse(target: Path, program: str, known: Known) -> Path:
     """Does not parse, and says `__name__` all over."""
     return _folder_with(target, 'if (((__name__ == "' + "if __name__ " * MANY + "\n")
 
 
-def is_nested(target: Path) -> Path:
+def is_nested(target: Path, program: str, known: Known) -> Path:
     """A setup.py so deep and so doubled that reading it takes all the memory."""
     deep = "x = " + "(" * 5000 + ")" * 5000 + "\n"
     doubled = "a0 = ['x'] * 10\n" + "".join(f"a{n + 1} = a{n} + a{n}\n" for n in range(60))
@@ -102,14 +103,14 @@ def is_nested(target: Path) -> Path:
     return target
 
 
-def has_a_long_key(target: Path) -> Path:
+def has_a_long_key(target: Path, program: str, known: Known) -> Path:
     """A pyproject.toml whose one key has 20,000 parts."""
     return _folder_with(
         target, pyproject_dot_toml="[project]\n" + ".".join(["a"] * 20_000) + " = 1\n"
     )
 
 
-def holds_no_files(target: Path) -> Path:
+def holds_no_files(target: Path, program: str, known: Known) -> Path:
     """FIFOs, sockets, links to devices and to itself, deep folders, names that are no text."""
     _folder_with(target)
     for place in (target, target / "package"):
@@ -135,7 +136,7 @@ def holds_no_files(target: Path) -> Path:
     return target
 
 
-def is_called_by_markup(target: Path) -> Path:
+def is_called_by_markup(target: Path, program: str, known: Known) -> Path:
     """Names that terminals, markup and CI systems obey."""
     (target / "[" / "b]").mkdir(parents=True)
     path = target / "[" / "b]" / "\033[31m::error::[red]\u202e.py"
@@ -143,7 +144,7 @@ def is_called_by_markup(target: Path) -> Path:
     return path
 
 
-def has_results_already(target: Path) -> Path:
+def has_results_already(target: Path, program: str, known: Known) -> Path:
     """Where the results will be there is something already: links to what is not the student's."""
     _folder_with(target, "print('attacked')\n")
     out = target / "graded"
@@ -155,7 +156,7 @@ def has_results_already(target: Path) -> Path:
     return target
 
 
-def is_a_hostile_archive(target: Path) -> Path:
+def is_a_hostile_archive(target: Path, program: str, known: Known) -> Path:
     """Paths that lead out, links, a bomb, and more entries than anybody reads."""
     path = target.parent / f"{target.name}.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:

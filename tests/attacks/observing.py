@@ -25,7 +25,7 @@ from typing import Any
 
 from grader import linux
 from tests.attacks import bystander, handed_in, levels, runners
-from tests.attacks.attacks import ATTACKS, LEFTOVERS, MOVES
+from tests.attacks.attacks import ATTACKS, EXERCISES, MOVES
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
@@ -62,7 +62,7 @@ def observe(job: dict[str, Any], layer: int) -> list[dict[str, Any]]:
     place = _Place(levels.LEVELS.get(job["level"], levels.UNCONFINED))
     told = []
     for name in job["attacks"]:
-        is_followed = name == job["attacks"][-1] or ATTACKS[name].about == LEFTOVERS
+        is_followed = name == job["attacks"][-1] or ATTACKS[name].kind == "leftovers"
         told.append(_Trial(place, name, layer).run(is_followed=is_followed))
         if told[-1]["harm"]:
             place.clear()
@@ -250,7 +250,7 @@ class _Trial:
         self._write(home / "class/neighbour.py", f"SOLUTION = {neighbour!r}\n")
         self._write(home / "class/graded/neighbour/result.json", f'"{self._secret("results")}"')
         exercise = f"# {self._secret('exercise')}\nexercise: turtlesim_challenge\n"
-        self._write(home / "class/exercise.yaml", exercise + self._attack.exercise)
+        self._write(home / "class/exercise.yaml", exercise + EXERCISES[self._attack.exercise])
         self._tcp = held.enter_context(socket.create_server(("127.0.0.1", 0)))
         self._udp = held.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         self._udp.bind(("0.0.0.0", 0))
@@ -288,8 +288,6 @@ class _Trial:
         home, target = self._place, self._place.class_ / "attacker"
         for left in (target.with_suffix(".py"), target.with_suffix(".zip")):
             left.unlink(missing_ok=True)
-        if self._attack.make is not None:
-            return self._attack.make(target)
         known = {
             "HOME": str(home.path),
             "CLASS": str(home.class_),
@@ -311,8 +309,8 @@ class _Trial:
             "ABSTRACT": self._abstract,
             "TERMINAL": self._runner.terminal.name,
         }
-        text = "".join(f"{name} = {value!r}\n" for name, value in known.items())
-        submission = handed_in.folder(self._attack.program or self._name, target, text)
+        make = getattr(handed_in, self._attack.make)
+        submission: Path = make(target, self._attack.program, known)
         if self._attack.is_second:
             handed_in.as_second(submission)
         if self._attack.beside:
@@ -351,12 +349,7 @@ class _Trial:
         ]
         with suppress(OSError):
             graded["printed"] = (out / "output.txt").read_text(errors="replace")[:4000]
-        lines = (re.sub(rb"^\[\S+\] ", b"", line) for line in said.split(b"\n"))
-        lines = (line for line in lines if line.startswith(b"ACHIEVED "))
-        lines = (line for line in lines if b"&#" not in line)  # the page says it again
-        for line in sorted({b" ".join(line.split(b" ")[1:8]) for line in lines})[:40]:
-            if not line.startswith((b"environment", b"getenv", b"None")):
-                harm.append(f"achieved: {line.decode(errors='replace')[:160]}")
+        harm += achieved(said)
         if "\033" in graded["said"] or "\x9b" in graded["said"]:
             harm.append("an escape on the grader's own streams")
         for name, most in (("most_memory", MOST_MEMORY), ("most_processes", MOST_PROCESSES)):
@@ -460,6 +453,18 @@ class _Trial:
                 shutil.rmtree(each_home / name, ignore_errors=True)
                 (each_home / name).unlink(missing_ok=True)
         subprocess.run(["ipcrm", "--all"], check=False, capture_output=True)
+
+
+def achieved(said: bytes) -> list[str]:
+    """What an attack says that it has achieved, in whatever was printed or written."""
+    lines = (re.sub(rb"^\[\S+\] ", b"", line) for line in said.split(b"\n"))
+    lines = (line for line in lines if line.startswith(b"ACHIEVED "))
+    lines = (line for line in lines if b"&#" not in line)  # the page says it again
+    return [
+        f"achieved: {line.decode(errors='replace')[:160]}"
+        for line in sorted({b" ".join(line.split(b" ")[1:8]) for line in lines})[:40]
+        if not line.startswith((b"environment", b"getenv", b"None"))
+    ]
 
 
 def _result(out: Path) -> dict[str, Any]:

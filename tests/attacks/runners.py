@@ -25,7 +25,7 @@ from tests.attacks import levels
 
 #: So long a grading may take before it counts as one that never ends, and what it leaves may take
 #: to go [s].
-PATIENCE_S, LINGERS_S = 100.0, 5.0
+PATIENCE_S, LINGERS_S = 100.0, 20.0
 #: Between two looks at what runs [s].
 EVERY_S = 0.05
 #: Reads a folder and the words of a call as JSON, a line each; answers with exit codes.

@@ -1,118 +1,78 @@
 """Hostile submissions, graded as in a course: what they gain, and what they do to anything else.
 
-`attacks.ATTACKS` says what there is, `submissions/` what each does. Each is graded by the real
-command line, in a container that makes a machine of each kind out of this one (`levels`), among
-canaries (`observing`): at one level in `make test`, at every other in `make test-all`.
+`attacks.ATTACKS` says what there is. Each is graded by the real command line, in a container that
+makes a machine of each kind out of this one (`levels`), among canaries (`observing`); those of one
+kind one after the other, by one grader.
 """
 
 from __future__ import annotations
 
+import compileall
 import os
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-from tests.attacks import levels
-from tests.attacks.attacks import (
-    AS_ROOT,
-    AS_ROOT_BY_LANDLOCK,
-    AT_LIMITS,
-    ATTACKS,
-    LINK,
-    READING,
-    RUBRIC,
-    SECOND,
-    SIMULATOR,
-    TRIED_ELSEWHERE,
-    what_happens,
-)
-from tests.attacks.conftest import Graded, Told
-from tests.attacks.handed_in import SUBMISSIONS
+from tests.attacks import container, levels, observing
+from tests.attacks.attacks import ATTACKS, KINDS, LEVELS, what_happens
 from tests.needs import needs
 
 pytestmark = [
-    pytest.mark.timeout(900),  # the first waits for all that share its container
+    pytest.mark.more("test_one_of_each_kind, without a container, at the best level"),
+    pytest.mark.timeout(900),
     needs("container"),
 ]
 
 BEST = "namespaces-user"
-EXAMPLES = int(os.environ.get("EXAMPLES") or 0)
-#: What no level changes is tried at one, which has all of them.
-EVERYWHERE_THE_SAME = {READING, RUBRIC, SIMULATOR, LINK}
-DIFFER = {name for name, each in ATTACKS.items() if each.about not in EVERYWHERE_THE_SAME}
-#: Where a level may matter most: tried first.
-TRIED = {
-    "namespaces-user": ATTACKS.keys(),
-    "namespaces-root": AS_ROOT,
-    "landlock-user": DIFFER - TRIED_ELSEWHERE,
-    "landlock-root": AS_ROOT_BY_LANDLOCK,
-    "limits-user": AT_LIMITS,
-}
-#: As the second of two programs: what concerns how that comes to its view and to its link.
-TRIED_AS_SECOND = {
-    *("reads_home", "looks_at_processes", "kills_all", "unmounts", "mounts", "enters_namespaces"),
-    *("takes_descriptors", "works_in_a_descriptor", "fills_disk", "misuses_the_link"),
-}
-#: What the grader waits for as long as it would for anybody.
-SLOW = {
-    "outlives_main": "half a minute of sleep, which is waited for at every level",
-    "stops_itself": "waits as long as for `stops_all`, and dies of the same",
-}
+#: So many of each kind at each level but the best; None for all.
+EXAMPLES = int(os.environ.get("EXAMPLES") or 0) or None
 #: What is wrong wherever it happens, whatever the level lets through.
 NEVER = ("the grader failed", "the grading never ended", "the next submission", "an escape on")
 
 
-def applies(level: levels.Level) -> pytest.MarkDecorator:
-    """Whether a machine of a kind can be made out of this one."""
-    can_be_made = (levels.can_filter() or not level.is_confined) and (
-        os.getuid() == 0 or not level.is_root
-    )
-    return pytest.mark.applies(can_be_made, reason="nobody but root can grade as root")
+def gradings() -> Iterator[Any]:
+    """A level, and the attacks of one kind; but not where nothing is promised of them."""
+    for level, machine in levels.LEVELS.items():
+        can_be_made = (levels.can_filter() or not machine.is_confined) and (
+            os.getuid() == 0 or not machine.is_root
+        )
+        mark = pytest.mark.applies(can_be_made, reason="nobody but root can grade as root")
+        for kind in KINDS:
+            names = [name for name, each in ATTACKS.items() if each.kind == kind]
+            names = [name for name in names if what_happens(name, machine.grader) != "open"]
+            names = names if level == BEST else names[:EXAMPLES]
+            if names:
+                yield pytest.param(level, names, marks=mark, id=f"{level}-{kind}")
 
 
-def chosen() -> Iterator[Any]:
-    """Level and attack of each grading: all at one level, and EXAMPLES at each of the others.
-
-    But not where nothing is promised: there an attack may have its points, or end the grader.
-    """
-    for level, kind in levels.LEVELS.items():
-        marks = [applies(kind)]
-        promised = [name for name in ATTACKS if what_happens(name, kind.grader) != "open"]
-        names = sorted(promised, key=lambda name: name not in TRIED[level])
-        if level != BEST:
-            marks.append(pytest.mark.more("the same attack on another kind of machine"))
-            names = names[: EXAMPLES or None]
-        for name in names:
-            slow = (pytest.mark.more(SLOW[name]),) if name in SLOW else ()
-            if name.endswith(SECOND) and name.removesuffix(SECOND) not in TRIED_AS_SECOND:
-                slow = (pytest.mark.more("as the second of two programs"),)
-            yield pytest.param(level, name, marks=(*marks, *slow))
+@pytest.fixture(scope="module", autouse=True)
+def compiled() -> None:
+    """Else whoever imports first would write into the copies."""
+    for package in observing.PACKAGES:
+        compileall.compile_dir(container.ROOT / package, quiet=2)
 
 
-GRADINGS = list(chosen())
+@pytest.mark.parametrize(("level", "names"), list(gradings()))
+def test_they_do_no_harm_and_earn_no_points(level: str, names: list[str]) -> None:
+    found = container.run({"level": level, "attacks": names})
+    assert [each["attack"] for each in found] == names
+    wrong = {each["attack"]: (why, each) for each in found for why in _wrong(level, each)}
+    assert not wrong
 
 
-@pytest.mark.parametrize(("level", "attack"), GRADINGS)
-def test_it_does_no_harm_and_earns_no_points(graded: Graded, level: str, attack: str) -> None:
-    outcome = graded(level, attack)
-    harm = outcome.harm
-    if levels.LEVELS[level].grader not in ATTACKS[attack].stopped_by:
-        harm = tuple(each for each in harm if each.startswith(NEVER))
-    assert not harm, outcome.told
-    assert outcome.code in ATTACKS[attack].codes, outcome.told
-    if expected := ATTACKS[attack].outcome:
-        assert outcome.told["outcome"] == expected, outcome.told
-    assert (outcome.score or 0) <= ATTACKS[attack].most, outcome.told
-    assert not set(outcome.passed) & set(ATTACKS[attack].lacks), outcome.told
-
-
-@pytest.mark.parametrize(
-    ("level", "attack"), [each for each in GRADINGS if each.values[1] == "has_privileges"]
-)
-def test_the_result_names_the_level(graded: Graded, level: str, attack: str) -> None:
-    outcome = graded(level, attack)
-    assert outcome.isolation.startswith(levels.LEVELS[level].grader), outcome.told
+def _wrong(level: str, found: dict[str, Any]) -> Iterator[str]:
+    grader, attack = levels.LEVELS[level].grader, ATTACKS[found["attack"]]
+    is_stopped = grader in LEVELS[attack.stopped_by]
+    yield from (each for each in found["harm"] if is_stopped or each.startswith(NEVER))
+    if found["code"] not in attack.codes:
+        yield f"exit code {found['code']}"
+    if attack.outcome not in ("", found["outcome"]):
+        yield f"it ended as {found['outcome']}"
+    if (found["score"] or 0) > attack.most or set(found["passed"]) & set(attack.lacks):
+        yield f"{found['score']} points, for {found['passed']}"
+    if found["isolation"] and not found["isolation"].startswith(grader):
+        yield f"graded at {found['isolation']}"
 
 
 #: What a program achieves that nothing confines: for each, one of the sentences about it.
@@ -130,13 +90,8 @@ UNCONFINED = {
 }
 
 
-@pytest.mark.parametrize("alone", UNCONFINED)
-def test_the_canaries_sing_where_nothing_confines_an_attack(told: Told, alone: str) -> None:
-    seen = told("unconfined", list(UNCONFINED))
-    assert any(harm.startswith(UNCONFINED[alone]) for harm in seen[alone]["harm"]), seen
-
-
-def test_every_submission_is_tried() -> None:
-    there = {path.stem for path in SUBMISSIONS.glob("*.py")} - {"tools"}
-    tried = {attack.program or name for name, attack in ATTACKS.items()}
-    assert there <= tried, there - tried
+def test_the_canaries_sing_where_nothing_confines_an_attack() -> None:
+    found = container.run({"level": "unconfined", "attacks": list(UNCONFINED)})
+    for each in found:
+        sung = UNCONFINED[each["attack"]]
+        assert any(harm.startswith(sung) for harm in each["harm"]), each

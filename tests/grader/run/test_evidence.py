@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
 from itertools import count
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -77,9 +79,10 @@ def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission)
     assert [(burst.line, burst.times) for burst in end.sent] == [(0, 104), (1, 1)]
 
 
-@pytest.mark.parametrize(
-    ("lines", "sent"),
-    [
+def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
+    submission: Submission,
+) -> None:
+    wrong: list[tuple[object, object]] = [
         ([PLACE], [{"line": 1, "times": 1}]),
         ([PLACE], [{"line": 0, "times": -1}]),
         ([PLACE], [{"line": 0, "times": 1.5}]),
@@ -88,12 +91,9 @@ def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission)
         ([{**PLACE, "file": "../b.py"}], []),
         (PLACE, []),
         ([PLACE], 7),
-    ],
-)
-def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
-    submission: Submission, lines: object, sent: object
-) -> None:
-    assert told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])) == Observations()
+    ]
+    for lines, sent in wrong:
+        assert told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])) == Observations()
 
 
 def test_what_was_seen_of_timers_and_exceptions_is_believed_by_its_form(
@@ -129,125 +129,115 @@ def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
     assert told(read, say(lint_findings=[forged])).lint_findings == (found,)
 
 
-@pytest.mark.parametrize(
-    "account",
-    [
-        *(b"{", b"\xff", b"[]", b"3", b"null", b"{}", b"[" * 20_000),
-        *(say(spun_s=True), say(spun_s=-1), say(spun_s="1"), say(ends=None), say(ends=[3])),
-        say().replace(b'"spun_s": 0.5', b'"spun_s": NaN'),
-        say().replace(b'"spun_s": 0.5', b'"spun_s": 1e999'),
-        *(say(unheard_of=1), say(is_blind=True), say(ends=[{}]), say(stop={"place": None})),
-        *(say(ends=[{**END, "kind": "friend"}]), say(ends=[{**END, "name": "x" * 301}])),
-        *(say(ends=[END] * 101), say(waits=[{}]), say(slow=[1]), say(is_known=False, extra=1)),
-        say(ends=[{**END, "place": {**PLACE, "line": "2"}}]),
-    ],
+NONSENSE = (
+    *(b"{", b"\xff", b"[]", b"3", b"null", b"{}", b"[" * 20_000, b""),
+    *(say(spun_s=True), say(spun_s=-1), say(spun_s="1"), say(ends=None), say(ends=[3])),
+    say().replace(b'"spun_s": 0.5', b'"spun_s": NaN'),
+    say().replace(b'"spun_s": 0.5', b'"spun_s": 1e999'),
+    *(say(unheard_of=1), say(is_blind=True), say(ends=[{}]), say(stop={"place": None})),
+    *(say(ends=[{**END, "kind": "friend"}]), say(ends=[{**END, "name": "x" * 301}])),
+    *(say(ends=[END] * 101), say(waits=[{}]), say(slow=[1]), say(is_known=False, extra=1)),
+    say(ends=[{**END, "place": {**PLACE, "line": "2"}}]),
 )
-def test_of_a_process_that_tells_nonsense_nothing_is_told(
-    submission: Submission, account: bytes
+
+
+def test_of_a_process_that_tells_nonsense_or_nothing_nothing_is_told(
+    submission: Submission,
 ) -> None:
-    assert told(submission, account) == Observations()
+    for text in NONSENSE:
+        assert told(submission, text) == Observations(), text
 
 
-def test_the_newest_half_that_is_whole_counts(submission: Submission) -> None:
-    with closing(EvidencePage()) as evidence:
-        page = evidence.page
-        put(page, 1, say(spun_s=1))
-        put(page, 2, say(spun_s=2))
-        put(page, 3, say(spun_s=3))
-        os.pwrite(page, b"?", account.HALVES[1] + 100)  # killed in the middle of writing
-        assert evidence.observations(submission, 1.5, computes=True).spun_s == 2
+@pytest.fixture
+def evidence_page() -> Iterator[EvidencePage]:
+    with closing(EvidencePage()) as made:
+        yield made
+
+
+def test_the_newest_half_that_is_whole_counts(
+    submission: Submission, evidence_page: EvidencePage
+) -> None:
+    page = evidence_page.page
+    for number in (1, 2, 3):
+        put(page, number, say(spun_s=number))
+    os.pwrite(page, b"?", account.HALVES[1] + 100)  # killed in the middle of writing
+    assert evidence_page.observations(submission, 1.5, computes=True).spun_s == 2
 
 
 @pytest.mark.parametrize("length", [0, 1, 2**31, 2**32 - 1])
-def test_a_length_that_is_none_is_not_believed(submission: Submission, length: int) -> None:
-    with closing(EvidencePage()) as evidence:
-        page = evidence.page
-        put(page, 1, say(), length)
-        assert evidence.observations(submission, 1.5, computes=True) == Observations()
+def test_a_length_that_is_none_is_not_believed(
+    submission: Submission, evidence_page: EvidencePage, length: int
+) -> None:
+    put(evidence_page.page, 1, say(), length)
+    assert evidence_page.observations(submission, 1.5, computes=True) == Observations()
 
 
-def test_nobody_makes_the_page_longer_or_shorter() -> None:
-    with closing(EvidencePage()) as evidence:
-        page = evidence.page
-        for size in (0, 10 * account.HALF_BYTES):
-            with pytest.raises(PermissionError):
-                os.ftruncate(page, size)
+def test_nobody_makes_the_page_longer_or_shorter(evidence_page: EvidencePage) -> None:
+    for size in (0, 10 * account.HALF_BYTES):
+        with pytest.raises(PermissionError):
+            os.ftruncate(evidence_page.page, size)
 
 
-def kept(told: dict[str, object], times: int = 1) -> dict[str, object]:
+@pytest.fixture
+def page() -> Iterator[int]:
+    made = account.make()
+    yield made
+    os.close(made)
+
+
+def kept(page: int, told: dict[str, object]) -> dict[str, Any]:
     """What of an account comes through the page, as a process writes it."""
-    page = account.make()
-    try:
-        writer = account.ProcessAccount(page, lambda: json.loads(json.dumps(told)))
-        for _ in range(times):
-            writer.write()
-        found: dict[str, object] = json.loads(account.read(page)[0])
-        return found
-    finally:
-        os.close(page)
+    account.ProcessAccount(page, lambda: json.loads(json.dumps(told))).write()
+    found: dict[str, Any] = json.loads(account.read(page)[0])
+    return found
 
 
-def test_what_there_is_no_room_for_is_left_out_in_an_order() -> None:
+def test_what_there_is_no_room_for_is_left_out_in_an_order(page: int) -> None:
     slow = [{"place": PLACE, "longest_s": 0.1, "times": n} for n in range(600)]
-    found = kept({**ACCOUNT, "slow": slow, "timers": [1]})
+    found = kept(page, {**ACCOUNT, "slow": slow, "timers": [1]})
     assert (found["slow"], found["timers"], found["ends"]) == ([], [1], [END])
-    found = kept({**ACCOUNT, "ends": [END] * 500, "waits": [1]})
-    ends = found["ends"]
-    assert isinstance(ends, list)
-    assert 100 < len(ends) < 500
+
+
+def test_of_too_many_ends_the_first_are_told(page: int) -> None:
+    found = kept(page, {**ACCOUNT, "ends": [END] * 500, "waits": [1]})
+    assert 100 < len(found["ends"]) < 500
     assert (found["waits"], found["returned_s"]) == ([], 1)
 
 
-def test_a_fork_tells_nothing() -> None:
-    page = account.make()
+def test_a_fork_tells_nothing(page: int) -> None:
     writer = account.ProcessAccount(page, lambda: {"ends": []})
     writer.write()
     in_child(writer.write)
     assert len({os.pread(page, 16, begin) for begin in account.HALVES} - {bytes(16)}) == 1
-    os.close(page)
 
 
-def test_the_last_one_is_known_as_such(submission: Submission) -> None:
-    page = account.make()
+def test_the_last_one_is_known_as_such(page: int) -> None:
     writer = account.ProcessAccount(page, dict)
-    writer.write()
-    assert not account.read(page)[1]
-    writer.write(is_last=True)
-    assert account.read(page)[1]
-    os.close(page)
+    for is_last in (False, True):
+        writer.write(is_last=is_last)
+        assert account.read(page)[1] is is_last
 
 
-def test_what_a_program_has_opened_in_its_place_is_left_alone(tmp_path) -> None:
-    page = account.make()
+def test_what_a_program_has_opened_in_its_place_is_left_alone(page: int, tmp_path: Path) -> None:
     writer = account.ProcessAccount(page, dict)
-    other = os.open(tmp_path / "its own", os.O_RDWR | os.O_CREAT)
-    os.dup2(other, page)
-    writer.write()
+    with (tmp_path / "its own").open("wb") as other:
+        os.dup2(other.fileno(), page)
+        writer.write()
     assert (tmp_path / "its own").read_bytes() == b""
-    for each in (page, other):
-        os.close(each)
 
 
-def test_the_more_often_something_changes_the_less_often_it_is_written() -> None:
-    page = account.make()
+def test_the_more_often_something_changes_the_less_often_it_is_written(page: int) -> None:
     written: list[int] = []
     writer = account.ProcessAccount(page, lambda: {"n": written.append(1)})
     for _ in range(100_000):
         writer.changed()
-    os.close(page)
     assert len(written) < 60
 
 
 def test_texts_are_told_in_one_line_that_can_be_shown(submission: Submission) -> None:
     text = "red \x1b[31m\nand\ud800\u202e"
     raised = {"type": "Error", "text": text, "time_s": 1, "place": None}
-    found = told(submission, say(raised=raised)).raised
-    assert found is not None
-    assert found.text == "red ?[31m and??"
-
-
-def test_of_a_process_that_tells_nothing_nothing_is_told(submission: Submission) -> None:
-    assert told(submission) == Observations()
+    assert told(submission, say(raised=raised)).raised.text == "red ?[31m and??"
 
 
 def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None:
@@ -260,18 +250,19 @@ def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None
         told(submission, bytes(data), bytes(data))
 
 
-def test_a_dump_has_so_much_room_and_no_more(submission: Submission) -> None:
-    with closing(EvidencePage()) as evidence:
-        put(evidence.page, 1, say())
-        sent = 0
-        with pytest.raises(PermissionError):
-            while True:
-                sent += os.write(evidence.page, b"x" * 1000)
-        assert sent == account.DUMP_BYTES
-        assert evidence.observations(submission, 0.0, computes=True).is_known
+def test_a_dump_has_so_much_room_and_no_more(
+    submission: Submission, evidence_page: EvidencePage
+) -> None:
+    put(evidence_page.page, 1, say())
+    sent = 0
+    with pytest.raises(PermissionError):
+        while True:
+            sent += os.write(evidence_page.page, b"x" * 1000)
+    assert sent == account.DUMP_BYTES
+    assert evidence_page.observations(submission, 0.0, computes=True).is_known
 
 
-def dump(submission: Submission, *frames: tuple[str, int, str]) -> bytes:
+def dump(*frames: tuple[str, int, str]) -> bytes:
     head = b"Current thread 0x00007f (most recent call first):"
     lines = (f'  File "{file}", line {n} in {name}'.encode() for file, n, name in frames)
     return b"".join(line + b"\n" for line in (head, *lines))
@@ -280,50 +271,45 @@ def dump(submission: Submission, *frames: tuple[str, int, str]) -> bytes:
 def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
     file = str(submission.root / "a.py")
     for line in (1, 2):
-        observations = told(submission, b"", dump(submission, (file, line, "<module>")))
-        assert observations.stop is not None
-        assert observations.stop.place is not None
-        assert (observations.stop.place.line, observations.stop.place.text) == (1, "while True:")
-        assert observations.stop.time_s == 1.5
+        stop = told(submission, b"", dump((file, line, "<module>"))).stop
+        assert stop.place == SourceLine("a.py", 1, "", "while True:")
+        assert stop.time_s == 1.5
 
 
 def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
-    submission: Submission, monkeypatch: pytest.MonkeyPatch
+    submission: Submission, evidence_page: EvidencePage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    lines = iter(dump(submission, (str(submission.root / "a.py"), 2, "<module>")).splitlines())
-    with closing(EvidencePage()) as heard:
-        # each look finds it where the last one did; every fifth time it has come to a line more
-        looks = count(1)
+    lines = iter(dump((str(submission.root / "a.py"), 2, "<module>")).splitlines())
+    # each look finds it where the last one did; every fifth time it has come to a line more
+    looks = count(1)
 
-        def look(pid: int) -> linux.ProcessStat:
-            number = next(looks)
-            line = next(lines, None) if number % 5 == 0 else None
-            if line is not None:
-                os.write(heard.page, line + b"\n")
-            return linux.ProcessStat(0.0 if number < 20 else number, "R")
+    def look(pid: int) -> linux.ProcessStat:
+        number = next(looks)
+        line = next(lines, None) if number % 5 == 0 else None
+        if line is not None:
+            os.write(evidence_page.page, line + b"\n")
+        return linux.ProcessStat(0.0 if number < 20 else number, "R")
 
-        monkeypatch.setattr(evidence.linux, "process_stat", look)
-        monkeypatch.setattr(account, "DUMP_SIGNAL", signal.SIGCONT)
-        monkeypatch.setattr(evidence, "QUIET_S", 0.01)
-        monkeypatch.setattr(evidence, "PATIENCE_S", 0.01)
-        heard.request_dump(os.getpid())
-        said = account.dumped(heard.page).splitlines()
-    assert len(said) == 2
+    monkeypatch.setattr(evidence.linux, "process_stat", look)
+    monkeypatch.setattr(account, "DUMP_SIGNAL", signal.SIGCONT)
+    monkeypatch.setattr(evidence, "QUIET_S", 0.01)
+    monkeypatch.setattr(evidence, "PATIENCE_S", 0.01)
+    evidence_page.request_dump(os.getpid())
+    assert len(account.dumped(evidence_page.page).splitlines()) == 2
 
 
 def test_a_link_that_leads_to_itself_or_out_is_no_source(submission: Submission) -> None:
     for name, to in (("itself.py", "itself.py"), ("out.py", "/etc/passwd")):
         link = submission.root / name
         link.symlink_to(to)
-        found = told(submission, b"", dump(submission, (str(link), 1, "f"))).stop
-        assert found is not None
+        found = told(submission, b"", dump((str(link), 1, "f"))).stop
         assert found.place == SourceLine(name, 1, "f", "")
         link.unlink()
 
 
 def test_what_lies_beside_a_submission_is_none_of_its_own(submission: Submission) -> None:
     file = f"{submission.root}/../secret.py"
-    assert told(submission, b"", dump(submission, (file, 1, "f"))) == Observations(is_known=True)
+    assert told(submission, b"", dump((file, 1, "f"))) == Observations(is_known=True)
     for name in ("../secret.py", "/etc/passwd", "a/../../b.py"):
         place = {**PLACE, "file": name}
         assert told(submission, say(ends=[{**END, "place": place}])) == Observations()

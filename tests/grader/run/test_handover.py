@@ -91,10 +91,6 @@ def test_what_every_node_publishes_on_is_left_out(file, scene, trace):
     assert fetch(file, scene)[1] == TOPICS
 
 
-def test_an_empty_file_is_a_failure(file, scene):
-    failure(file, scene)
-
-
 @given(data=st.binary(max_size=200))
 def test_garbage_is_a_failure_and_nothing_else(file, scene, data):
     put(file, data)
@@ -118,9 +114,9 @@ def test_a_file_that_is_cut_off_is_a_failure(file, left, scene, part):
     failure(file, scene)
 
 
-@pytest.mark.parametrize(
-    "topics",
-    [
+def test_topics_that_are_none_are_a_failure(file, scene, trace):
+    data = transfer.pack(trace, scene)
+    for topics in (
         b"",
         b"{",
         b"3",
@@ -128,18 +124,16 @@ def test_a_file_that_is_cut_off_is_a_failure(file, left, scene, part):
         b"[" * 100_000,
         b"[3]",
         b'{"/a": 3}',
-        b'{"/a": ["b"]}',
-    ],
-)
-def test_topics_that_are_none_are_a_failure(file, left, scene, trace, topics):
-    put(file, pack("<Q", len(topics)) + topics + transfer.pack(trace, scene))
-    failure(file, scene)
+        b'{"/a": [""]}',
+    ):
+        put(file, pack("<Q", len(topics)) + topics + data)
+        failure(file, scene)
 
 
-@pytest.mark.parametrize("length", [1, 2**40, 2**64 - 1])
-def test_a_wrong_length_is_a_failure(file, left, scene, length):
-    put(file, pack("<Q", length) + left[8:])
-    failure(file, scene)
+def test_a_wrong_length_is_a_failure(file, left, scene):
+    for length in (1, 2**40, 2**64 - 1):
+        put(file, pack("<Q", length) + left[8:])
+        failure(file, scene)
 
 
 def test_the_failure_does_not_repeat_the_file(file, scene):

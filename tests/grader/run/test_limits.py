@@ -6,12 +6,10 @@ import errno
 import mmap
 import os
 import signal
-import subprocess
-import sys
 import threading
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -22,7 +20,6 @@ from grader.run.processes import supervisor
 from tests.children import NOBODYS_UID, error_of, in_child
 
 resource = pytest.importorskip("resource")
-ROOT = Path(__file__).parents[3]
 
 
 def apply(chosen: RunLimits = LIMITS, *, is_alone: bool = True) -> None:
@@ -74,14 +71,12 @@ def test_the_length_of_a_file(tmp_path: Path) -> None:
 
 
 def test_processor_time() -> None:
-    code = (
-        "from grader import linux\nfrom grader.run import limits\n"
-        "for each in limits.rlimits(limits.RunLimits(cpu_s=1), is_alone=True):\n"
-        "    linux.lower_limit(*each)"
-    )
-    command = [sys.executable, "-c", f"{code}\nwhile True: pass"]
-    env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    assert subprocess.run(command, env=env, check=False).returncode == -signal.SIGXCPU
+    child = os.fork()
+    if not child:
+        apply(RunLimits(cpu_s=1))
+        while True:
+            pass
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGXCPU
 
 
 def _start_many(give_up_at: int) -> int:
@@ -102,31 +97,27 @@ def _start_many(give_up_at: int) -> int:
     return len(started)
 
 
-@pytest.mark.skipif(os.getuid() != 0, reason="a user without processes is root's to become")
-def test_processes() -> None:
+def _start_threads(give_up_at: int) -> int:
+    """How many threads could be started, up to a number."""
+    end = threading.Event()
+    for count in range(give_up_at):
+        try:
+            threading.Thread(target=end.wait, daemon=True).start()
+        except RuntimeError as error:
+            assert str(error) == "can't start new thread"
+            return count
+    return give_up_at
+
+
+@pytest.mark.applies(os.getuid() == 0, reason="root alone can be a user without processes")
+@pytest.mark.parametrize("start", [_start_many, _start_threads])
+def test_processes_and_threads_count(start: Callable[[int], int]) -> None:
     def act() -> int:
         apply(RunLimits(tasks=20))
         os.setresuid(*[NOBODYS_UID] * 3)
-        return _start_many(100)
+        return start(100)
 
     assert in_child(act) == 19
-
-
-@pytest.mark.skipif(os.getuid() != 0, reason="a user without processes is root's to become")
-def test_threads_count_as_processes() -> None:
-    def act() -> list[Any]:
-        apply(RunLimits(tasks=20))
-        os.setresuid(*[NOBODYS_UID] * 3)
-        end, count = threading.Event(), 0
-        try:
-            while count < 100:
-                threading.Thread(target=end.wait, daemon=True).start()
-                count += 1
-        except RuntimeError as error:
-            return [count, str(error)]
-        return [count, ""]
-
-    assert in_child(act) == [19, "can't start new thread"]
 
 
 def test_a_user_with_other_processes_may_start_some_more() -> None:
@@ -184,11 +175,8 @@ def test_what_is_limited_cannot_raise_it_again() -> None:
 
 
 def test_sizes_are_told_in_the_largest_unit_that_fits() -> None:
-    assert [limits.size(number) for number in (2 * GIB, 64 * MIB, 3 * GIB // 2)] == [
-        "2 GiB",
-        "64 MiB",
-        "1536 MiB",
-    ]
+    told = [limits.size(number) for number in (2 * GIB, 64 * MIB, 3 * GIB // 2)]
+    assert told == ["2 GiB", "64 MiB", "1536 MiB"]
 
 
 def test_shared_memory_is_as_large_with_a_root_of_its_own_as_without() -> None:

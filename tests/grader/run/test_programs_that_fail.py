@@ -11,59 +11,10 @@ from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
-from tests.grader.run.test_several_programs import DRIVES, package
+from tests.grader.run.test_several_programs import TEXTS, package
 from turtlesim_py.world.events import CmdVel
 
 PLAN = Plan(Limits(first_motion_s=20, rest_s=20, total_s=4))
-VICTIM = """
-import os, signal, time
-import rclpy
-from rclpy.node import Node
-from std_srvs.srv import Trigger
-
-def fail():
-    FATE
-
-AT_IMPORT
-
-class Victim(Node):
-    def __init__(self):
-        super().__init__("victim")
-        self.create_service(Trigger, "help", self.answer)
-        AT_CONSTRUCTOR
-        self.create_timer(0.5, self.tick)
-
-    def tick(self):
-        IN_CALLBACK
-        pass
-
-    def answer(self, request, response):
-        WHILE_ASKED
-        return response
-
-def main():
-    rclpy.init()
-    victim = Victim()
-    AT_SPIN
-    rclpy.spin(victim)
-"""
-ASKS = """
-import rclpy
-from std_srvs.srv import Trigger
-
-def main():
-    rclpy.init()
-    node = rclpy.create_node("asks")
-    client = node.create_client(Trigger, "help")
-    asked = []
-
-    def ask():
-        if client.service_is_ready() and not asked:
-            asked.append(client.call_async(Trigger.Request()))
-
-    node.create_timer(1.0, ask)
-    rclpy.spin(node)
-"""
 STAGES = ["AT_IMPORT", "AT_CONSTRUCTOR", "AT_SPIN", "IN_CALLBACK", "WHILE_ASKED"]
 #: What the program does -> the outcomes that it may have.
 FATES = {
@@ -83,10 +34,10 @@ KEPT = {*CASES[len(STAGES) + 1 : 3 * len(STAGES) : len(STAGES) + 1]}
     [pytest.param(*case, marks=() if case in KEPT else OTHERS) for case in CASES],
 )
 def test_the_others_go_on_and_it_is_to_blame(tmp_path: Path, fate: str, stage: str) -> None:
-    text = VICTIM.replace("FATE", fate).replace(stage, "fail()")
+    text = TEXTS["victim"].replace("FATE", fate).replace(stage, "fail()")
     for other in STAGES:
         text = text.replace(other, "pass" if other != "AT_IMPORT" else "")
-    folder = package(tmp_path, asks=ASKS, victim=text, drives=DRIVES)
+    folder = package(tmp_path, "asks", victim=text, drives=TEXTS["drives"])
     with open_submission(folder) as submission:
         recording = virtual_time.run(submission, PLAN, patience=Patience(stall_cpu_s=0.5))
     run = recording.run

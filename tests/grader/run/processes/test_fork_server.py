@@ -25,6 +25,7 @@ from grader.run.processes.started_process import (
     SubmissionProcess,
     await_ends,
 )
+from tests.files import lay
 
 ROOT = Path(__file__).parents[4]
 #: A server whose children run the last word of their command as Python.
@@ -39,6 +40,8 @@ exec(command[-1], {{"__name__": "__main__"}})
 COMMAND = [sys.executable, "-c", PROGRAM.format(root=str(ROOT))]
 #: The seed is that of a set that becomes a library path, where ROS's wheels start.
 ENV = {"PATH": os.environ["PATH"], "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "0"}
+#: Stands before a command that is not to make namespaces; only root has something to give up.
+UNPRIVILEGED = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
 #: One that dies over its first order.
 DIES = "import socket, sys; s = socket.socket(fileno=int(sys.argv[2])); s.send(b'[]'); s.recv(9)"
 #: What a process can find out about itself, one line each.
@@ -91,12 +94,11 @@ def read_until(process: StartedProcess, text: str) -> None:
     raise AssertionError(process.output())
 
 
-@pytest.mark.parametrize("way", ["none", "_as_root", "_as_user"])
-def test_a_forked_process_finds_all_that_a_started_one_does(server: ForkServer, way: str) -> None:
-    try:
-        spaces = getattr(network, way)() if way != "none" else network.Namespaces()
-    except OSError:
-        pytest.skip("this system does not allow it")
+@pytest.mark.parametrize("network_of", ["the grader", "its own"])
+def test_a_forked_process_finds_all_that_a_started_one_does(
+    server: ForkServer, network_of: str
+) -> None:
+    spaces = network.Namespaces() if network_of == "the grader" else network.private_network() or {}
     passed, other = os.pipe()
     portraits = []
     for warm in (None, server):
@@ -112,19 +114,6 @@ def test_a_forked_process_finds_all_that_a_started_one_does(server: ForkServer, 
         os.close(space)
     started, forked = portraits
     assert forked == started
-
-
-def test_a_forked_process_hears_only_its_own_network(server: ForkServer) -> None:
-    spaces = network.private_network()
-    if spaces is None:
-        pytest.skip("this system allows none")
-    words = ["-c", "print(open('/proc/net/dev').read().count(':'))"]
-    process = StartedProcess(ProcessCommand(words, ENV, ROOT, (), spaces), server)
-    assert process.wait(20.0) == 0
-    assert process.output() == "1\n"
-    process.end()
-    for space in spaces.values():
-        os.close(space)
 
 
 @pytest.mark.parametrize("supervised", [True, False])
@@ -212,11 +201,13 @@ time.sleep(1000)
 """
 
 
-@pytest.fixture(params=["own namespace", "shared namespace", "no pidfd"])
-def namespace(request: pytest.FixtureRequest) -> Iterator[ForkServer]:
-    """ForkServers that may, and may not, make a process namespace; or have no pidfd."""
-    unprivileged = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
-    words = unprivileged if request.param == "shared namespace" else ()
+@pytest.fixture(params=["started", "own namespace", "shared namespace", "no pidfd"])
+def namespace(request: pytest.FixtureRequest) -> Iterator[ForkServer | None]:
+    """Servers that may, and may not, make a process namespace; or have no pidfd; or none."""
+    if request.param == "started":
+        yield None
+        return
+    words = UNPRIVILEGED if request.param == "shared namespace" else ()
     *command, program = COMMAND
     if request.param == "no pidfd":
         program = WITHOUT_PIDFD + program
@@ -226,7 +217,7 @@ def namespace(request: pytest.FixtureRequest) -> Iterator[ForkServer]:
 
 
 @pytest.mark.parametrize("end", ["in good order", "supervisor killed"])
-def test_a_hidden_descendant_ends_with_the_run(namespace: ForkServer, end: str) -> None:
+def test_a_hidden_descendant_ends_with_the_run(namespace: ForkServer | None, end: str) -> None:
     student = python(HIDES, namespace)
     read_until(student, "hidden")
     mark = f"{fork_server_main.MARK}={student._mark}".encode()
@@ -276,10 +267,8 @@ time.sleep(1000)
 """
 
 
-@pytest.mark.parametrize("prefix", [(), ("setpriv", "--bounding-set", "-sys_admin")])
+@pytest.mark.parametrize("prefix", [(), UNPRIVILEGED][: 1 + bool(UNPRIVILEGED)])
 def test_a_killed_grader_takes_servers_and_their_children_along(prefix: tuple[str, ...]) -> None:
-    if prefix and os.geteuid() != 0:
-        pytest.skip("only root has something to give up")
     waits = "import time; print('hidden', flush=True); time.sleep(1000)"
     grader = subprocess.Popen(
         [*prefix, sys.executable, "-c", GRADER, waits], stdout=subprocess.PIPE, text=True
@@ -435,24 +424,18 @@ NAMES = frozenset({"numpy", "std_msgs", "resource"})
         (["numpy.py"], True),
         (["src/lib/numpy.py"], True),
         (["numpy/__init__.py"], True),
-        (["numpy/notes.txt"], False),
+        (["numpy/notes.txt", "numpy.txt", "my_numpy.py"], False),
         (["std_msgs/msg/__init__.py"], False),  # only a namespace: the installed one wins
         (["std_msgs/__init__.py", "std_msgs/msg.py"], True),
         (["numpy.cpython-311-x86_64-linux-gnu.so"], True),
-        (["numpy.txt", "my_numpy.py"], False),
     ],
 )
 def test_a_submission_s_own_modules_are_found(tmp_path: Path, files: list[str], own: bool) -> None:
-    for name in files:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).touch()
-    assert shadows(tmp_path, NAMES) == own
+    assert shadows(lay(tmp_path, dict.fromkeys(files, "")), NAMES) == own
 
 
 def test_a_linked_folder_is_a_module_as_well(tmp_path: Path) -> None:
-    (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "elsewhere" / "__init__.py").touch()
-    (tmp_path / "submission").mkdir()
+    lay(tmp_path, {"elsewhere/__init__.py": "", "submission/node.py": ""})
     (tmp_path / "submission" / "numpy").symlink_to(tmp_path / "elsewhere")
     assert shadows(tmp_path / "submission", NAMES)
 
@@ -461,21 +444,18 @@ def test_what_is_too_much_to_search_may_have_any(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("grader.run.fork_servers.MOST_FILES", 3)
-    for number in range(4):
-        (tmp_path / f"{number}.txt").touch()
+    lay(tmp_path, {f"{number}.txt": "" for number in range(4)})
     assert shadows(tmp_path, NAMES)
 
 
-def test_the_sandbox_s_place_is_the_command_s_own_process(
-    monkeypatch: pytest.MonkeyPatch, warm: ForkServer | None
-) -> None:
+@pytest.mark.applies(os.geteuid() == 0, reason="only root is sure to get a namespace")
+def test_the_sandbox_s_place_is_the_command_s_own_process(warm: ForkServer | None) -> None:
     """However it came to be, nothing of the submission runs before `confine`."""
     code = "print(len([n for n in __import__('os').listdir('/proc') if n.isdigit()]))"
     student = python(code, warm)
     assert student.wait(20.0) == 0
     student.end()
-    if os.geteuid() == 0:
-        assert student.output() == "2\n"  # the namespace's first process, and itself
+    assert student.output() == "2\n"  # the namespace's first process, and itself
 
 
 def test_ctrl_c_is_not_for_a_server(server: ForkServer) -> None:

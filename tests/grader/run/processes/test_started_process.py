@@ -6,8 +6,6 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from ctypes import CDLL
 from pathlib import Path
 
@@ -15,8 +13,7 @@ import psutil
 import pytest
 
 from grader import linux, scratch
-from grader.run.processes import fork_server_main, started_process, supervisor
-from grader.run.processes.fork_server import ForkServer
+from grader.run.processes import supervisor
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess, await_ends
 from tests.children import in_child
@@ -55,95 +52,10 @@ def sleeper(seconds: int) -> list[psutil.Process]:
     return [p for p in found if p.info["cmdline"] == ["sleep", str(seconds)]]
 
 
-def python(code: str, *words: object) -> SubmissionProcess:
-    command = ProcessCommand([sys.executable, "-c", code, *map(str, words)], os.environ)
-    return SubmissionProcess(command)
-
-
-def unprivileged(env: Mapping[str, str]) -> ForkServer:
-    command = [*UNPRIVILEGED, sys.executable, "-I", "-S", fork_server_main.__file__]
-    return ForkServer(command, env, executes=True)
-
-
-@pytest.fixture(params=["own namespace", "shared namespace"])
-def namespace(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """With and without the right to make a process namespace."""
-    if request.param == "shared namespace":
-        monkeypatch.setattr(started_process, "cold_server", unprivileged)
-    yield request.param
-
-
-def test_a_hidden_descendant_ends_with_the_run(namespace: str) -> None:
-    seconds = 770_000 + os.getpid() % 1000
-    student = python(HIDES, seconds, 0)
-    assert student.wait(20.0) == 0
-    assert sleeper(seconds)  # until then, what it has started may go on
-    student.end()
-    assert not sleeper(seconds)
-
-
-def test_one_run_s_end_leaves_another_alone(namespace: str) -> None:
-    first, second = 771_000 + os.getpid() % 1000, 772_000 + os.getpid() % 1000
-    with ThreadPoolExecutor(2) as pool:  # they end with the threads that have started them
-        short, long = pool.map(python, [HIDES] * 2, [first, second], [0, 1000])
-        assert long.pid
-        assert short.wait(20.0) == 0
-        read_until(long, "hidden")
-        short.end()
-        assert not sleeper(first)
-        assert sleeper(second)
-        long.end(gently=False)
-        assert not sleeper(second)
-
-
-def read_until(student: SubmissionProcess, text: str) -> None:
-    """Wait for what a process prints."""
-    for _ in range(1000):
-        if text in bytes(student._head).decode():
-            return
-        student.wait(0.02)
-    raise AssertionError(student.output())
-
-
-@pytest.mark.parametrize(
-    ("code", "exit_code"),
-    [
-        ("pass", 0),
-        ("raise SystemExit(3)", 3),
-        ("import os; os.kill(os.getpid(), 9)", -9),
-        ("import os; os.abort()", -6),
-    ],
-)
-def test_the_exit_code_is_the_submission_s(code: str, exit_code: int) -> None:
-    student = python(code)
-    assert student.wait(20.0) == exit_code
-    student.end()
-    assert student.poll() == exit_code
-
-
-def test_a_submission_may_clean_up_when_it_is_asked_to_end() -> None:
-    student = python(
-        "import time\ntry:\n print('up', flush=True)\n time.sleep(1000)\n"
-        "except KeyboardInterrupt: print('interrupted')\n"
-    )
-    read_until(student, "up\n")
-    student.end()
-    assert student.output() == "up\ninterrupted\n"
-
-
-def test_a_supervisor_that_is_killed_is_the_submission_s_end() -> None:
-    student = python("import time; time.sleep(1000)")
-    child = psutil.Process(student.pid)
-    student._signal(signal.SIGKILL)
-    assert student.wait(20.0) == -signal.SIGKILL
-    student.end()
-    assert not await_ends([child], 20.0)
-
-
+@pytest.mark.applies(os.geteuid() == 0, reason="only root is sure to get a namespace")
 def test_a_simulator_cannot_be_seen_by_a_submission_with_a_namespace_of_its_own() -> None:
-    if os.geteuid() != 0:
-        pytest.skip("only root is sure to get one")
-    student = python(f"import os; os.kill({os.getpid()}, 0)")
+    words = [sys.executable, "-c", f"import os; os.kill({os.getpid()}, 0)"]
+    student = SubmissionProcess(ProcessCommand(words, os.environ))
     assert student.wait(20.0) == 1
     student.end()
     assert "ProcessLookupError" in student.output()

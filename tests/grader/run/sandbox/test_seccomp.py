@@ -20,9 +20,8 @@ import pytest
 from grader.run.sandbox import seccomp
 from tests.children import NOBODYS_UID, error_of, in_child
 
-needs_seccomp = pytest.mark.skipif(not seccomp.is_there(), reason="no system call filters here")
+needs_seccomp = pytest.mark.applies(seccomp.is_there(), reason="there are filters of system calls")
 ROOT = Path(__file__).parents[4]
-MACHINES = sorted(seccomp.MACHINES)
 EPERM, ENOSYS, EAFNOSUPPORT = errno.EPERM, errno.ENOSYS, errno.EAFNOSUPPORT
 HEADERS = {
     "x86_64": Path("/usr/include/x86_64-linux-gnu/asm/unistd_64.h"),
@@ -36,6 +35,17 @@ NETLINK_AUDIT, IPPROTO_SCTP, IPPROTO_MPTCP = 9, 132, 262
 DGRAM, STREAM, SEQPACKET, RAW = 2, 1, 5, 3
 CLOEXEC = 0o2000000
 LOW = (1 << 32) - 1
+
+
+@pytest.fixture(params=sorted(seccomp.MACHINES))
+def machine(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(params=[True, False])
+def apart(request: pytest.FixtureRequest) -> bool:
+    """Whether a process has a network of its own."""
+    return bool(request.param)
 
 
 def interpret(program: list[seccomp.Instruction], words: dict[int, int]) -> int:
@@ -86,47 +96,36 @@ def every_number(machine: str) -> dict[str, int]:
     return {name: number for name, number in found.items() if number is not None}
 
 
-@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.more("the headers of the kernel are not everywhere; every call is made below")
 def test_numbers_are_those_of_the_kernels_headers(machine: str) -> None:
     if not HEADERS[machine].exists():
         pytest.skip("no headers of the kernel here")
-    text = HEADERS[machine].read_text()
-    there = {
-        name: int(number)
-        for name, number in re.findall(r"^#define __NR(?:3264)?_(\w+) (\d+)$", text, re.MULTILINE)
-    }
-    ours = every_number(machine)
-    assert {name: there[name] for name in ours if name in there} == {
-        name: number for name, number in ours.items() if name in there
-    }
-    assert len(ours.keys() & there.keys()) > 50
+    found = re.findall(r"^#define __NR(?:3264)?_(\w+) (\d+)$", HEADERS[machine].read_text(), re.M)
+    there, ours = {name: int(number) for name, number in found}, every_number(machine)
+    both = ours.keys() & there.keys()
+    assert {name: there[name] for name in both} == {name: ours[name] for name in both}
+    assert len(both) > 50
 
 
-@pytest.mark.parametrize("machine", MACHINES)
 def test_no_number_stands_for_two_calls(machine: str) -> None:
     numbers = list(every_number(machine).values())
     assert len(numbers) == len(set(numbers))
 
 
-@pytest.mark.parametrize("machine", MACHINES)
 def test_a_listed_call_is_refused_whatever_its_arguments(machine: str) -> None:
     place = seccomp.MACHINES[machine][0]
-    for group in seccomp.REFUSED.values():
-        for numbers in group.values():
-            if numbers[place] is not None:
-                assert answer(machine, numbers[place], 1, 2, 3) == EPERM
+    for numbers in (each for group in seccomp.REFUSED.values() for each in group.values()):
+        if numbers[place] is not None:
+            assert answer(machine, numbers[place], 1, 2, 3) == EPERM
 
 
-@pytest.mark.parametrize("machine", MACHINES)
-def test_whose_files_are_in_sight_are_not_opened_to_others(machine: str) -> None:
+def test_whose_files_are_in_sight_are_not_opened_to_others(machine: str, apart: bool) -> None:
     place = seccomp.MACHINES[machine][0]
     for numbers in seccomp.OF_FILES.values():
         if numbers[place] is not None:
-            assert answer(machine, numbers[place], apart=False) == EPERM
-            assert answer(machine, numbers[place], apart=True) == 0
+            assert answer(machine, numbers[place], apart=apart) == (0 if apart else EPERM)
 
 
-@pytest.mark.parametrize("machine", MACHINES)
 def test_calls_of_other_machines_and_later_kernels_are_unknown(machine: str) -> None:
     i386, x32_bit = 0x40000003, 0x40000000
     assert answer(machine, 1, arch=i386) == ENOSYS
@@ -140,7 +139,6 @@ def test_calls_of_other_machines_and_later_kernels_are_unknown(machine: str) -> 
     assert answer(machine, x32_bit | seccomp.FCNTL[place], 3, seccomp.F_SETLEASE) == ENOSYS
 
 
-@pytest.mark.parametrize("machine", MACHINES)
 def test_threads_and_processes_are_made_but_no_namespaces(machine: str) -> None:
     number = seccomp.CLONE[seccomp.MACHINES[machine][0]]
     assert answer(machine, number, CLONE_THREAD_OF_GLIBC) == 0
@@ -149,7 +147,6 @@ def test_threads_and_processes_are_made_but_no_namespaces(machine: str) -> None:
         assert answer(machine, number, 1 << bit | signal.SIGCHLD) == EPERM
 
 
-@pytest.mark.parametrize("machine", MACHINES)
 def test_nothing_is_typed_into_a_terminal(machine: str) -> None:
     number = seccomp.IOCTL[seccomp.MACHINES[machine][0]]
     fionread, tiocgwinsz = 0x541B, 0x5413
@@ -159,8 +156,6 @@ def test_nothing_is_typed_into_a_terminal(machine: str) -> None:
         assert answer(machine, number, 0, 1 << 32 | request) == EPERM  # the kernel sees 32 bits
 
 
-@pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("apart", [True, False])
 def test_nobody_waits_for_a_file_or_is_told_of_it(machine: str, apart: bool) -> None:
     number = seccomp.FCNTL[seccomp.MACHINES[machine][0]]
     f_setfl, f_setlk, f_getlease, f_dupfd_cloexec = 4, 6, 1025, 1030
@@ -171,7 +166,6 @@ def test_nobody_waits_for_a_file_or_is_told_of_it(machine: str, apart: bool) -> 
         assert answer(machine, number, 3, 1 << 32 | command, apart=apart) == EPERM
 
 
-@pytest.mark.parametrize("machine", MACHINES)
 def test_limits_and_priorities_are_the_callers_own(machine: str) -> None:
     place = seccomp.MACHINES[machine][0]
     for numbers in (seccomp.PRLIMIT64, *seccomp.OF_A_PROCESS.values()):
@@ -189,8 +183,6 @@ def test_limits_and_priorities_are_the_callers_own(machine: str) -> None:
     assert answer(machine, number, 0, idle) == 0
 
 
-@pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("apart", [True, False])
 def test_sockets_are_those_of_dds(machine: str, apart: bool) -> None:
     def ask(*words: int) -> int:
         number = seccomp.SOCKET[seccomp.MACHINES[machine][0]]
@@ -212,8 +204,6 @@ def test_sockets_are_those_of_dds(machine: str, apart: bool) -> None:
         assert ask(family, STREAM, 0) == EAFNOSUPPORT
 
 
-@pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("apart", [True, False])
 def test_a_pair_of_sockets_leads_nowhere_else(machine: str, apart: bool) -> None:
     def ask(*words: int) -> int:
         number = seccomp.SOCKETPAIR[seccomp.MACHINES[machine][0]]
@@ -255,47 +245,41 @@ def test_the_kernel_refuses_every_listed_call() -> None:
     assert in_child(_call_each, numbers) == dict.fromkeys(numbers, EPERM)
 
 
-def _has_more_room() -> bool:
+def _room_changes() -> bool:
+    option = socket.SOL_SOCKET, socket.SO_SNDBUF
     with socket.socketpair()[0] as one:
-        before = one.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF)
-        one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, before // 4)
-        return one.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF) != before
+        before = one.getsockopt(*option)
+        one.setsockopt(*option, before // 4)
+        return one.getsockopt(*option) != before
 
 
 def _at_work(apart: bool) -> dict[str, Any]:
     parent = os.getppid()
     seccomp.install(is_apart=apart)
     libc = ctypes.CDLL(None, use_errno=True)
-    unshared = libc.unshare(CLONE_NEWUSER), ctypes.get_errno()
     heard: list[int] = []
     thread = threading.Thread(target=lambda: heard.append(1))
     thread.start()
     thread.join()
-    status = dict(line.split(":\t") for line in Path("/proc/self/status").read_text().splitlines())
+    words = [sys.executable, "-I", "-S", "-c", "print(7)"]
     return {
-        "unshare": unshared,
+        "unshare": [libc.unshare(CLONE_NEWUSER), ctypes.get_errno()],
         "thread": heard,
-        "program": subprocess.run(
-            [sys.executable, "-I", "-S", "-c", "print(7)"],
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout,
+        "program": subprocess.check_output(words, text=True),
         "unix": error_of(socket.socket, socket.AF_UNIX),
         "tcp": error_of(socket.socket, socket.AF_INET),
         "udp": error_of(socket.socket, socket.AF_INET, socket.SOCK_DGRAM),
         "packet": error_of(socket.socket, AF_PACKET, socket.SOCK_DGRAM),
         "pair": error_of(socket.socketpair),
         "limits of another": error_of(resource.prlimit, parent, resource.RLIMIT_CORE, (0, 0)),
-        "room in a socket": _has_more_room(),
+        "room in a socket": _room_changes(),
         "own limits": error_of(resource.prlimit, 0, resource.RLIMIT_CORE, (0, 0)),
-        "no new rights": status["NoNewPrivs"],
+        "no new rights": "NoNewPrivs:\t1" in Path("/proc/self/status").read_text(),
         "once more": error_of(seccomp.install),
     }
 
 
 @needs_seccomp
-@pytest.mark.parametrize("apart", [True, False])
 def test_a_process_goes_on_without_what_is_refused(apart: bool) -> None:
     elsewhere = 0 if apart else EAFNOSUPPORT
     assert in_child(_at_work, apart) == {
@@ -310,7 +294,7 @@ def test_a_process_goes_on_without_what_is_refused(apart: bool) -> None:
         "limits of another": EPERM,
         "room in a socket": False,
         "own limits": 0,
-        "no new rights": "1",
+        "no new rights": True,
         "once more": 0,
     }
 
@@ -346,13 +330,11 @@ def test_a_machine_that_is_not_known_is_told(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @needs_seccomp
-@pytest.mark.parametrize("apart", [True, False])
 def test_a_node_publishes_to_itself(apart: bool) -> None:
     code = NODE.format(root=str(ROOT), apart=apart)
     env = {**os.environ, "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
-    ended = subprocess.run(
-        [sys.executable, "-c", code], env=env, capture_output=True, text=True, check=False
-    )
+    words = [sys.executable, "-c", code]
+    ended = subprocess.run(words, env=env, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "heard\n", "")
 
 

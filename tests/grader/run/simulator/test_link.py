@@ -7,7 +7,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import chain
 
 import pytest
@@ -32,6 +32,8 @@ from grader.run.simulator.link import Refused, StudentLink
 
 #: Where nobody asks how far a process has got.
 NO_PAGE = -1
+ADVANCE = Advance(5, True, 0, 0)
+Listen = Callable[..., StudentLink]
 
 
 @pytest.fixture
@@ -41,161 +43,166 @@ def ends() -> Iterator[tuple[socket.socket, socket.socket]]:
         yield ours, theirs
 
 
+@pytest.fixture
+def theirs(ends: tuple[socket.socket, socket.socket]) -> socket.socket:
+    return ends[1]
+
+
+@pytest.fixture
+def listen(ends: tuple[socket.socket, socket.socket]) -> Listen:
+    """Give our end: of this process, where no other is named."""
+
+    def listen(pid: int = os.getpid(), page: int = NO_PAGE, **patience: float) -> StudentLink:
+        return StudentLink(ends[0], page, pid, Patience(**patience))
+
+    return listen
+
+
+def mailbox(heard: StudentLink, theirs: socket.socket) -> socket.socket:
+    """Introduce a process, and give where it mails to."""
+    heard.introduce(Table(()))
+    _, (fd,), _, _ = socket.recv_fds(theirs, 1000, 1)
+    return socket.socket(fileno=fd)
+
+
 @pytest.mark.parametrize(
     "data", [b"?", b"A", b"T{}", encode(Reply(0, State.OVER, 0)), b"\xff" * 1000]
 )
-def test_nonsense_ends_the_conversation(
-    ends: tuple[socket.socket, socket.socket], data: bytes
-) -> None:
-    heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience())
-    ends[1].send(data)
+def test_nonsense_ends_the_conversation(listen: Listen, theirs: socket.socket, data: bytes) -> None:
+    heard = listen()
+    theirs.send(data)
     assert heard.receive() is None
-    assert heard.silence == "broken"
-    assert len(heard.flags) == 1
+    assert (heard.silence, len(heard.flags)) == ("broken", 1)
 
 
-def test_requests_come_through_and_notes_are_kept(
-    ends: tuple[socket.socket, socket.socket],
-) -> None:
-    heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience())
-    for packet in (Note(Kind.STUCK), Advance(5, True, 0, 0)):
-        ends[1].send(encode(packet))
-    assert heard.receive() == Advance(5, True, 0, 0)
+def test_requests_come_through_and_notes_are_kept(listen: Listen, theirs: socket.socket) -> None:
+    heard = listen()
+    for packet in (Note(Kind.STUCK), ADVANCE):
+        theirs.send(encode(packet))
+    assert heard.receive() == ADVANCE
     assert heard.waits == "stuck"
 
 
-def test_a_million_remarks_are_few_flags(ends: tuple[socket.socket, socket.socket]) -> None:
-    heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience())
+def test_a_million_remarks_are_few_flags(listen: Listen) -> None:
+    heard = listen()
     for number in range(100):
         heard.flag(f"remark {number}")
     assert len(heard.flags) == link.MOST_FLAGS
 
 
 def test_what_a_dead_process_has_mailed_and_reached_is_known(
-    ends: tuple[socket.socket, socket.socket],
+    listen: Listen, theirs: socket.socket
 ) -> None:
     page = account.make()
-    heard = StudentLink(ends[0], page, os.getpid(), Patience())
-    heard.introduce(Table(()))
-    _, (mailbox,), _, _ = socket.recv_fds(ends[1], 1000, 1)
+    heard = listen(page=page)
     parcels = [Parcel(3, 0, number, 7, b"command") for number in range(5)]
-    with socket.socket(fileno=mailbox) as mail:
+    with mailbox(heard, theirs) as mail:
         for parcel in parcels:
             mail.send(encode(Mail([parcel])))
     os.pwrite(page, PROGRESS.pack(41), 0)
-    ends[1].close()
+    theirs.close()
     assert heard.receive() is None
     assert (list(chain(*heard.mail())), heard.reached()) == (parcels, 41)
     heard.mailbox.close()
     os.close(page)
 
 
-def test_nonsense_in_the_mail_ends_the_conversation(
-    ends: tuple[socket.socket, socket.socket],
-) -> None:
-    heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience())
-    heard.introduce(Table(()))
-    _, (mailbox,), _, _ = socket.recv_fds(ends[1], 1000, 1)
-    with socket.socket(fileno=mailbox) as mail:
+def test_nonsense_in_the_mail_ends_the_conversation(listen: Listen, theirs: socket.socket) -> None:
+    heard = listen()
+    with mailbox(heard, theirs) as mail:
         mail.send(b"?")
-        mail.send(encode(Advance(5, True, 0, 0)))
+        mail.send(encode(ADVANCE))
         assert list(heard.mail()) == []
     assert heard.silence == "broken"
     heard.mailbox.close()
 
 
 def test_a_run_that_uses_up_its_processor_time_is_slow(
-    ends: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
+    listen: Listen, theirs: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(link, "CPU_CHECK_S", 0.0)
-    heard = StudentLink(ends[0], NO_PAGE, os.getpid(), Patience(run_cpu_s=0.0))
-    ends[1].send(encode(Advance(5, True, 0, 0)))
+    heard = listen(run_cpu_s=0.0)
+    theirs.send(encode(ADVANCE))
     assert heard.receive() is None
     assert heard.silence == "slow"
 
 
 @pytest.mark.parametrize(("excused_cpu_s", "silence"), [(0.0, "flooding"), (60.0, "")])
 def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing(
-    ends: tuple[socket.socket, socket.socket],
+    listen: Listen,
+    theirs: socket.socket,
     monkeypatch: pytest.MonkeyPatch,
     excused_cpu_s: float,
     silence: str,
 ) -> None:
     monkeypatch.setattr(link, "CPU_CHECK_S", 0.0)
     # of this process, whose pid stands for the submission's, nothing is limited
-    heard = StudentLink(
-        ends[0], NO_PAGE, os.getpid(), Patience(run_cpu_s=math.inf, simulator_cpu_s=30.0)
-    )
+    heard = listen(run_cpu_s=math.inf, simulator_cpu_s=30.0)
     heard.excused_cpu_s = excused_cpu_s
     before_s = time.process_time()
     monkeypatch.setattr(time, "process_time", lambda: before_s + 50.0)
-    ends[1].send(encode(Advance(5, True, 0, 0)))
+    theirs.send(encode(ADVANCE))
     heard.receive()
     assert heard.silence == silence
 
 
-def test_what_is_not_supported_is_refused(ends: tuple[socket.socket, socket.socket]) -> None:
-    ends[1].send(encode(Note(Kind.UNSUPPORTED, plain_text("forks\x1b[31m\n"))))
-    with pytest.raises(Refused, match=r"^the submission forks\?\[31m\?$"):
-        StudentLink(ends[0], NO_PAGE, os.getpid(), Patience()).receive()
-
-
-def test_where_virtual_time_fails_the_submission_is_not_named(
-    ends: tuple[socket.socket, socket.socket],
+@pytest.mark.parametrize(
+    ("kind", "remark", "told"),
+    [
+        (Kind.UNSUPPORTED, "forks\x1b[31m\n", r"^the submission forks\?\[31m\?$"),
+        (Kind.FAILED, "virtual time itself failed", r"^virtual time itself failed$"),
+    ],
+)
+def test_what_is_not_supported_is_refused_and_what_fails_does_not_name_the_submission(
+    listen: Listen, theirs: socket.socket, kind: Kind, remark: str, told: str
 ) -> None:
-    ends[1].send(encode(Note(Kind.FAILED, plain_text("virtual time itself failed"))))
-    with pytest.raises(Refused, match=r"^virtual time itself failed$"):
-        StudentLink(ends[0], NO_PAGE, os.getpid(), Patience()).receive()
+    theirs.send(encode(Note(kind, plain_text(remark))))
+    with pytest.raises(Refused, match=told):
+        listen().receive()
 
 
-def test_computing_without_end_is_a_stall(
-    ends: tuple[socket.socket, socket.socket],
-) -> None:
-    with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as process:
-        heard = StudentLink(ends[0], NO_PAGE, process.pid, Patience(start_cpu_s=0.1))
-        assert heard.receive() is None
-        process.kill()
-    assert heard.silence == "stalled"
-
-
-def test_a_process_that_somebody_has_stopped_is_not_waited_for(
-    ends: tuple[socket.socket, socket.socket],
-) -> None:
-    with subprocess.Popen(["sleep", "60"]) as process:
-        process.send_signal(signal.SIGSTOP)
-        heard = StudentLink(ends[0], NO_PAGE, process.pid, Patience(asleep_s=0.1))
-        assert heard.receive() is None
-        process.kill()
-    assert heard.silence == "stopped"
-
-
+COMPUTES = (sys.executable, "-S", "-c", "while True: pass")
 NAPS = "import time\nwhile True:\n time.sleep(0.1)\n for _ in range(10_000): pass"
 
 
-def test_a_process_that_has_ended_is_gone_although_a_descendant_holds_the_link(
-    ends: tuple[socket.socket, socket.socket],
+@pytest.mark.parametrize(
+    ("words", "is_stopped", "patience", "silence"),
+    [
+        pytest.param(COMPUTES, False, {"start_cpu_s": 0.1}, "stalled", id="computes"),
+        pytest.param(("sleep", "60"), True, {"asleep_s": 0.1}, "stopped", id="is stopped"),
+        pytest.param(("sleep", "60"), False, {"asleep_s": 0.2}, "refused", id="sleeps"),
+        pytest.param(
+            *((sys.executable, "-S", "-c", NAPS), False),
+            *({"start_cpu_s": 1000.0, "all_asleep_s": 0.3}, "refused"),
+            id="naps, again and again",
+        ),
+    ],
+)
+def test_a_silent_process_is_waited_for_by_what_it_does(
+    listen: Listen,
+    words: tuple[str, ...],
+    is_stopped: bool,
+    patience: dict[str, float],
+    silence: str,
 ) -> None:
-    with subprocess.Popen([sys.executable, "-c", ""]) as process:
+    with subprocess.Popen(words) as process:
+        if is_stopped:
+            process.send_signal(signal.SIGSTOP)
+        heard = listen(process.pid, **patience)
+        try:
+            assert heard.receive() is None
+            found = heard.silence
+        except Refused:
+            found = "refused"
+        process.kill()
+    assert found == silence
+
+
+def test_a_process_that_has_ended_is_gone_although_a_descendant_holds_the_link(
+    listen: Listen,
+) -> None:
+    with subprocess.Popen(["true"]) as process:
         os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
-        heard = StudentLink(ends[0], NO_PAGE, process.pid, Patience(asleep_s=1000.0))
+        heard = listen(process.pid, asleep_s=1000.0)
         assert heard.receive() is None
     assert heard.silence == "gone"
-
-
-def test_sleeping_is_added_up_however_often_it_is_interrupted(
-    ends: tuple[socket.socket, socket.socket],
-) -> None:
-    with subprocess.Popen([sys.executable, "-c", NAPS]) as process:
-        patience = Patience(start_cpu_s=1000.0, all_asleep_s=0.3)
-        with pytest.raises(Refused):
-            StudentLink(ends[0], NO_PAGE, process.pid, patience).receive()
-        process.kill()
-
-
-def test_sleeping_outside_of_virtual_time_is_refused(
-    ends: tuple[socket.socket, socket.socket],
-) -> None:
-    with subprocess.Popen(["sleep", "60"]) as process:
-        with pytest.raises(Refused):
-            StudentLink(ends[0], NO_PAGE, process.pid, Patience(asleep_s=0.2)).receive()
-        process.kill()

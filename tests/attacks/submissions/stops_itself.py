@@ -1,5 +1,0 @@
-"""Stops its own process, for good."""
-
-from tools import libc
-
-libc.kill(libc.getpid(), 19)
