@@ -1,8 +1,8 @@
 """The attacks: what each is about, what it does, and which level stops it.
 
-They lie in `kinds/`, a file for each part of a grading that is attacked. An entry there has, by the
-attack's name, what differs from an `Attack` without anything: most of all `program`, whose first
-line says what it does, or `as`, the attack that has the same one.
+They lie in `submissions/`, a file for each part of a grading that is attacked. An entry there has,
+by the attack's name, what differs from an `Attack` without anything: most of all `program`, whose
+first line says what it does, or `as`, the attack that has the same one.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 import yaml
 
-FOLDER = Path(__file__).with_name("kinds")
+FOLDER = Path(__file__).with_name("submissions")
 KINDS = sorted(path.stem for path in FOLDER.glob("*.yaml"))
 LEVELS = {
     "all": ("namespaces", "landlock", "limits"),

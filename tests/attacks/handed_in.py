@@ -13,6 +13,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+SUBMISSIONS = Path(__file__).with_name("submissions")
 Known = Mapping[str, object]
 EMPTY = "import rclpy\n"
 #: What reads these may go to and fro; today's answer is at once, yesterday's took minutes.
@@ -23,52 +24,14 @@ def folder(target: Path, program: str, known: Known) -> Path:
     """A folder with one program, beside it `tools` and `known`: where the canaries are."""
     target.mkdir()
     (target / "turtle_controller.py").write_text(program)
-    shutil.copy(Path(__file__).with_name("tools.py"), target)
+    shutil.copy(SUBMISSIONS / "tools.py", target)
     (target / "known.py").write_text("".join(f"{name} = {known[name]!r}\n" for name in known))
     return target
 
 
-WAITS = """
-import rclpy
-from geometry_msgs.msg import Twist
-
-def main():
-    rclpy.init()
-    node = rclpy.create_node("waits")
-    node.create_subscription(Twist, "/mine", lambda twist: print("ACHIEVED a forgery"), 10)
-    node.create_timer(0.1, lambda: None)
-    rclpy.spin(node)
-"""
-SETUP = """
-from setuptools import setup
-FILES = [("share/two", ["turtle_controller.py"]), ("share/two/launch", ["launch/two.launch.py"])]
-setup(name="two", py_modules=["waits"], data_files=FILES,
-      entry_points={"console_scripts": ["waits = waits:main"]})
-"""
-LAUNCH = """
-import os
-from launch import LaunchDescription
-from launch.actions import ExecuteProcess
-from launch_ros.actions import Node
-
-def generate_launch_description():
-    attack = os.path.join(os.path.dirname(__file__), "..", "turtle_controller.py")
-    attack = ExecuteProcess(cmd=["python3", os.path.abspath(attack)])
-    return LaunchDescription([Node(package="two", executable="waits"), attack])
-"""
-
-
 def as_second(target: Path) -> None:
     """Make a folder with one program a package whose launch file starts another before it."""
-    files = {
-        "package.xml": "<package><name>two</name></package>",
-        "setup.py": SETUP,
-        "waits.py": WAITS,
-        "launch/two.launch.py": LAUNCH,
-    }
-    for name, text in files.items():
-        (target / name).parent.mkdir(exist_ok=True)
-        (target / name).write_text(text)
+    shutil.copytree(SUBMISSIONS / "second", target, dirs_exist_ok=True)
 
 
 def single(target: Path, program: str, known: Known) -> Path:

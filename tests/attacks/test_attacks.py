@@ -54,7 +54,7 @@ def compiled() -> None:
 
 
 @pytest.mark.parametrize(("level", "names"), list(gradings()))
-def test_they_do_no_harm_and_earn_no_points(level: str, names: list[str]) -> None:
+def test_they_do_no_harm_and_earn_no_points(level, names):
     found = container.run({"level": level, "attacks": names})
     assert [each["attack"] for each in found] == names
     wrong = {each["attack"]: (why, each) for each in found for why in _wrong(level, each)}
@@ -90,7 +90,7 @@ UNCONFINED = {
 }
 
 
-def test_the_canaries_sing_where_nothing_confines_an_attack() -> None:
+def test_the_canaries_sing_where_nothing_confines_an_attack():
     found = container.run({"level": "unconfined", "attacks": list(UNCONFINED)})
     for each in found:
         sung = UNCONFINED[each["attack"]]

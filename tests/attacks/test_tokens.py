@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from tests.attacks.attacks import ATTACKS, MOVES
@@ -13,7 +11,7 @@ from tests.grader.course.machine import Machine, scripts
 
 
 @pytest.mark.more("`grader run` alone, in test_one_of_each_kind")
-def test_a_submission_that_grade_sh_grades_sees_no_token(tmp_path: Path) -> None:
+def test_a_submission_that_grade_sh_grades_sees_no_token(tmp_path):
     machine = Machine(tmp_path, real=True)
     student = folder(machine.folder / "student", ATTACKS["reads_environment"].program, {})
     exercise = machine.folder / "exercise.yaml"

@@ -6,8 +6,10 @@ import os
 import random
 from dataclasses import replace
 from importlib import metadata
+from pathlib import Path
 
 import pytest
+import yaml
 
 from grader import scratch
 from grader.errors import NotOffered
@@ -25,37 +27,11 @@ from tests import runs
 from tests.grader.rosidl.comparing import differences
 from turtlesim_py.ros import interfaces
 
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
+
 FOLDER = runs.SUBMISSIONS / "interfaces"
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=4))
 
-SENDS = """
-import os
-
-import demo_interfaces
-import rclpy
-from demo_interfaces.msg import Num
-
-folder = os.path.dirname(demo_interfaces.__path__[0])
-for path in (folder, f"{folder}/demo_interfaces", f"{folder}/demo_interfaces/msg"):
-    try:
-        open(f"{path}/__init__.py", "a").close()
-        print("written into", path)
-    except OSError as error:
-        print("refused")
-rclpy.init()
-node = rclpy.create_node("node")
-
-
-def hears(num):
-    print(num, flush=True)
-    raise SystemExit
-
-
-node.create_subscription(Num, "num", hears, 10)
-publisher = node.create_publisher(Num, "num", 10)
-node.create_timer(0.2, lambda: publisher.publish(Num(num=[2.5], name="it")))
-rclpy.spin(node)
-"""
 NUM = OwnInterfaces({"demo_interfaces/msg/Num": "string<=4 name\nfloat64[<=3] num\n"})
 HEARD = "demo_interfaces.msg.Num(name='it', num=[2.5])"
 
@@ -70,7 +46,7 @@ def run(path, interfaces=None, plan=PLAN):
 @pytest.fixture
 def sends(tmp_path):
     path = tmp_path / "sends.py"
-    path.write_text(SENDS)
+    path.write_text(TEXTS["sends"])
     return path
 
 
@@ -91,7 +67,7 @@ def test_dds_carries_messages_services_and_actions_of_ones_own():
 def test_they_can_be_imported_not_written_into_and_are_kept(level, sends, monkeypatch):
     is_lowest = level == levels.LIMITS
     package = "lowest_interfaces" if is_lowest else "demo_interfaces"
-    sends.write_text(SENDS.replace("demo_interfaces", package))
+    sends.write_text(TEXTS["sends"].replace("demo_interfaces", package))
     texts = {f"{package}/msg/Num": NUM.texts["demo_interfaces/msg/Num"]}
     levels.only(level)
     try:

@@ -43,7 +43,7 @@ def crowded(name: str) -> Run:
 
 
 @pytest.mark.more("eight runs, four of them at once beside busy loops")
-def test_beside_busy_loops_and_other_runs_every_trace_stays_the_same() -> None:
+def test_beside_busy_loops_and_other_runs_every_trace_stays_the_same():
     alone = [runs.recorded(name, PLAN).run for name in NAMES]
     with busy_loops(2), ThreadPoolExecutor(4) as pool:
         for name, first, again in zip(NAMES, alone, pool.map(crowded, NAMES), strict=True):

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
 from itertools import count
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -63,14 +62,14 @@ def say(**changes: object) -> bytes:
     return json.dumps({**ACCOUNT, **changes}).encode()
 
 
-def test_what_stands_in_the_account_is_told(submission: Submission) -> None:
+def test_what_stands_in_the_account_is_told(submission):
     observations = told(submission, say())
     assert observations.is_known
     assert [(end.name, end.used, end.is_met) for end in observations.ends] == [("/a", 4, True)]
     assert (observations.spun_s, observations.returned_s) == (0.5, 1.0)
 
 
-def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission) -> None:
+def test_from_which_lines_was_sent_what_is_told_in_order(submission):
     lines = [PLACE, {**PLACE, "line": 1}]
     sent = [{"line": 0, "times": 104}, {"line": 1, "times": 1}]
     observations = told(submission, say(ends=[{**END, "lines": lines, "sent": sent}]))
@@ -79,9 +78,7 @@ def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission)
     assert [(burst.line, burst.times) for burst in end.sent] == [(0, 104), (1, 1)]
 
 
-def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
-    submission: Submission,
-) -> None:
+def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(submission):
     wrong: list[tuple[object, object]] = [
         ([PLACE], [{"line": 1, "times": 1}]),
         ([PLACE], [{"line": 0, "times": -1}]),
@@ -96,9 +93,7 @@ def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
         assert told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])) == Observations()
 
 
-def test_what_was_seen_of_timers_and_exceptions_is_believed_by_its_form(
-    submission: Submission,
-) -> None:
+def test_what_was_seen_of_timers_and_exceptions_is_believed_by_its_form(submission):
     timer = {"place": PLACE, "period_s": 0.1, "times": 4}
     caught = {"type": "E", "text": "", "time_s": 1, "times": 2, "place": PLACE}
     right = {"ends": [{**END, "used_at": PLACE}], "timers": [timer], "caught": [caught]}
@@ -116,9 +111,7 @@ def test_what_was_seen_of_timers_and_exceptions_is_believed_by_its_form(
         assert told(submission, say(**{**right, **wrong})) == Observations()
 
 
-def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
-    submission: Submission,
-) -> None:
+def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(submission):
     place = SourceLine("a.py", 3, "", "self.stoped = True")
     read = replace(submission, lint_findings=(LintFinding("unread", "stoped", "stopped", place),))
     (found,) = told(read, say()).lint_findings
@@ -141,9 +134,7 @@ NONSENSE = (
 )
 
 
-def test_of_a_process_that_tells_nonsense_or_nothing_nothing_is_told(
-    submission: Submission,
-) -> None:
+def test_of_a_process_that_tells_nonsense_or_nothing_nothing_is_told(submission):
     for text in NONSENSE:
         assert told(submission, text) == Observations(), text
 
@@ -154,9 +145,7 @@ def evidence_page() -> Iterator[EvidencePage]:
         yield made
 
 
-def test_the_newest_half_that_is_whole_counts(
-    submission: Submission, evidence_page: EvidencePage
-) -> None:
+def test_the_newest_half_that_is_whole_counts(submission, evidence_page):
     page = evidence_page.page
     for number in (1, 2, 3):
         put(page, number, say(spun_s=number))
@@ -165,14 +154,12 @@ def test_the_newest_half_that_is_whole_counts(
 
 
 @pytest.mark.parametrize("length", [0, 1, 2**31, 2**32 - 1])
-def test_a_length_that_is_none_is_not_believed(
-    submission: Submission, evidence_page: EvidencePage, length: int
-) -> None:
+def test_a_length_that_is_none_is_not_believed(submission, evidence_page, length):
     put(evidence_page.page, 1, say(), length)
     assert evidence_page.observations(submission, 1.5, computes=True) == Observations()
 
 
-def test_nobody_makes_the_page_longer_or_shorter(evidence_page: EvidencePage) -> None:
+def test_nobody_makes_the_page_longer_or_shorter(evidence_page):
     for size in (0, 10 * account.HALF_BYTES):
         with pytest.raises(PermissionError):
             os.ftruncate(evidence_page.page, size)
@@ -192,33 +179,33 @@ def kept(page: int, told: dict[str, object]) -> dict[str, Any]:
     return found
 
 
-def test_what_there_is_no_room_for_is_left_out_in_an_order(page: int) -> None:
+def test_what_there_is_no_room_for_is_left_out_in_an_order(page):
     slow = [{"place": PLACE, "longest_s": 0.1, "times": n} for n in range(600)]
     found = kept(page, {**ACCOUNT, "slow": slow, "timers": [1]})
     assert (found["slow"], found["timers"], found["ends"]) == ([], [1], [END])
 
 
-def test_of_too_many_ends_the_first_are_told(page: int) -> None:
+def test_of_too_many_ends_the_first_are_told(page):
     found = kept(page, {**ACCOUNT, "ends": [END] * 500, "waits": [1]})
     assert 100 < len(found["ends"]) < 500
     assert (found["waits"], found["returned_s"]) == ([], 1)
 
 
-def test_a_fork_tells_nothing(page: int) -> None:
+def test_a_fork_tells_nothing(page):
     writer = account.ProcessAccount(page, lambda: {"ends": []})
     writer.write()
     in_child(writer.write)
     assert len({os.pread(page, 16, begin) for begin in account.HALVES} - {bytes(16)}) == 1
 
 
-def test_the_last_one_is_known_as_such(page: int) -> None:
+def test_the_last_one_is_known_as_such(page):
     writer = account.ProcessAccount(page, dict)
     for is_last in (False, True):
         writer.write(is_last=is_last)
         assert account.read(page)[1] is is_last
 
 
-def test_what_a_program_has_opened_in_its_place_is_left_alone(page: int, tmp_path: Path) -> None:
+def test_what_a_program_has_opened_in_its_place_is_left_alone(page, tmp_path):
     writer = account.ProcessAccount(page, dict)
     with (tmp_path / "its own").open("wb") as other:
         os.dup2(other.fileno(), page)
@@ -226,7 +213,7 @@ def test_what_a_program_has_opened_in_its_place_is_left_alone(page: int, tmp_pat
     assert (tmp_path / "its own").read_bytes() == b""
 
 
-def test_the_more_often_something_changes_the_less_often_it_is_written(page: int) -> None:
+def test_the_more_often_something_changes_the_less_often_it_is_written(page):
     written: list[int] = []
     writer = account.ProcessAccount(page, lambda: {"n": written.append(1)})
     for _ in range(100_000):
@@ -234,13 +221,13 @@ def test_the_more_often_something_changes_the_less_often_it_is_written(page: int
     assert len(written) < 60
 
 
-def test_texts_are_told_in_one_line_that_can_be_shown(submission: Submission) -> None:
+def test_texts_are_told_in_one_line_that_can_be_shown(submission):
     text = "red \x1b[31m\nand\ud800\u202e"
     raised = {"type": "Error", "text": text, "time_s": 1, "place": None}
     assert told(submission, say(raised=raised)).raised.text == "red ?[31m and??"
 
 
-def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None:
+def test_bytes_of_any_kind_are_never_our_failure(submission):
     chance = random.Random(12)
     whole = say()
     for _ in range(300):
@@ -250,9 +237,7 @@ def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None
         told(submission, bytes(data), bytes(data))
 
 
-def test_a_dump_has_so_much_room_and_no_more(
-    submission: Submission, evidence_page: EvidencePage
-) -> None:
+def test_a_dump_has_so_much_room_and_no_more(submission, evidence_page):
     put(evidence_page.page, 1, say())
     sent = 0
     with pytest.raises(PermissionError):
@@ -268,7 +253,7 @@ def dump(*frames: tuple[str, int, str]) -> bytes:
     return b"".join(line + b"\n" for line in (head, *lines))
 
 
-def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
+def test_a_loop_is_shown_where_it_begins(submission):
     file = str(submission.root / "a.py")
     for line in (1, 2):
         stop = told(submission, b"", dump((file, line, "<module>"))).stop
@@ -277,8 +262,8 @@ def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
 
 
 def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
-    submission: Submission, evidence_page: EvidencePage, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    submission, evidence_page, monkeypatch
+):
     lines = iter(dump((str(submission.root / "a.py"), 2, "<module>")).splitlines())
     # each look finds it where the last one did; every fifth time it has come to a line more
     looks = count(1)
@@ -298,7 +283,7 @@ def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
     assert len(account.dumped(evidence_page.page).splitlines()) == 2
 
 
-def test_a_link_that_leads_to_itself_or_out_is_no_source(submission: Submission) -> None:
+def test_a_link_that_leads_to_itself_or_out_is_no_source(submission):
     for name, to in (("itself.py", "itself.py"), ("out.py", "/etc/passwd")):
         link = submission.root / name
         link.symlink_to(to)
@@ -307,7 +292,7 @@ def test_a_link_that_leads_to_itself_or_out_is_no_source(submission: Submission)
         link.unlink()
 
 
-def test_what_lies_beside_a_submission_is_none_of_its_own(submission: Submission) -> None:
+def test_what_lies_beside_a_submission_is_none_of_its_own(submission):
     file = f"{submission.root}/../secret.py"
     assert told(submission, b"", dump((file, 1, "f"))) == Observations(is_known=True)
     for name in ("../secret.py", "/etc/passwd", "a/../../b.py"):

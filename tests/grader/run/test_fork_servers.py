@@ -9,10 +9,10 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
 
 import psutil
 import pytest
+import yaml
 
 from grader.errors import GraderFailure
 from grader.recording.recording import Recording
@@ -23,50 +23,10 @@ from grader.run.processes import FORK_SERVER, levels, network
 from grader.scenes.scene import Limits
 from tests.tiers import others_are_more
 
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
+
 ROOT = Path(__file__).parents[3]
 PLAN = Plan(Limits(first_motion_s=0.5, rest_s=0.2, total_s=5))
-#: What a submission can find out about itself, and what differs from run to run elsewhere.
-PORTRAIT = """
-import os, random, re, resource, signal, sys, tempfile, threading, time, uuid, warnings
-import rclpy
-home = os.path.dirname(os.environ["TMPDIR"]).rstrip("/") or "nowhere"
-def shown(*things):
-    text = " ".join(str(thing).replace(home, "HOME") for thing in things)
-    print(re.sub("0x[0-9a-f]+|[0-9a-f]{32}|started [0-9]+", "X", text))
-shown("argv", sys.argv, sys.flags, sys.orig_argv[:2], sys.orig_argv[4:])
-shown("path", sys.path, sys.meta_path, sys.path_hooks)
-shown("main", vars(sys.modules["__main__"])["__file__"], __name__)
-shown("env", os.environ)
-shown("where", os.getcwd(), tempfile.gettempdir(), os.getpid(), os.getppid(), os.getsid(0))
-fds = [(fd, f"/proc/self/fd/{fd}") for fd in range(64)]
-kinds = [os.readlink(at).partition(":")[0] for fd, at in fds if os.path.exists(at)]
-shown("open", sorted(kinds), sys.stdout, sys.stderr)
-limits = [n for n in range(16) if n != resource.RLIMIT_NPROC]  # that one may leave room for others
-shown("limits", [resource.getrlimit(number) for number in limits])
-shown("signals", [(n, str(signal.getsignal(n)).partition(" at ")[0]) for n in range(1, 32)])
-shown("threads", threading.enumerate(), threading.active_count(), threading.main_thread().name)
-shown("chance", random.random(), uuid.uuid4(), hash("x"), os.urandom(4), list({"a", "b", "c"}))
-shown("more chance", random.Random().random(), random.SystemRandom().random())
-import numpy.random
-shown("numpy", numpy.random.random(), numpy.random.default_rng().random())
-shown("time", time.time(), time.monotonic(), len(warnings.filters))
-def depth(n=0):
-    try:
-        return depth(n + 1)
-    except RecursionError:
-        return n
-shown("depth", depth(), [frame.f_code.co_name for frame in sys._current_frames().values()])
-sys.stdout.flush()
-from geometry_msgs.msg import Twist
-rclpy.init()
-node = rclpy.create_node("driver")
-publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
-for _ in range(3):
-    twist = Twist()
-    twist.linear.x = random.random()
-    publisher.publish(twist)
-    time.sleep(random.random())
-"""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -129,17 +89,17 @@ REFUSED = [
     others_are_more("keeping apart is tested in test_network", REFUSED, "the best"),
 )
 def test_a_forked_submission_finds_all_that_a_started_one_does(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, apart: str, refused: set[Any]
-) -> None:
+    tmp_path, monkeypatch, apart, refused
+):
     monkeypatch.setattr(network, "_refused", set(refused))
     monkeypatch.setattr(levels, "_found", {})
     # the same for both runs, and none that any other grader takes
     monkeypatch.setattr(network, "DOMAINS", (39,))
     before = forks()
-    forked = graded(PORTRAIT, tmp_path)
+    forked = graded(TEXTS["portrait"], tmp_path)
     assert [now - then for now, then in zip(forks(), before, strict=True)] == [1, 1]
     cold(monkeypatch)
-    started = graded(PORTRAIT, tmp_path)
+    started = graded(TEXTS["portrait"], tmp_path)
     assert started.run.exit_code == 0, started.output
     assert lines(forked) == lines(started)
     assert forked.run.trace_sha256 == started.run.trace_sha256
@@ -156,9 +116,7 @@ OWN = (
 @pytest.mark.parametrize(
     "own", others_are_more("a package stands for the others", OWN, "std_msgs/__init__.py")
 )
-def test_a_submission_s_own_module_is_what_it_imports(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: str
-) -> None:
+def test_a_submission_s_own_module_is_what_it_imports(tmp_path, monkeypatch, own):
     folder = tmp_path / "submission"
     (folder / own).parent.mkdir(parents=True, exist_ok=True)
     (folder / own).write_text("MINE = 'mine'\n")
@@ -176,18 +134,7 @@ def test_a_submission_s_own_module_is_what_it_imports(
             assert virtual_time.run(submission, PLAN).output == expected
 
 
-def test_a_second_grading_needs_no_new_start(tmp_path: Path) -> None:
-    fork_servers.warm()
-    pids = [side.pid for side in fork_servers._servers.values()]
-    before = forks()
-    for number in (1, 2):
-        recording = graded(f"print({number})", tmp_path)
-        assert recording.output == f"{number}\n"
-        assert [side.pid for side in fork_servers._servers.values()] == pids
-        assert [now - then for now, then in zip(forks(), before, strict=True)] == [number] * 2
-
-
-def test_runs_side_by_side_share_the_servers(tmp_path: Path, fresh: None) -> None:
+def test_runs_side_by_side_share_the_servers(tmp_path, fresh):
     def one(number: int) -> str:
         folder = tmp_path / str(number)
         folder.mkdir()
@@ -205,9 +152,7 @@ SIDES = (fork_servers.STUDENT, fork_servers.SIMULATOR)
 
 
 @pytest.mark.parametrize("side", others_are_more("as the student's", SIDES, fork_servers.STUDENT))
-def test_a_server_that_dies_costs_a_start_and_nothing_else(
-    tmp_path: Path, forgiven: None, side: str
-) -> None:
+def test_a_server_that_dies_costs_a_start_and_nothing_else(tmp_path, forgiven, side):
     fork_servers.warm()
     first = fork_servers._servers[side]
     first.preloaded()
@@ -222,8 +167,8 @@ def test_a_server_that_dies_costs_a_start_and_nothing_else(
 
 @pytest.mark.parametrize("side", others_are_more("as the student's", SIDES, fork_servers.STUDENT))
 def test_a_server_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgiven: None, side: str
-) -> None:
+    tmp_path, monkeypatch, forgiven, side
+):
     # what is confined better does not reach the pipe
     monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
     pipe = tmp_path / "up"
@@ -240,9 +185,7 @@ def test_a_server_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
 
 @pytest.mark.more("test_fork_server has one that never comes up")
 @pytest.mark.parametrize("side", SIDES)
-def test_a_server_that_never_comes_up_is_given_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None, side: str
-) -> None:
+def test_a_server_that_never_comes_up_is_given_up(tmp_path, monkeypatch, fresh, side):
     started = []
     original = fork_servers.ForkServer
 
@@ -260,9 +203,7 @@ def test_a_server_that_never_comes_up_is_given_up(
     assert fork_servers.server(side) is None
 
 
-def test_a_changed_environment_is_another_server_s(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None
-) -> None:
+def test_a_changed_environment_is_another_server_s(tmp_path, monkeypatch, fresh):
     says = "import os; print(os.environ.get('TZ'))"
     monkeypatch.delenv("TZ", raising=False)
     assert graded(says, tmp_path).output == "None\n"
@@ -278,9 +219,7 @@ def test_a_changed_environment_is_another_server_s(
 
 
 @pytest.mark.parametrize("path", ["relative:/opt/ros", ":/opt/ros"])
-def test_there_is_none_where_the_import_path_depends_on_the_folder(
-    monkeypatch: pytest.MonkeyPatch, path: str
-) -> None:
+def test_there_is_none_where_the_import_path_depends_on_the_folder(monkeypatch, path):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     monkeypatch.setenv("PYTHONPATH", path)
     assert fork_servers.server(fork_servers.STUDENT) is None
@@ -294,7 +233,7 @@ def printed(code: str) -> str:
     return subprocess.run(words, stdout=subprocess.PIPE, check=True, cwd=ROOT, text=True).stdout
 
 
-def test_a_fork_of_the_grader_has_servers_of_its_own() -> None:
+def test_a_fork_of_the_grader_has_servers_of_its_own():
     printed("""
 servers.warm()
 ours = {side.pid for side in servers._servers.values()}
@@ -311,7 +250,7 @@ assert {side.pid for side in servers._servers.values()} == ours
 """)
 
 
-def test_servers_end_with_the_program_that_has_graded_and_import_nothing_heavy_into_it() -> None:
+def test_servers_end_with_the_program_that_has_graded_and_import_nothing_heavy_into_it():
     pids, heavy = printed("""
 thread = threading.Thread(target=servers.warm)
 thread.start()
@@ -325,7 +264,7 @@ print(*sorted({"numpy", "backports", "rclpy", "PIL", "yaml", "rich"} & set(sys.m
 
 
 @pytest.mark.more("a run in real time")
-def test_in_real_time_the_simulator_alone_is_forked(tmp_path: Path) -> None:
+def test_in_real_time_the_simulator_alone_is_forked(tmp_path):
     fork_servers.warm()
     before = forks()
     (tmp_path / "submitted.py").write_text("print('here')")
@@ -344,14 +283,12 @@ for name in os.listdir("/proc"):
 
 
 @pytest.mark.applies(os.geteuid() == 0, reason="only root is sure to get one")
-def test_a_submission_with_a_namespace_of_its_own_sees_no_server_but_itself(
-    tmp_path: Path,
-) -> None:
+def test_a_submission_with_a_namespace_of_its_own_sees_no_server_but_itself(tmp_path):
     # the namespace's first process, and itself: both are forks
     assert graded(REACHES, tmp_path).output == "1\n1\n"
 
 
-def test_no_thread_of_ours_stays_behind(tmp_path: Path) -> None:
+def test_no_thread_of_ours_stays_behind(tmp_path):
     graded("print(1)", tmp_path)
     before = threading.active_count()
     graded("print(1)", tmp_path)

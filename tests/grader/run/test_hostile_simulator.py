@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -61,7 +60,7 @@ def flags(recording: Recording) -> str:
 @pytest.mark.parametrize(
     "name", others_are_more("seconds each; one flood stands for them", ENDS, "floods_the_link")
 )
-def test_a_flood_ends_and_is_told(name: str) -> None:
+def test_a_flood_ends_and_is_told(name):
     outcomes, flag, limits = ENDS[name]
     recording = run(name, limits=limits)
     assert recording.run.outcome in outcomes
@@ -69,13 +68,13 @@ def test_a_flood_ends_and_is_told(name: str) -> None:
     assert len(recording.topics) <= 1_000
 
 
-def test_who_keeps_the_simulator_busy_is_told_so() -> None:
+def test_who_keeps_the_simulator_busy_is_told_so():
     recording = run("lets_no_time_pass", BUSY)
     assert recording.run.outcome == "killed"
     assert virtual_time.FLOODING.given(seconds="0") in recording.run.flags
 
 
-def test_values_of_unknown_types_are_refused() -> None:
+def test_values_of_unknown_types_are_refused():
     recording = run("sets_what_is_no_parameter")
     assert (recording.run.outcome, recording.run.exit_code) == ("finished", 0)
     # each parameter alone, and both at once; for two types
@@ -85,7 +84,7 @@ def test_values_of_unknown_types_are_refused() -> None:
 
 
 @pytest.mark.more("the clock of a run cannot be set either")
-def test_pictures_are_written_into_the_folder_of_the_run() -> None:
+def test_pictures_are_written_into_the_folder_of_the_run():
     recording = run("writes_pictures_elsewhere")
     # the folder is not set, and the picture is saved where it always is
     expected = [f"False True canvas_00{number}.png" for number in range(1, 6)]
@@ -95,7 +94,7 @@ def test_pictures_are_written_into_the_folder_of_the_run() -> None:
     assert "100 pictures" in flags(recording)
 
 
-def test_the_clock_of_a_run_cannot_be_stopped() -> None:
+def test_the_clock_of_a_run_cannot_be_stopped():
     recording = run("stops_the_clock")
     way = recording.trace.trajectory()
     # the watchdog strikes a second after the one command
@@ -105,13 +104,13 @@ def test_the_clock_of_a_run_cannot_be_stopped() -> None:
 
 
 @pytest.mark.more("four seconds; names are cut by the same allowance")
-def test_there_are_only_so_many_turtles() -> None:
+def test_there_are_only_so_many_turtles():
     recording = run("hatches_hundreds")
     assert recording.output.splitlines()[0] == str(MOST_TURTLES - 1)
     assert "turtles" in flags(recording)
 
 
-def test_names_are_cut() -> None:
+def test_names_are_cut():
     recording = run("names_of_megabytes")
     killed = recording.trace.of_kind(Kill)
     assert max(len(event.name) for event in killed) == LONGEST_NAME
@@ -147,9 +146,7 @@ def kill_when(monkeypatch: pytest.MonkeyPatch, has_met: bool, times: int) -> Non
     monkeypatch.setattr(virtual_time, "_watch", watch_and_kill)
 
 
-def test_a_simulator_that_is_killed_once_does_not_count(
-    short: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_simulator_that_is_killed_once_does_not_count(short, monkeypatch):
     undisturbed = runs.graded("styles/timer", short)
     kill_when(monkeypatch, has_met=True, times=1)
     result = grader.grade(SUBMISSIONS / "styles/timer.py", short)
@@ -158,8 +155,8 @@ def test_a_simulator_that_is_killed_once_does_not_count(
 
 
 def test_a_simulator_that_dies_twice_of_a_submission_is_no_failure_of_the_grader(
-    short: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+    short, monkeypatch, tmp_path
+):
     kill_when(monkeypatch, has_met=True, times=2)
     recordings = grader.record(SUBMISSIONS / "styles/timer.py", short)
     assert (recordings.nominal.run.outcome, recordings.nominal.run.ticks) == ("killed", 0)
@@ -171,9 +168,7 @@ def test_a_simulator_that_dies_twice_of_a_submission_is_no_failure_of_the_grader
     assert again.nominal.run == recordings.nominal.run
 
 
-def test_a_simulator_that_dies_before_anybody_has_spoken_is_the_graders_failure(
-    short: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_simulator_that_dies_before_anybody_has_spoken_is_the_graders_failure(short, monkeypatch):
     kill_when(monkeypatch, has_met=False, times=2)
     with pytest.raises(GraderFailure, match="the simulator"):
         grader.grade(SUBMISSIONS / "styles/timer.py", short)
@@ -182,9 +177,7 @@ def test_a_simulator_that_dies_before_anybody_has_spoken_is_the_graders_failure(
 @pytest.mark.parametrize(
     "time", ["virtual", pytest.param("real", marks=pytest.mark.more("two runs in real time"))]
 )
-def test_a_recording_that_cannot_be_read_is_as_good_as_none(
-    short: Any, monkeypatch: pytest.MonkeyPatch, time: Any
-) -> None:
+def test_a_recording_that_cannot_be_read_is_as_good_as_none(short, monkeypatch, time):
     short = replace(short, limits=Limits(0.2, 0.2, 5))
     still = runs.written("import rclpy\nrclpy.init()\nrclpy.create_node('still')\n")
 

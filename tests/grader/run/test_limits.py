@@ -7,7 +7,6 @@ import mmap
 import os
 import signal
 import threading
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -28,7 +27,7 @@ def apply(chosen: RunLimits = LIMITS, *, is_alone: bool = True) -> None:
         linux.lower_limit(*each)
 
 
-def test_private_memory() -> None:
+def test_private_memory():
     def act() -> str:
         apply(RunLimits(data_bytes=GIB // 2), is_alone=False)
         try:
@@ -40,7 +39,7 @@ def test_private_memory() -> None:
     assert in_child(act) == "refused"
 
 
-def test_shared_memory_counts_as_addresses() -> None:
+def test_shared_memory_counts_as_addresses():
     def act() -> list[int]:
         has = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
         apply(RunLimits(address_bytes=has + 2 * GIB), is_alone=False)
@@ -49,7 +48,7 @@ def test_shared_memory_counts_as_addresses() -> None:
     assert in_child(act) == [errno.ENOMEM, 0]
 
 
-def test_open_files() -> None:
+def test_open_files():
     def act() -> list[int]:
         apply(RunLimits(open_files=40), is_alone=False)
         kept: list[int] = []
@@ -60,7 +59,7 @@ def test_open_files() -> None:
     assert in_child(act) == [errno.EMFILE, True]
 
 
-def test_the_length_of_a_file(tmp_path: Path) -> None:
+def test_the_length_of_a_file(tmp_path):
     def act() -> list[int]:
         apply(RunLimits(file_bytes=MIB), is_alone=False)
         with (tmp_path / "file").open("wb", buffering=0) as file:
@@ -70,7 +69,7 @@ def test_the_length_of_a_file(tmp_path: Path) -> None:
     assert in_child(act) == [MIB, errno.EFBIG, errno.EFBIG]
 
 
-def test_processor_time() -> None:
+def test_processor_time():
     child = os.fork()
     if not child:
         apply(RunLimits(cpu_s=1))
@@ -111,7 +110,7 @@ def _start_threads(give_up_at: int) -> int:
 
 @pytest.mark.applies(os.getuid() == 0, reason="root alone can be a user without processes")
 @pytest.mark.parametrize("start", [_start_many, _start_threads])
-def test_processes_and_threads_count(start: Callable[[int], int]) -> None:
+def test_processes_and_threads_count(start):
     def act() -> int:
         apply(RunLimits(tasks=20))
         os.setresuid(*[NOBODYS_UID] * 3)
@@ -120,7 +119,7 @@ def test_processes_and_threads_count(start: Callable[[int], int]) -> None:
     assert in_child(act) == 19
 
 
-def test_a_user_with_other_processes_may_start_some_more() -> None:
+def test_a_user_with_other_processes_may_start_some_more():
     def act() -> list[int]:
         apply(RunLimits(tasks=200), is_alone=False)
         return [resource.getrlimit(resource.RLIMIT_NPROC)[0] > 200, _start_many(50)]
@@ -136,7 +135,7 @@ def _all_limits() -> dict[str, list[int]]:
     }
 
 
-def test_all_limits_are_hard_and_there_is_no_core_dump() -> None:
+def test_all_limits_are_hard_and_there_is_no_core_dump():
     def act() -> dict[str, list[int]]:
         apply()
         return _all_limits()
@@ -148,7 +147,7 @@ def test_all_limits_are_hard_and_there_is_no_core_dump() -> None:
     assert found["RLIMIT_STACK"] == [8 * MIB, 64 * MIB]
 
 
-def test_nothing_is_raised() -> None:
+def test_nothing_is_raised():
     lower = {"RLIMIT_CPU": [3, 4], "RLIMIT_NOFILE": [50, 60], "RLIMIT_DATA": [GIB, GIB]}
 
     def act() -> dict[str, list[int]]:
@@ -160,7 +159,7 @@ def test_nothing_is_raised() -> None:
     assert in_child(act) == lower
 
 
-def test_what_is_limited_cannot_raise_it_again() -> None:
+def test_what_is_limited_cannot_raise_it_again():
     def act() -> str:
         apply()
         if os.getuid() == 0:
@@ -174,10 +173,10 @@ def test_what_is_limited_cannot_raise_it_again() -> None:
     assert in_child(act) == "not allowed to raise maximum limit"
 
 
-def test_sizes_are_told_in_the_largest_unit_that_fits() -> None:
+def test_sizes_are_told_in_the_largest_unit_that_fits():
     told = [limits.size(number) for number in (2 * GIB, 64 * MIB, 3 * GIB // 2)]
     assert told == ["2 GiB", "64 MiB", "1536 MiB"]
 
 
-def test_shared_memory_is_as_large_with_a_root_of_its_own_as_without() -> None:
+def test_shared_memory_is_as_large_with_a_root_of_its_own_as_without():
     assert supervisor.SHARED_MEMORY.startswith(f"size={limits.SCRATCH['/dev/shm'][0]}m,")

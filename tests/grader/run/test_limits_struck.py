@@ -7,7 +7,6 @@ import pytest
 from grader.message import NOTHING, msg
 from grader.run.finish import limits_struck
 from grader.run.limits import LIMITS, size
-from tests.grader.run.conftest import Run
 from tests.tiers import others_are_more
 
 OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <module>\n'
@@ -18,7 +17,7 @@ by_the_guard = pytest.mark.more("test_limits_guard strikes these limits without 
 
 @by_the_guard
 @pytest.mark.parametrize("name", ["fills_memory", "fills_shared_memory"])
-def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> None:
+def test_memory_that_is_really_used_ends_the_run(recorded, name):
     run = recorded(f"limits/{name}").run
     said = f"used more than {size(LIMITS.family_bytes)} of memory"
     assert (run.outcome, run.exit_code) == ("killed", -9)
@@ -26,7 +25,7 @@ def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> No
 
 
 @pytest.mark.more("four seconds; a long output is read below")
-def test_an_output_without_end_ends_the_run(recorded: Run) -> None:
+def test_an_output_without_end_ends_the_run(recorded):
     run = recorded("limits/logs_a_flood").run
     assert run.outcome == "killed"
     said = f"printed more than {size(LIMITS.output_bytes)}"
@@ -41,7 +40,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", others_are_more("one is kept", REFUSED, "asks_for_memory"))
-def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> None:
+def test_what_is_refused_is_told_with_the_limit(recorded, name):
     run = recorded(f"limits/{name}").run
     assert run.outcome == "crashed"
     assert any(REFUSED[name] in str(flag) for flag in run.flags), run.flags
@@ -49,12 +48,12 @@ def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> Non
 
 @by_the_guard
 @pytest.mark.parametrize("name", ["starts_processes", "starts_threads"])
-def test_processes_and_threads_are_counted_together(recorded: Run, name: str) -> None:
+def test_processes_and_threads_are_counted_together(recorded, name):
     flags = recorded(f"limits/{name}").run.flags
     assert any(f"{LIMITS.tasks} processes and threads" in str(flag) for flag in flags), flags
 
 
-def test_of_a_long_output_the_middle_is_left_out_and_its_length_told(recorded: Run) -> None:
+def test_of_a_long_output_the_middle_is_left_out_and_its_length_told(recorded):
     recording = recorded("limits/prints_without_end")
     first, told, last = recording.output.partition("[... 19934464 bytes left out ...]")
     assert told
@@ -63,7 +62,7 @@ def test_of_a_long_output_the_middle_is_left_out_and_its_length_told(recorded: R
     assert recording.run.outcome == "exited"
 
 
-def test_what_was_seen_from_outside_goes_before_what_a_program_says() -> None:
+def test_what_was_seen_from_outside_goes_before_what_a_program_says():
     said, much = f"{OUTPUT}MemoryError\n", msg("the node used too much")
     assert limits_struck(1, said, much) == (much,)
     assert limits_struck(0, said, NOTHING) == ()
@@ -71,13 +70,13 @@ def test_what_was_seen_from_outside_goes_before_what_a_program_says() -> None:
     assert "MemoryError" in str(limits_struck(1, said, NOTHING)[0])
 
 
-def test_a_signal_that_the_kernel_sends_is_told() -> None:
+def test_a_signal_that_the_kernel_sends_is_told():
     assert "processor time" in str(limits_struck(-24, "", NOTHING)[0])
     assert "64 MiB" in str(limits_struck(-25, "", NOTHING)[0])
     assert limits_struck(-9, "", NOTHING) == ()
 
 
-def test_only_the_last_lines_are_looked_at_and_no_more_than_a_few() -> None:
+def test_only_the_last_lines_are_looked_at_and_no_more_than_a_few():
     assert limits_struck(1, "MemoryError\n" + "x\n" * 100, NOTHING) == ()
     assert limits_struck(1, "MemoryError\n" + "x" * 100_000, NOTHING) == ()
     assert limits_struck(1, "not a MemoryError\n", NOTHING) == ()

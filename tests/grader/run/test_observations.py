@@ -28,9 +28,7 @@ Recorded = Callable[..., Recording]
 PEN = "self.pen.call(SetPen.Request(r=255, width=3))"
 
 
-def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
-    recorded: Recorded,
-) -> None:
+def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(recorded):
     seen = recorded("observed/wrong_ends").observations
 
     def place(line: int, text: str) -> SourceLine:
@@ -56,12 +54,12 @@ def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
 
 
 @pytest.mark.more("the traces of two runs are compared elsewhere")
-def test_the_same_is_told_of_two_runs(recorded: Recorded) -> None:
+def test_the_same_is_told_of_two_runs(recorded):
     first, second = recorded("observed/wrong_ends"), recorded("observed/wrong_ends", 2)
     assert first.observations == second.observations
 
 
-def test_a_program_that_spins_once_and_is_through_tells_both(recorded: Recorded) -> None:
+def test_a_program_that_spins_once_and_is_through_tells_both(recorded):
     seen = recorded("observed/spins_once").observations
     assert (seen.is_known, seen.spun_s, seen.stop) == (True, 0.0, None)
     assert seen.returned_s < 0.1
@@ -81,9 +79,7 @@ STUCK = [
     ("name", "stop"),
     others_are_more("one of each kind is kept", STUCK, "never_spins", "spins_in_callback"),
 )
-def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(
-    recorded: Recorded, name: str, stop: tuple[str, float, str, int, str]
-) -> None:
+def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(recorded, name, stop):
     found = recorded(f"misbehaving/{name}").observations.stop
     assert (found.kind, found.time_s, found.call, found.place.line, found.place.text) == stop
 
@@ -97,9 +93,7 @@ def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(
         ("observed/says_goodbye", ("SystemExit", 0.0, 9, "leave")),
     ],
 )
-def test_what_ended_it_is_told_with_the_last_line_of_its_own(
-    recorded: Recorded, name: str, raised: tuple[str, float, int, str]
-) -> None:
+def test_what_ended_it_is_told_with_the_last_line_of_its_own(recorded, name, raised):
     seen = recorded(name).observations
     found = seen.raised
     assert (found.type, found.time_s, found.place.line, found.place.function) == raised
@@ -107,13 +101,13 @@ def test_what_ended_it_is_told_with_the_last_line_of_its_own(
     assert (found.text == "bye") == name.endswith("goodbye")
 
 
-def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded: Recorded) -> None:
+def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded):
     raised = recorded("observed/aborts").observations.raised
     place = SourceLine("aborts.py", 9, "crash", "ctypes.string_at(1)")
     assert (raised.type, raised.place) == ("SIGSEGV", place)
 
 
-def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
+def test_a_loop_without_end_is_told_by_its_line(recorded):
     place = SourceLine("busy_for_ever.py", 13, "", "while True:")
     stop = recorded("misbehaving/busy_for_ever").observations.stop
     assert stop == Standstill("loop", 0.096, "", place)
@@ -132,14 +126,14 @@ WAITS = [
     others_are_more("both are diagnosed", WAITS, "waits_for_an_answer"),
 )
 def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
-    recorded: Recorded, name: str, line: int, function: str, text: str
-) -> None:
+    recorded, name, line, function, text
+):
     seen = recorded(f"observed/{name}").observations
     place = SourceLine(f"{name}.py", line, function, text)
     assert seen.waits == (Wait("/set_pen", "turtlesim/srv/SetPen", 0.0, None, place),)
 
 
-def test_who_waits_for_messages_without_spinning_has_heard_them(recorded: Recorded) -> None:
+def test_who_waits_for_messages_without_spinning_has_heard_them(recorded):
     recording = recorded("observed/waits_for_message")
     ends = recording.observations.ends
     heard = [(end.name, end.used) for end in ends if end.kind == "subscription"]
@@ -147,15 +141,13 @@ def test_who_waits_for_messages_without_spinning_has_heard_them(recorded: Record
     assert standstill.never_spins(Case(recording)) is None
 
 
-def test_a_callback_that_sleeps_is_told_by_its_longest_line(recorded: Recorded) -> None:
+def test_a_callback_that_sleeps_is_told_by_its_longest_line(recorded):
     seen = recorded("observed/sleeps_in_callback").observations
     place = SourceLine("sleeps_in_callback.py", 12, "pause", "time.sleep(0.15)")
     assert seen.slow == (SlowCallback(place, 0.2, 10),)
 
 
-def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(
-    recorded: Recorded,
-) -> None:
+def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(recorded):
     seen = recorded("styles/timer").observations
     assert [(end.kind, end.name, end.is_met) for end in seen.ends] == [
         ("publisher", "/turtle1/cmd_vel", True),
@@ -174,7 +166,7 @@ def in_real_time(name: str) -> Observations:
     return runs.recorded(name, Plan(Limits(2, 0.2, 20)), time="real").observations
 
 
-def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:
+def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done():
     seen = in_real_time("misbehaving/raises_in_callback")
     assert seen.raised.place == SourceLine("raises_in_callback.py", 17, "on_pose", "print(pose.z)")
     assert [(end.kind, end.name, end.is_met) for end in seen.ends] == [
@@ -185,7 +177,7 @@ def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:
 
 
 @pytest.mark.more("the other one in real time is kept")
-def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end() -> None:
+def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end():
     seen = in_real_time("misbehaving/calls_in_callback")
     assert (seen.raised, seen.returned_s) == (None, None)
     assert (seen.stop.kind, seen.stop.call) == ("callback", "Client.call")
@@ -193,7 +185,7 @@ def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end() -> None
 
 
 @pytest.mark.more("two others tell so in real time, and this one in virtual time")
-def test_in_real_time_a_program_that_comes_to_its_end_tells_so() -> None:
+def test_in_real_time_a_program_that_comes_to_its_end_tells_so():
     seen = in_real_time("observed/spins_once")
     assert seen.returned_s is not None
     assert (seen.stop, seen.raised) == (None, None)
@@ -202,9 +194,7 @@ def test_in_real_time_a_program_that_comes_to_its_end_tells_so() -> None:
 # Numbers of the wrong type --------------------------------------------------------------------
 
 
-def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message(
-    recorded: Recorded,
-) -> None:
+def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message(recorded):
     recording = recorded("fields/wrong_colours")
     lines = recording.output.splitlines()
     assert lines[:5] == [
@@ -222,7 +212,7 @@ def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message
     assert [end.is_met for end in recording.observations.ends] == [True]
 
 
-def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Recorded) -> None:
+def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded):
     recording = recorded("fields/honest_numbers")
     assert recording.output == ""
     assert [command.linear[0] for command in recording.trace.of_kind(CmdVel)] == [1.0]
@@ -232,16 +222,14 @@ def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Record
 
 
 @pytest.mark.more("two runs that stall; one is above")
-def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded: Recorded) -> None:
+def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded):
     place = SourceLine("loops_for_ever.py", 21, "work", "while add(numbers) > 0:")
     for number in (1, 2):
         stop = recorded("observed/loops_for_ever", number).observations.stop
         assert stop == Standstill("loop", 0.096, "", place)
 
 
-def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_on(
-    recorded: Recorded,
-) -> None:
+def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_on(recorded):
     seen = recorded("observed/thread_dies").observations
     assert seen.raised.place == SourceLine("thread_dies.py", 11, "on_pose", "print(pose.z)")
     assert seen.raised.time_s < 0.1
@@ -249,12 +237,10 @@ def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_o
     assert recorded("observed/thread_dies").run.exit_code == 0
 
 
-def test_a_program_that_ends_without_a_word_has_told_that_it_was_there(recorded: Recorded) -> None:
+def test_a_program_that_ends_without_a_word_has_told_that_it_was_there(recorded):
     assert recorded("observed/leaves_without_a_word").observations == Observations(is_known=True)
 
 
-def test_a_slow_machine_does_not_cut_off_what_it_tells_when_the_run_is_over(
-    recorded: Recorded,
-) -> None:
+def test_a_slow_machine_does_not_cut_off_what_it_tells_when_the_run_is_over(recorded):
     (wait,) = recorded("observed/tells_slowly").observations.waits
     assert (wait.name, wait.lasted_s) == ("/set_pen", None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader.errors import SubmissionError
 from grader.exercise.building import NO_LIMITS
@@ -19,21 +20,8 @@ from tests.files import lay
 from tests.grader.submission.test_entry_points import SETUP, package
 from tests.tiers import others_are_more
 
-FORGES = """
-import os
-for number in range(3, 64):
-    try:
-        os.write(number, b'{"setup": null}')
-    except OSError:
-        pass
-for process in os.listdir("/proc"):
-    for number in range(3, 64):
-        try:
-            with open(f"/proc/{process}/fd/{number}", "wb") as file:
-                file.write(b"[]")
-        except OSError:
-            pass
-"""
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
+
 KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
 
 
@@ -59,7 +47,7 @@ def two(folder: Path, before: str) -> Path:
 
 #: What it does -> what it does it by.
 HOSTILE = [
-    ("writes wherever it can", FORGES),
+    ("writes wherever it can", TEXTS["forges"]),
     ("spoils the module json", "import json\njson.loads = json.dumps = None"),
     (
         "spoils the inspection",
@@ -75,20 +63,20 @@ HOSTILE = [
     ("does", "before"),
     others_are_more("two stand for the others", HOSTILE, HOSTILE[0][0], HOSTILE[2][0]),
 )
-def test_a_set_up_says_nothing_of_another_one(tmp_path: Path, does: str, before: str) -> None:
+def test_a_set_up_says_nothing_of_another_one(tmp_path, does, before):
     submission = found_in(two(tmp_path, before))
     assert submission.start == EntryPoint("second.turtle_controller", "main")
     assert str(submission.found) == "console script turtle_controller in second/setup.py"
 
 
-def test_a_set_up_that_kills_who_inspects_is_found_by_its_files(tmp_path: Path) -> None:
+def test_a_set_up_that_kills_who_inspects_is_found_by_its_files(tmp_path):
     submission = found_in(lay(tmp_path, with_set_up(KILLS)))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
     assert str(submission.notes[0]).startswith("the process that looked at the package left noth")
 
 
 @pytest.mark.more("it waits as long as the inspection does")
-def test_a_set_up_that_never_ends_is_ended_and_told(tmp_path: Path) -> None:
+def test_a_set_up_that_never_ends_is_ended_and_told(tmp_path):
     submission = found_in(lay(tmp_path, with_set_up("import time\ntime.sleep(1e6)")))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
     assert str(submission.notes[0]) == (
@@ -102,7 +90,7 @@ TARGETS = ("os:system", "json.tool:main", "..bob.node:main", "bob.node:main")
 @pytest.mark.parametrize(
     "target", others_are_more("as these", TARGETS, "os:system", "bob.node:main")
 )
-def test_a_script_that_is_claimed_is_none_of_another_place(tmp_path: Path, target: str) -> None:
+def test_a_script_that_is_claimed_is_none_of_another_place(tmp_path, target):
     lay(tmp_path, {"bob/node.py": "def main():\n    pass\n"})
     entries = repr(f"turtle_controller = {target}")
     setup = SETUP.format(package="spiral", entries=entries).replace(
@@ -112,14 +100,14 @@ def test_a_script_that_is_claimed_is_none_of_another_place(tmp_path: Path, targe
         found_in(lay(tmp_path / "spiral", package("spiral") | {"setup.py": setup}))
 
 
-def test_a_launch_file_says_nothing_of_set_ups(tmp_path: Path) -> None:
-    files = package("spiral") | {"launch/a.launch.py": FORGES}
+def test_a_launch_file_says_nothing_of_set_ups(tmp_path):
+    files = package("spiral") | {"launch/a.launch.py": TEXTS["forges"]}
     submission = found_in(lay(tmp_path, files))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
     assert "a.launch.py was not run, and what it starts cannot be read" in str(submission.notes[-1])
 
 
-def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path: Path) -> None:
+def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path):
     write = "import pathlib\npathlib.Path('spiral/turtle_controller.py').write_text('1 / 0')"
     with open_submission(lay(tmp_path, with_set_up(write))) as submission:
         read = (submission.root / "spiral/turtle_controller.py").read_text()
@@ -127,7 +115,7 @@ def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path: Path) -> Non
     assert "1 / 0" not in (tmp_path / "spiral/turtle_controller.py").read_text()
 
 
-def test_an_answer_about_other_folders_is_none(tmp_path: Path, monkeypatch) -> None:
+def test_an_answer_about_other_folders_is_none(tmp_path, monkeypatch):
     with open_submission(lay(tmp_path, package("spiral"))) as found:
         assert found.copy is not None
         whole = Submission("a", found.copy.folder, Whole(), "", copy=found.copy)
@@ -139,14 +127,14 @@ def test_an_answer_about_other_folders_is_none(tmp_path: Path, monkeypatch) -> N
         assert [(each.folder, each.told.name) for each in said.set_ups] == [(".", "")]
 
 
-def test_only_what_has_the_form_of_an_inspection_is_one() -> None:
+def test_only_what_has_the_form_of_an_inspection_is_one():
     assert decode(encode(Inspection())) == Inspection()
     for forged in (b"{}", b"[]", b'{"set_ups": []}', encode(Inspection())[:-1]):
         with pytest.raises(ValueError, match=r"."):
             decode(forged)
 
 
-def test_a_single_file_is_not_inspected(tmp_path: Path, monkeypatch) -> None:
+def test_a_single_file_is_not_inspected(tmp_path, monkeypatch):
     def fail(*_: object, **__: object) -> None:
         raise AssertionError
 
@@ -157,7 +145,7 @@ def test_a_single_file_is_not_inspected(tmp_path: Path, monkeypatch) -> None:
     assert start.path.name == "node.py"
 
 
-def test_one_look_serves_the_start_and_the_exercise(tmp_path: Path) -> None:
+def test_one_look_serves_the_start_and_the_exercise(tmp_path):
     lay(tmp_path, package("spiral"))
     with open_submission(tmp_path, inspections=()) as submission:
         assert submission.seen is not None

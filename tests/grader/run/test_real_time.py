@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader.recording.recording import Recording
 from grader.run import real_time
@@ -14,55 +15,27 @@ from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen
 
 PLAN = Plan(Limits(first_motion_s=5, rest_s=0.2, total_s=60))
-FILES = {
-    "commands_at_once": """
-import time
-START
-import rclpy
-from geometry_msgs.msg import Twist
-rclpy.init()
-publisher = rclpy.create_node("driver").create_publisher(Twist, "/turtle1/cmd_vel", 10)
-twist = Twist()
-twist.linear.x = 1.0
-publisher.publish(twist)
-time.sleep(60)
-""",
-    "calls_at_once": """
-import rclpy
-from turtlesim.srv import SetPen
-rclpy.init()
-node = rclpy.create_node("driver")
-pen = node.create_client(SetPen, "turtle1/set_pen")
-rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request(r=1, g=2, b=3, width=4)))
-""",
-}
-FILES["starts_late"] = FILES["commands_at_once"].replace("START", "time.sleep(5.1)")
-FILES["commands_at_once"] = FILES["commands_at_once"].replace("START", "")
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 
-def recorded(name: str) -> Recording:
-    path = runs.written(FILES[name], f"{name}.py")
-    return runs.recorded(path, PLAN, time="real")
+def recorded(name: str, later_s: float = 0.0) -> Recording:
+    text = f"import time; time.sleep({later_s})\n{TEXTS[name]}"
+    return runs.recorded(runs.written(text, f"{name}.py"), PLAN, time="real")
 
 
-@pytest.mark.parametrize(
-    "name",
-    others_are_more("it waits", ("commands_at_once", "starts_late"), "commands_at_once"),
-)
-def test_the_first_command_arrives(name: str) -> None:
-    recording = recorded(name)
+@pytest.mark.parametrize("later_s", others_are_more("it waits", (0.0, 5.1), 0.0))
+def test_the_first_command_arrives(later_s):
+    recording = recorded("commands_at_once", later_s)
     assert (recording.run.outcome, len(recording.trace.of_kind(CmdVel))) == ("finished", 1)
 
 
 @pytest.mark.more("the first command stands for it")
-def test_the_first_call_of_a_service_arrives() -> None:
+def test_the_first_call_of_a_service_arrives():
     assert len(recorded("calls_at_once").trace.of_kind(SetPen)) == 1
 
 
 @pytest.mark.more("it waits for a node")
-def test_without_a_node_the_clock_of_the_run_starts_as_well(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_a_node_the_clock_of_the_run_starts_as_well(tmp_path, monkeypatch):
     monkeypatch.setattr(real_time, "FIRST_NODE_S", 0.3)
     (tmp_path / "sleeps.py").write_text("import time; time.sleep(60)\n")
     plan = Plan(Limits(first_motion_s=0.3, rest_s=0.2, total_s=60))

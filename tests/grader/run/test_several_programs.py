@@ -57,7 +57,7 @@ def conversation() -> Recording:
     return recorded(LAUNCHED / "conversation", still)
 
 
-def test_both_nodes_run_with_what_the_launch_file_gives_them() -> None:
+def test_both_nodes_run_with_what_the_launch_file_gives_them():
     recording = recorded(LAUNCHED / "spiral")
     assert recording.run.flags == ()
     events = recording.trace.events
@@ -65,35 +65,31 @@ def test_both_nodes_run_with_what_the_launch_file_gives_them() -> None:
     assert {event.width for event in events if isinstance(event, SetPen)} == {5}
 
 
-def test_what_one_sends_the_other_hears_at_that_moment(conversation: Recording) -> None:
+def test_what_one_sends_the_other_hears_at_that_moment_and_who_comes_late_what_is_kept(
+    conversation,
+):
     times = [10_000_000 + second * 10**9 for second in range(4)]
     assert said(conversation, "listener-2")[1:] == [
         f"hello {100 * second} {time_ns}" for second, time_ns in enumerate(times)
     ]
-
-
-def test_one_waits_for_the_service_of_another(conversation: Recording) -> None:
-    assert said(conversation, "asker-3") == ["not yet", "0", "2", "4"]
-
-
-def test_who_comes_late_is_told_what_is_kept(conversation: Recording) -> None:
     assert said(conversation, "late-5")[1] == "first weather"
 
 
-def test_each_sees_those_that_are_there_and_no_more(conversation: Recording) -> None:
+def test_one_waits_for_the_service_of_another(conversation):
+    assert said(conversation, "asker-3") == ["not yet", "0", "2", "4"]
+
+
+def test_each_sees_those_that_are_there_and_draws_its_own_random_numbers(conversation):
     first, *_ = said(conversation, "listener-2")
     assert first == "['listener', 'talker', 'turtlesim'] 1"
-    assert said(conversation, "late-5")[0].startswith("False ")  # the asker has ended
-    there = ["adder", "dies", "late", "listener", "talker", "turtlesim"]
-    assert said(conversation, "dies-6")[1] == str(there)
+    is_asker_there, drawn = said(conversation, "late-5")[0].split()
+    assert is_asker_there == "False"  # it has ended
+    also_drawn, there = said(conversation, "dies-6")
+    assert there == str(["adder", "dies", "late", "listener", "talker", "turtlesim"])
+    assert drawn != also_drawn
 
 
-def test_each_draws_its_own_random_numbers(conversation: Recording) -> None:
-    late, dies = said(conversation, "late-5")[0].split()[1], said(conversation, "dies-6")[0]
-    assert late != dies
-
-
-def test_who_dies_ends_nobody_else_and_is_the_one_to_blame(conversation: Recording) -> None:
+def test_who_dies_ends_nobody_else_and_is_the_one_to_blame(conversation):
     assert (conversation.run.outcome, conversation.run.exit_code) == ("crashed", 3)
     assert len(said(conversation, "listener-2")) == 5
 
@@ -127,15 +123,13 @@ ORDERS = ("controller, idle", "idle, controller")
 
 
 @pytest.mark.parametrize("order", others_are_more("one of both", ORDERS, "idle, controller"))
-def test_beside_an_idle_one_a_program_does_what_it_does_alone(tmp_path: Path, order: str) -> None:
+def test_beside_an_idle_one_a_program_does_what_it_does_alone(tmp_path, order):
     folder = package(tmp_path, *order.split(", "))
     both, alone = recorded(folder), recorded(folder, executable="controller")
     assert both.run.trace_sha256 == alone.run.trace_sha256
 
 
-def test_who_computes_without_end_stalls_alone_and_the_first_that_failed_is_to_blame(
-    tmp_path: Path,
-) -> None:
+def test_who_computes_without_end_stalls_alone_and_the_first_that_failed_is_to_blame(tmp_path):
     folder = package(tmp_path, "raises", "computes", "drives")
     with open_submission(folder) as submission:
         recording = virtual_time.run(submission, PLAN, patience=Patience(stall_cpu_s=0.5))
@@ -145,7 +139,7 @@ def test_who_computes_without_end_stalls_alone_and_the_first_that_failed_is_to_b
     assert times_s[-1] > 5.5, times_s  # who drives goes on to the end
 
 
-def test_what_is_to_start_later_runs_from_then_on(tmp_path: Path) -> None:
+def test_what_is_to_start_later_runs_from_then_on(tmp_path):
     folder = package(tmp_path, "stamps", "drives", launch="later.launch.py")
     recording = recorded(folder)
     begin = float(said(recording, "stamps-1")[0])
@@ -153,7 +147,7 @@ def test_what_is_to_start_later_runs_from_then_on(tmp_path: Path) -> None:
     assert late == pytest.approx([1.25, 1.75, 2.25], abs=1e-3)
 
 
-def test_what_was_to_start_after_the_end_was_not_run(tmp_path: Path) -> None:
+def test_what_was_to_start_after_the_end_was_not_run(tmp_path):
     folder = package(tmp_path, "stamps", "drives", launch="later.launch.py")
     launch_file = folder / "launch/all.launch.py"
     launch_file.write_text(launch_file.read_text().replace("1.25", "60.0"))
@@ -163,7 +157,7 @@ def test_what_was_to_start_after_the_end_was_not_run(tmp_path: Path) -> None:
 
 
 @either_clock
-def test_each_program_is_in_the_result_with_how_it_has_ended(tmp_path: Path, clock: str) -> None:
+def test_each_program_is_in_the_result_with_how_it_has_ended(tmp_path, clock):
     folder = package(tmp_path, "raises", "stamps", "drives")
     run = recorded(folder, clock=clock).run
     ends = [(each.name, each.exit_code) for each in run.programs]
@@ -176,16 +170,14 @@ def test_each_program_is_in_the_result_with_how_it_has_ended(tmp_path: Path, clo
     assert len(run.programs[1].output.splitlines()) == 3
 
 
-def test_what_one_writes_the_others_find_as_at_a_desk(tmp_path: Path) -> None:
+def test_what_one_writes_the_others_find_as_at_a_desk(tmp_path):
     recording = recorded(package(tmp_path, "writes", "reads"))
     assert said(recording, "reads-2") == ["['house', 'house', 'house']", "True True"]
     assert said(recording, "writes-1") == ["True True"]
 
 
 @either_clock
-def test_what_waits_for_the_end_of_another_starts_then_or_was_not_run(
-    tmp_path: Path, clock: str
-) -> None:
+def test_what_waits_for_the_end_of_another_starts_then_or_was_not_run(tmp_path, clock):
     names = ("stamps", "drives", "raises")
     folder = package(tmp_path, *names, launch="after.launch.py", late=TEXTS["stamps"])
     recording = recorded(folder, clock=clock)
@@ -200,7 +192,7 @@ def test_what_waits_for_the_end_of_another_starts_then_or_was_not_run(
 
 
 @either_clock
-def test_what_is_to_be_started_again_is_at_its_end(tmp_path: Path, clock: str) -> None:
+def test_what_is_to_be_started_again_is_at_its_end(tmp_path, clock):
     folder = package(tmp_path, "drives", "stamps")
     launch_file = folder / "launch/all.launch.py"
     again = "executable=name, respawn=name == 'stamps', respawn_delay=0.25)"
@@ -216,7 +208,7 @@ def test_what_is_to_be_started_again_is_at_its_end(tmp_path: Path, clock: str) -
         assert begins == pytest.approx([0.0, 1.75, 3.5, 5.25], abs=0.01)
 
 
-def test_a_file_of_parameters_is_for_the_nodes_that_it_names(tmp_path: Path) -> None:
+def test_a_file_of_parameters_is_for_the_nodes_that_it_names(tmp_path):
     folder = package(tmp_path, "tells", other=TEXTS["tells"].replace('"drives"', '"other"'))
     share = 'FindPackageShare("company"), "/config/all.yaml"'
     node = f"executable=name, parameters=[[{share}], {{'own': '5'}}])"
@@ -228,7 +220,7 @@ def test_a_file_of_parameters_is_for_the_nodes_that_it_names(tmp_path: Path) -> 
     assert said(recording, "other-2") == ["other None map 5"]
 
 
-def test_a_script_of_its_own_is_started_by_its_path(tmp_path: Path) -> None:
+def test_a_script_of_its_own_is_started_by_its_path(tmp_path):
     folder = package(tmp_path, "drives")
     command = "['python3', HERE + '/prepare.py', '--map', HERE + '/package.xml']"
     also = f"for name in ['drives']] + [ExecuteProcess(cmd={command})]"
@@ -248,7 +240,7 @@ def test_a_script_of_its_own_is_started_by_its_path(tmp_path: Path) -> None:
 
 
 @pytest.mark.more("a run in each time")
-def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_path: Path) -> None:
+def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_path):
     folder = package(tmp_path, "drives", "starts")
     with open_submission(folder) as submission:
         run = virtual_time.run(submission, PLAN).run
@@ -260,7 +252,7 @@ def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_p
 
 @pytest.mark.more("tests/attacks run one of several at each level")
 @pytest.mark.parametrize("level", [LANDLOCK, LIMITS])
-def test_they_run_at_a_lower_level_of_isolation_too(level: str) -> None:
+def test_they_run_at_a_lower_level_of_isolation_too(level):
     levels.only(level)
     try:
         run = recorded(LAUNCHED / "spiral").run  # its launch file is evaluated at that level, too
@@ -271,13 +263,13 @@ def test_they_run_at_a_lower_level_of_isolation_too(level: str) -> None:
     assert [(each.outcome, each.exit_code) for each in run.programs] == [("time_limit", None)] * 2
 
 
-def test_a_program_alone_is_in_the_result_too() -> None:
+def test_a_program_alone_is_in_the_result_too():
     (program,) = runs.recorded("quick_spiral", Plan(conftest.LIMITS)).run.programs
     told = (program.name, program.package, program.executable)
     assert told == ("quick_spiral.py", "", "quick_spiral.py")
 
 
-def test_a_ninth_program_is_refused(tmp_path: Path) -> None:
+def test_a_ninth_program_is_refused(tmp_path):
     folder = package(tmp_path, **{f"idle{n}": TEXTS["idle"] for n in range(9)})
     with pytest.raises(SubmissionError, match=r"all.launch.py starts 9 programs; a run may have 8"):
         recorded(folder)

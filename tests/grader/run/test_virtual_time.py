@@ -33,21 +33,21 @@ DIFFERENT = "three as different as can be stand for the others"
 @pytest.mark.parametrize(
     "style", others_are_more(DIFFERENT, STYLES, "timer", "busy_polling", "multi_threaded")
 )
-def test_every_style_of_waiting_is_followed(recorded: Recorded, style: str) -> None:
+def test_every_style_of_waiting_is_followed(recorded, style):
     recording = recorded(f"styles/{style}")
     run = recording.run
     assert (run.time, run.outcome, run.flags) == ("virtual", "finished", ())
     assert len(recording.trace.of_kind(CmdVel)) > 10
 
 
-def test_a_file_that_python_cannot_read_is_run_in_virtual_time_and_is_no_fault_of_ours() -> None:
+def test_a_file_that_python_cannot_read_is_run_in_virtual_time_and_is_no_fault_of_ours():
     path = runs.written("import rclpy\ndef main(:\n    pass\n")
     run = runs.recorded(path, Plan(Limits(1, 1, 1))).run
     assert (run.time, run.outcome, run.flags) == ("virtual", "crashed", ())
 
 
 @pytest.mark.parametrize("style", others_are_more("one stands for them", TWICE, "multi_threaded"))
-def test_every_style_of_waiting_gives_the_same_run_twice(recorded: Recorded, style: str) -> None:
+def test_every_style_of_waiting_gives_the_same_run_twice(recorded, style):
     first, second = recorded(f"styles/{style}"), recorded(f"styles/{style}", 2)
     assert first.run.trace_sha256 == second.run.trace_sha256
     assert first.topics == second.topics
@@ -57,12 +57,12 @@ SAME = ("events_executor", "call_in_callback", "broadcasts_tf")
 
 
 @pytest.mark.parametrize("style", others_are_more("one stands for them", SAME, "broadcasts_tf"))
-def test_styles_that_mean_the_same_draw_the_same(recorded: Recorded, style: str) -> None:
+def test_styles_that_mean_the_same_draw_the_same(recorded, style):
     hashes = [recorded(f"styles/{name}").run.trace_sha256 for name in ("timer", style)]
     assert hashes[0] == hashes[1]
 
 
-def test_transforms_are_sent_heard_and_looked_up_in_virtual_time(recorded: Recorded) -> None:
+def test_transforms_are_sent_heard_and_looked_up_in_virtual_time(recorded):
     lines = recorded("styles/broadcasts_tf").output.splitlines()
     assert lines[0].startswith("carrot at ")
     assert "ExtrapolationException: Lookup would require extrapolation into the future." in lines[1]
@@ -73,16 +73,14 @@ SERVICES = ("all_services", "rotate", "graph")
 
 
 @pytest.mark.parametrize("name", others_are_more("actions stand for them", SERVICES, "rotate"))
-def test_what_services_actions_and_the_graph_tell_is_the_same_every_time(
-    recorded: Recorded, name: str
-) -> None:
+def test_what_services_actions_and_the_graph_tell_is_the_same_every_time(recorded, name):
     first, second = recorded(f"services/{name}"), recorded(f"services/{name}", 2)
     assert (first.run.exit_code, first.run.flags) == (0, ())
     assert first.output == second.output
     assert first.trace.events == second.trace.events
 
 
-def test_rotation_goals_end_as_in_the_original(recorded: Recorded) -> None:
+def test_rotation_goals_end_as_in_the_original(recorded):
     lines = recorded("services/rotate").output.splitlines()
     # 62 ticks of 0.016 rad from 0 towards 1.0, first feedback in the tick of acceptance
     assert lines[1].startswith("1.008 4 turtlesim.action.RotateAbsolute_Result(delta=-0.99199998")
@@ -90,16 +88,14 @@ def test_rotation_goals_end_as_in_the_original(recorded: Recorded) -> None:
     assert statuses == [4, 5, 6, 6, 4]  # succeeded, cancelled, aborted twice, succeeded
 
 
-def test_a_burst_of_commands_is_consumed_one_a_tick_and_only_the_last_seven(
-    recorded: Recorded,
-) -> None:
+def test_a_burst_of_commands_is_consumed_one_a_tick_and_only_the_last_seven(recorded):
     commands = recorded("services/burst").trace.of_kind(CmdVel)
     assert [(command.tick, command.linear[0]) for command in commands] == [
         (tick, tick + 13.0) for tick in range(1, 8)
     ]
 
 
-def test_a_run_may_start_elsewhere() -> None:
+def test_a_run_may_start_elsewhere():
     plan = Plan(Limits(3, 1, 60), Start(2.0, 3.0, 1.0))
     with open_submission(SUBMISSIONS / "misbehaving/exits.py") as submission:
         recording = virtual_time.run(submission, plan)
@@ -150,9 +146,7 @@ OF_EACH_END = (
 @pytest.mark.parametrize(
     "name", others_are_more("some of each end are kept", MISBEHAVIOUR, *OF_EACH_END)
 )
-def test_misbehaviour_ends_by_itself_and_is_named_and_shown_as_at_a_desk(
-    recorded: Recorded, name: str
-) -> None:
+def test_misbehaviour_ends_by_itself_and_is_named_and_shown_as_at_a_desk(recorded, name):
     outcome, exit_code, shown = MISBEHAVIOUR[name]
     recording = recorded(f"misbehaving/{name}")
     run = recording.run
@@ -164,16 +158,14 @@ def test_misbehaviour_ends_by_itself_and_is_named_and_shown_as_at_a_desk(
 
 
 @pytest.mark.applies(executor.known() is not None, reason="stands aside with other rclpy")
-def test_a_known_executor_waits_in_our_code(recorded: Recorded) -> None:
+def test_a_known_executor_waits_in_our_code(recorded):
     output = recorded("misbehaving/spins_in_callback").output
     assert "in wait_for_ready_callbacks" in output
     assert "in _wait_for_ready_callbacks" not in output
 
 
 @pytest.mark.more("a run in each time; test_faults tells whose an exception is")
-def test_a_mistake_of_ours_is_never_the_submission_s_even_where_that_catches_everything(
-    recorded: Recorded,
-) -> None:
+def test_a_mistake_of_ours_is_never_the_submission_s_even_where_that_catches_everything(recorded):
     recording = recorded("misbehaving/breaks_the_grader")
     assert recording.run.time == "real"
     assert re.fullmatch(
@@ -184,7 +176,7 @@ def test_a_mistake_of_ours_is_never_the_submission_s_even_where_that_catches_eve
     assert (recording.run.outcome, len(recording.trace.of_kind(CmdVel))) == ("finished", 2)
 
 
-def test_what_virtual_time_cannot_follow_runs_in_real_time(recorded: Recorded) -> None:
+def test_what_virtual_time_cannot_follow_runs_in_real_time(recorded):
     recording = recorded("misbehaving/starts_a_program")
     assert recording.run.time == "real"
     does = msg("starts another program ({program})", program="sleep")
@@ -192,7 +184,7 @@ def test_what_virtual_time_cannot_follow_runs_in_real_time(recorded: Recorded) -
     assert recording.run.flags == (msg("graded in real time, because {why}", why=why),)
 
 
-def test_who_waits_in_c_cannot_be_followed() -> None:
+def test_who_waits_in_c_cannot_be_followed():
     plan, patience = Plan(Limits(0.5, 0.5, 5)), Patience(asleep_s=0.2)
     with open_submission(SUBMISSIONS / "misbehaving/blocks_in_c.py") as submission:
         recording, why = virtual_time._try(submission, plan, patience, None)
@@ -200,19 +192,19 @@ def test_who_waits_in_c_cannot_be_followed() -> None:
     assert "waits for something outside of Python's and ROS's own waiting" in str(why)
 
 
-def test_who_stops_his_process_does_not_stop_the_grader(recorded: Recorded) -> None:
+def test_who_stops_his_process_does_not_stop_the_grader(recorded):
     run = recorded("misbehaving/stops_itself").run
     assert (run.time, run.outcome, run.flags) == ("virtual", "stalled", (virtual_time.STOPPED,))
 
 
 @pytest.mark.applies(hasattr(os, "sched_setaffinity"), reason="a process can choose its core")
-def test_all_threads_of_a_run_share_one_core(recorded: Recorded) -> None:
+def test_all_threads_of_a_run_share_one_core(recorded):
     recording = recorded("misbehaving/shows_its_cores")
     assert (recording.run.time, recording.run.exit_code) == ("virtual", 0)
     assert re.fullmatch(r"(\d+\n)(\1)+", recording.output)
 
 
-def test_who_lies_to_the_simulator_spoils_his_own_run(recorded: Recorded) -> None:
+def test_who_lies_to_the_simulator_spoils_his_own_run(recorded):
     recording = recorded("misbehaving/attacks_link")
     assert (recording.run.time, recording.run.outcome) == ("virtual", "killed")
     assert recording.run.flags == (msg("its process sent what only a simulator says"),)

@@ -38,13 +38,13 @@ def drawn() -> list[str]:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-def test_two_processes_draw_the_same_and_never_twice() -> None:
+def test_two_processes_draw_the_same_and_never_twice():
     first = drawn()
     assert first == drawn()
     assert [way for way, one, other in (line.split("\t") for line in first) if one == other] == []
 
 
-def test_two_runs_draw_the_same_and_end_where_they_wait_for_processor_time() -> None:
+def test_two_runs_draw_the_same_and_end_where_they_wait_for_processor_time():
     one, other = (runs.recorded("draws", PLAN, number=number) for number in (1, 2))
     assert one.output.splitlines()[-1].startswith("uid: (1000, 1000,")
     assert one.output == other.output

@@ -3,7 +3,6 @@
 import math
 import time
 from fractions import Fraction
-from typing import Any
 
 import pytest
 
@@ -24,7 +23,7 @@ def scheduler(monkeypatch: pytest.MonkeyPatch) -> Scheduler:
 
 @pytest.mark.usefixtures("scheduler")
 @pytest.mark.parametrize("seconds", [-1, -0.5, math.nan, math.inf, "1", None, [], 1j])
-def test_sleeping_wrongly_is_the_program_s_mistake_in_python_s_words(seconds: Any) -> None:
+def test_sleeping_wrongly_is_the_program_s_mistake_in_python_s_words(seconds):
     with pytest.raises((TypeError, ValueError, OverflowError)) as real:
         time.sleep(seconds)
     with pytest.raises(type(real.value)) as ours:
@@ -35,7 +34,7 @@ def test_sleeping_wrongly_is_the_program_s_mistake_in_python_s_words(seconds: An
 
 @pytest.mark.usefixtures("scheduler")
 @pytest.mark.parametrize(("seconds", "ns"), [(0, 0), (1, 10**9), (0.25, 250_000_000)])
-def test_sleeping_is_the_scheduler_s_work(seconds: float, ns: int) -> None:
+def test_sleeping_is_the_scheduler_s_work(seconds, ns):
     ASKED_NS.clear()
     time_and_chance._sleep(seconds)
     assert [ns] == ASKED_NS

@@ -27,12 +27,12 @@ def scheduler(monkeypatch: pytest.MonkeyPatch) -> Scheduler:
     return scheduler
 
 
-def test_sleeping_takes_virtual_time_only(scheduler: Scheduler) -> None:
+def test_sleeping_takes_virtual_time_only(scheduler):
     scheduler.sleep(10**18)
     assert scheduler.now_ns == 10**18
 
 
-def test_threads_run_in_turn_and_in_order(scheduler: Scheduler) -> None:
+def test_threads_run_in_turn_and_in_order(scheduler):
     ran = []
 
     def sleeper(name: str, duration_ns: int) -> None:
@@ -51,7 +51,7 @@ def test_threads_run_in_turn_and_in_order(scheduler: Scheduler) -> None:
     ]
 
 
-def test_a_lock_is_handed_over_in_the_order_of_asking(scheduler: Scheduler) -> None:
+def test_a_lock_is_handed_over_in_the_order_of_asking(scheduler):
     lock, got = Lock(), []
     lock.acquire()
 
@@ -68,7 +68,7 @@ def test_a_lock_is_handed_over_in_the_order_of_asking(scheduler: Scheduler) -> N
     assert got == ["a", "b", "c"]
 
 
-def test_waiting_for_a_lock_ends_with_its_time_out(scheduler: Scheduler) -> None:
+def test_waiting_for_a_lock_ends_with_its_time_out(scheduler):
     lock = Lock()
     lock.acquire()
     assert not lock.acquire(timeout=2.5)
@@ -76,7 +76,7 @@ def test_waiting_for_a_lock_ends_with_its_time_out(scheduler: Scheduler) -> None
     assert not lock.acquire(blocking=False)
 
 
-def test_a_lock_refuses_what_python_s_refuses(scheduler: Scheduler) -> None:
+def test_a_lock_refuses_what_python_s_refuses(scheduler):
     with pytest.raises(RuntimeError):
         Lock().release()
     with pytest.raises(ValueError):
@@ -85,13 +85,13 @@ def test_a_lock_refuses_what_python_s_refuses(scheduler: Scheduler) -> None:
         Lock().acquire(False, 1)
 
 
-def test_polling_costs_time(scheduler: Scheduler) -> None:
+def test_polling_costs_time(scheduler):
     for _ in range(UNITS_A_PAUSE):
         scheduler.charge()
     assert scheduler.now_ns == PAUSE_NS
 
 
-def test_polling_without_end_costs_more_and_more(scheduler: Scheduler) -> None:
+def test_polling_without_end_costs_more_and_more(scheduler):
     for _ in range(COARSER[-1][0] // UNITS_A_PAUSE + 1):
         scheduler.charge(UNITS_A_PAUSE)
     before_ns = scheduler.now_ns
@@ -99,7 +99,7 @@ def test_polling_without_end_costs_more_and_more(scheduler: Scheduler) -> None:
     assert scheduler.now_ns - before_ns == COARSER[-1][1] * PAUSE_NS
 
 
-def test_resting_pays_for_what_was_done(scheduler: Scheduler) -> None:
+def test_resting_pays_for_what_was_done(scheduler):
     for _ in range(100):
         scheduler.charge(UNITS_A_PAUSE - 1)
         scheduler.sleep(PAUSE_NS)

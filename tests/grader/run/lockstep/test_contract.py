@@ -26,7 +26,7 @@ from tests.tiers import others_are_more
 GROUPS = (contract.ENTITIES, contract.PROGRAM)
 
 
-def test_the_installed_rclpy_keeps_the_contract() -> None:
+def test_the_installed_rclpy_keeps_the_contract():
     assert contract.broken(*GROUPS) == NOTHING
 
 
@@ -54,9 +54,7 @@ def documented(doc: str) -> type:
         ),
     ],
 )
-def test_one_line_says_what_does_not_hold(
-    monkeypatch: pytest.MonkeyPatch, owner: Any, name: str, value: Any, line: str
-) -> None:
+def test_one_line_says_what_does_not_hold(monkeypatch, owner, name, value, line):
     if value is None:
         monkeypatch.delattr(owner, name)
     else:
@@ -65,9 +63,7 @@ def test_one_line_says_what_does_not_hold(
     assert str(found) == f"virtual time does not fit rclpy {system.rclpy_version()}: {line}"
 
 
-def test_what_constructors_get_beyond_the_known_is_no_breach(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_constructors_get_beyond_the_known_is_no_breach(monkeypatch):
     more = "__init__(self: Node, node: N, type: object, topic: str, qos: object, filter: object)"
     kind = documented(more + " -> None")
     for name in ("take_message", "get_publisher_count", "get_topic_name", "pointer"):
@@ -77,7 +73,7 @@ def test_what_constructors_get_beyond_the_known_is_no_breach(
     assert contract.broken(*GROUPS) == NOTHING
 
 
-def test_the_executor_s_inside_is_in_the_contract(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_executor_s_inside_is_in_the_contract(monkeypatch):
     def init(self: Any) -> None:
         self._pending_tasks = {}
 
@@ -117,8 +113,8 @@ SIDES = ("simulator.virtual", "virtual_main.py")
 
 @pytest.mark.parametrize("side", others_are_more("one side", SIDES, "simulator.virtual"))
 def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time(
-    changed_rclpy: Callable[[str, str], None], side: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    changed_rclpy, side, monkeypatch
+):
     changed_rclpy(side, "ClockType.STEADY_TIME")
     # a submission that is confined does not see the folder with the change
     monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))

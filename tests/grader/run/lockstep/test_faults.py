@@ -21,7 +21,7 @@ def break_ours() -> None:
     EndpointRegistry(lambda: 0).add_up(None)  # type: ignore[attr-defined]
 
 
-def test_an_exception_in_our_code_is_ours() -> None:
+def test_an_exception_in_our_code_is_ours():
     # a reader without anything in it
     assert faults.whose(raised(EndpointRegistry.remove, None, [object()])).startswith(
         "AttributeError in registry.py, line "
@@ -37,16 +37,12 @@ def test_an_exception_in_our_code_is_ours() -> None:
         (faults.as_python_does, (ValueError("sleep length must be non-negative"),)),
     ],
 )
-def test_what_the_program_caused_is_the_program_s(
-    function: Callable[..., Any], args: tuple[Any, ...]
-) -> None:
+def test_what_the_program_caused_is_the_program_s(function, args):
     assert faults.whose(raised(function, *args)) == ""
 
 
 @pytest.mark.parametrize("kind", [RecursionError, MemoryError])
-def test_running_out_of_something_is_nobody_s_line(
-    kind: type[Exception], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_running_out_of_something_is_nobody_s_line(kind, monkeypatch):
     def end(*_: object) -> None:
         raise kind
 
@@ -55,9 +51,7 @@ def test_running_out_of_something_is_nobody_s_line(
     assert faults.whose(raised(end)) == ""
 
 
-def test_a_fault_is_reported_before_the_program_can_catch_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_fault_is_reported_before_the_program_can_catch_it(monkeypatch):
     told: list[Message] = []
     monkeypatch.setattr(faults, "on_fault", told.append)
 
@@ -71,7 +65,7 @@ def test_a_fault_is_reported_before_the_program_can_catch_it(
     ]
 
 
-def test_tracebacks_go_without_our_frames_through_the_whole_chain() -> None:
+def test_tracebacks_go_without_our_frames_through_the_whole_chain():
     def program() -> None:
         try:
             faults.pass_on(int, "x")

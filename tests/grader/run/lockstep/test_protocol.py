@@ -34,7 +34,7 @@ REMARKS = TEXTS.map(plain_text) | st.builds(
 PARCELS = st.lists(st.builds(Parcel, U32, U32, U64, U64, st.binary(max_size=50)))
 
 
-def test_a_tick_is_as_long_as_the_world_s() -> None:
+def test_a_tick_is_as_long_as_the_world_s():
     assert TICK_NS == arena.TICK_NS
 
 
@@ -46,11 +46,11 @@ def test_a_tick_is_as_long_as_the_world_s() -> None:
         st.builds(Note, st.sampled_from(Kind), REMARKS),
     )
 )
-def test_packets_survive_the_link(packet: Advance | Mail | Reply | Note) -> None:
+def test_packets_survive_the_link(packet):
     assert decode(encode(packet)) == packet
 
 
-def test_tables_survive_the_link() -> None:
+def test_tables_survive_the_link():
     own = EndpointInfo("/a/talker", "topic /chatter", "std_msgs/msg/String", True, 1, 2, 0, 7)
     node = EndpointInfo("/", "node /a/talker", "", True, id=8)
     table = Table((own, own._replace(writes=False, is_hidden=True), node), (1, 2))
@@ -77,13 +77,13 @@ NO_TABLES = (
 )
 
 
-def test_names_that_ros_does_not_allow_are_no_table() -> None:
+def test_names_that_ros_does_not_allow_are_no_table():
     for data in NO_TABLES:
         with pytest.raises(ProtocolError):
             decode(data)
 
 
-def test_a_parcel_that_is_cut_off_is_a_protocol_error() -> None:
+def test_a_parcel_that_is_cut_off_is_a_protocol_error():
     with pytest.raises(ProtocolError):
         decode(encode(Mail([Parcel(1, 0, 1, 5, b"12345")]))[:-1])
 
@@ -101,12 +101,12 @@ def note(remark: object) -> bytes:
         {"key": "{a}", "values": {"a": {"key": "{b}"}}},
     ],
 )
-def test_a_remark_that_is_no_message_is_a_protocol_error(remark: object) -> None:
+def test_a_remark_that_is_no_message_is_a_protocol_error(remark):
     with pytest.raises(ProtocolError):
         decode(note(remark))
 
 
-def test_of_a_remark_that_somebody_has_made_up_so_much_is_taken_as_can_be_shown() -> None:
+def test_of_a_remark_that_somebody_has_made_up_so_much_is_taken_as_can_be_shown():
     made = {"key": "starts\x1b[2J {what}", "values": {"what": "a\n" + "b" * 3000}}
     packet = decode(note(made))
     assert isinstance(packet, Note)
@@ -114,6 +114,6 @@ def test_of_a_remark_that_somebody_has_made_up_so_much_is_taken_as_can_be_shown(
 
 
 @given(st.binary(max_size=200))
-def test_nonsense_is_a_protocol_error_and_nothing_else(data: bytes) -> None:
+def test_nonsense_is_a_protocol_error_and_nothing_else(data):
     with suppress(ProtocolError):
         decode(data)

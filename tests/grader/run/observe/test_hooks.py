@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
 
 import pytest
 import rclpy.action.client
@@ -21,12 +20,7 @@ from grader.run.observe.witness import Witness
         (hooks.install_actions, rclpy.action.client, "ActionClient"),
     ],
 )
-def test_of_an_unknown_rclpy_a_witness_says_that_it_is_blind(
-    monkeypatch: pytest.MonkeyPatch,
-    install: Callable[[Witness], None],
-    module: object,
-    name: str,
-) -> None:
+def test_of_an_unknown_rclpy_a_witness_says_that_it_is_blind(monkeypatch, install, module, name):
     monkeypatch.delattr(module, name)
     page = account.make()
     install(Witness(page, "/", lambda: 0.0, lambda kind, entity: lambda: False))

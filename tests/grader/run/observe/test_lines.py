@@ -3,34 +3,16 @@
 from __future__ import annotations
 
 import traceback
+from pathlib import Path
 
 import pytest
+import yaml
 
 from grader.run.observe import lines
 from grader.run.observe.files import SubmissionFiles
 from grader.run.observe.lines import LineMarks
 
-PROGRAM = """\
-from enum import Enum
-State = Enum("State", "IDLE GOING")
-
-class Node:
-    def __init__(self):
-        self.state = State.IDLE
-        self.x = 1.23456
-
-    def tick(self, most=3):
-        if self.state == "GOING" and self.x > most:
-            self.go()
-        try:
-            self.lost()
-        except AttributeError:
-            pass
-
-node = Node()
-for _ in range(3):
-    node.tick()
-"""
+PROGRAMS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 
 @pytest.fixture
@@ -38,7 +20,8 @@ def marks(tmp_path):
     return LineMarks(SubmissionFiles(str(tmp_path)))
 
 
-def run(marks, tmp_path, program=PROGRAM):
+def run(marks, tmp_path, name="drives"):
+    program = PROGRAMS[name]
     file = str(tmp_path / "drive.py")
     names = {"__name__": "drive"}
     exec(marks.marked(compile(program, file, "exec"), program, file), names)
@@ -66,59 +49,16 @@ def test_an_exception_that_the_program_catches_is_known_with_its_line(marks, tmp
 
 
 def test_a_value_is_looked_up_without_running_anything_of_the_program(marks, tmp_path):
-    program = """\
-class Odd:
-    @property
-    def x(self):
-        raise SystemExit("was run")
-    def __repr__(self):
-        raise SystemExit("was run")
-    __getattr__ = __str__ = __format__ = __repr__
-
-class Wrong(AttributeError):
-    __str__ = Odd.__repr__
-
-odd = Odd()
-def tick(odd):
-    if odd is odd.__class__ or odd is None:
-        pass
-    try:
-        raise Wrong()
-    except AttributeError:
-        pass
-    return 1 if 0 else 2
-tick(odd)
-"""
-    row, _ = run(marks, tmp_path, program)
+    row, _ = run(marks, tmp_path, "is_odd")
     assert [at["text"] for at in row["asked"]] == ["odd = <Odd>"]
     assert row["raised"] == []
 
 
 def test_a_program_is_the_same_with_marks_and_without(marks, tmp_path):
-    program = '''\
-"""What it does."""
-from __future__ import annotations
-
-def tick(n):
-    """Count."""
-    global last
-    last = n
-    if n > 2: return "many"
-    elif n > 1: return 1 / 0
-    else:
-        return f"{n=}"
-
-class C:
-    """A class."""
-    x: int = 3
-
-async def wait():
-    async with y: pass
-'''
     file = str(tmp_path / "drive.py")
     plain = {"__name__": "drive"}
-    exec(compile(program, file, "exec"), plain)
-    _, marked = run(marks, tmp_path, program)
+    exec(compile(PROGRAMS["is_of_all_kinds"], file, "exec"), plain)
+    _, marked = run(marks, tmp_path, "is_of_all_kinds")
     for names in (plain, marked):
         assert (names["tick"](1), names["tick"](3), names["last"]) == ("n=1", "many", 3)
         assert (names["__doc__"], names["tick"].__doc__) == ("What it does.", "Count.")

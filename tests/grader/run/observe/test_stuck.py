@@ -11,7 +11,7 @@ from grader.run.observe import stuck
 from grader.run.observe.files import Frame, SubmissionFiles
 
 
-def test_a_thread_that_is_stuck_is_shown_without_our_frames() -> None:
+def test_a_thread_that_is_stuck_is_shown_without_our_frames():
     frames = sys._current_frames()[threading.get_ident()]
     thread = [Frame(str(executor.__file__), 1, "ours"), *SubmissionFiles("/").stack(frames)]
     text = stuck.explain("callback", thread, 1.5)
@@ -21,7 +21,7 @@ def test_a_thread_that_is_stuck_is_shown_without_our_frames() -> None:
     assert "Do not wait in a callback" in text
 
 
-def test_executors_that_refuse_a_spin_within_a_spin_do_not_any_more(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_executors_that_refuse_a_spin_within_a_spin_do_not_any_more(monkeypatch):
     class Executor:
         _is_spinning = False
 
@@ -53,7 +53,7 @@ x = 2
 
 
 @pytest.mark.parametrize(("line", "found"), [(7, [3, 2]), (3, [3, 2]), (2, [2]), (8, []), (10, [])])
-def test_the_loops_round_a_line_are_found_by_indentation(line: int, found: list[int]) -> None:
+def test_the_loops_round_a_line_are_found_by_indentation(line, found):
     assert stuck.loops_around(NESTED, line) == found
 
 
@@ -83,8 +83,6 @@ def at(line: int, function: str = "drive") -> Frame:
         ([SLEEP], None),
     ],
 )
-def test_where_a_main_thread_is_at_the_end_is_told_unless_it_just_spins(
-    frames: list[Frame], found: tuple[str, int] | None
-) -> None:
+def test_where_a_main_thread_is_at_the_end_is_told_unless_it_just_spins(frames, found):
     at = stuck.standing(frames)
     assert (at and (at.kind, at.frame.line)) == found

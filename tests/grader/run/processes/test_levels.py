@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader import cli, scratch
 from grader.cli import run
@@ -25,6 +26,8 @@ from grader.run.sandbox import view
 from tests.children import in_child
 from tests.grader.run.processes.test_fork_server import COMMAND, ENV
 from tests.tiers import others_are_more
+
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 TESTS = Path(__file__).parents[3]
 WEAK = levels.Level("landlock", "same", {"namespaces": "mount: Operation not permitted"})
@@ -41,11 +44,11 @@ def weak(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(levels, "_least", "")
 
 
-def test_the_command_line_knows_the_same_levels() -> None:
+def test_the_command_line_knows_the_same_levels():
     assert run.LEVELS == levels.LEVELS
 
 
-def test_a_level_is_as_good_as_those_below() -> None:
+def test_a_level_is_as_good_as_those_below():
     for place, level in enumerate(levels.LEVELS):
         found = [each for each in levels.LEVELS if levels.Level(level).is_at_least(each)]
         assert found == list(levels.LEVELS[place:])
@@ -53,9 +56,7 @@ def test_a_level_is_as_good_as_those_below() -> None:
 
 
 @pytest.mark.usefixtures("weak")
-def test_less_than_is_required_is_refused_with_what_is_missing_and_how_to_get_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_less_than_is_required_is_refused_with_what_is_missing_and_how_to_get_it(tmp_path, capsys):
     (tmp_path / "node.py").write_text("open('ran', 'w')\n")
     code = cli.main(["run", str(tmp_path / "node.py"), "--isolation", "namespaces"])
     assert code == 2
@@ -68,7 +69,7 @@ def test_less_than_is_required_is_refused_with_what_is_missing_and_how_to_get_it
 
 
 @pytest.mark.usefixtures("weak")
-def test_what_is_there_is_enough() -> None:
+def test_what_is_there_is_enough():
     levels.require("landlock")
     levels.require("limits")
     with pytest.raises(UsageError):
@@ -76,7 +77,7 @@ def test_what_is_there_is_enough() -> None:
 
 
 @pytest.mark.usefixtures("weak")
-def test_no_run_is_made_below_what_was_required(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_run_is_made_below_what_was_required(monkeypatch):
     levels.require("landlock")
     there_is(levels.Level("limits"), monkeypatch)
     with (
@@ -106,7 +107,7 @@ def _without_descriptors(free: int) -> list[str]:
 
 
 @pytest.mark.parametrize("free", [0, 3])
-def test_a_lack_of_descriptors_lowers_no_level_and_is_not_remembered(free: int) -> None:
+def test_a_lack_of_descriptors_lowers_no_level_and_is_not_remembered(free):
     there = levels.here().level
     told, later = in_child(_without_descriptors, free)
     assert told.startswith(
@@ -116,9 +117,7 @@ def test_a_lack_of_descriptors_lowers_no_level_and_is_not_remembered(free: int) 
     assert later == there
 
 
-def test_a_slow_trial_lowers_no_level_and_is_not_remembered(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_slow_trial_lowers_no_level_and_is_not_remembered(monkeypatch):
     there = levels.here().level
     monkeypatch.setattr(levels, "_found", {})
     monkeypatch.setattr(refusal, "PAUSES_S", (0.0, 0.0))
@@ -128,22 +127,6 @@ def test_a_slow_trial_lowers_no_level_and_is_not_remembered(
         with pytest.raises(NotNow, match="in 3 tries: a trial took 0 s"):
             levels.here()
     assert levels.here().level == there
-
-
-#: Levels where the system refuses something, and what it says of namespaces, as JSON.
-TELLS = """
-import json, sys
-from grader.errors import GraderError
-from grader.run.processes import levels
-found = []
-for wanted in sys.argv[1:]:
-    try:
-        there = levels.here(wanted)
-        found.append([there.level, str(there.refused.get("namespaces", ""))])
-    except GraderError as error:
-        found.append([type(error).__name__, str(error)])
-print(json.dumps(found))
-"""
 
 
 REFUSED = [
@@ -161,10 +144,15 @@ REFUSED = [
 @pytest.mark.parametrize(
     ("refused", "level", "why"), others_are_more("test_refusal tells them apart", REFUSED, "mount")
 )
-def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(
-    refused: str, level: str, why: str
-) -> None:
-    words = [sys.executable, str(TESTS / "refusing.py"), refused, sys.executable, "-c", TELLS]
+def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(refused, level, why):
+    words = [
+        sys.executable,
+        str(TESTS / "refusing.py"),
+        refused,
+        sys.executable,
+        "-c",
+        TEXTS["tells"],
+    ]
     done = subprocess.run(
         [*words, "", "limits", "namespaces"],
         env={**os.environ, "PYTHONPATH": str(TESTS.parent)},
@@ -190,7 +178,7 @@ def warm(request: pytest.FixtureRequest) -> Iterator[ForkServer | None]:
 
 
 @pytest.mark.applies(os.geteuid() == 0, reason="others have no mounts of their own here")
-def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: ForkServer | None) -> None:
+def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm):
     order = {
         "level": "namespaces",
         "uid": 61184,
@@ -208,7 +196,7 @@ def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: ForkServe
     assert student.output() == ""
 
 
-def test_nothing_of_ours_is_shown_but_what_works_there(tmp_path: Path) -> None:
+def test_nothing_of_ours_is_shown_but_what_works_there(tmp_path):
     steps = view.steps(tmp_path, 61184)
     shown = {path for kind, path, *_ in steps if kind in ("bind", "copy")}
     assert [path for kind, path, *_ in steps if kind == "copy"] == [str(tmp_path)]
@@ -218,9 +206,7 @@ def test_nothing_of_ours_is_shown_but_what_works_there(tmp_path: Path) -> None:
     assert not {"/", ours, str(Path.home()), str(tmp_path.parent)} & shown
 
 
-def test_who_has_no_packages_of_his_own_is_confined_as_all_are(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_who_has_no_packages_of_his_own_is_confined_as_all_are(monkeypatch, tmp_path):
     monkeypatch.setattr(site, "ENABLE_USER_SITE", True)
     monkeypatch.setattr(site, "getusersitepackages", lambda: str(tmp_path / "missing"))
     assert str(tmp_path / "missing") not in view.import_path()

@@ -11,32 +11,23 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader import linux
 from grader.run.limits import MIB, RunLimits
 from grader.run.processes.limits_guard import Family, LimitsGuard
 
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
+
 TELLS_FILES = bool(Path("/proc/self/fd").stat().st_size)
 #: Only a failing test waits so long [s].
 DEADLINE_S = 30.0
-#: A child with 100 MiB and a thread, and two of its own that share these.
-FAMILY = """
-import os, sys, threading
-kept = b"x" * (100 << 20)
-threading.Thread(target=threading.Event().wait, daemon=True).start()
-for _ in range(2):
-    if not os.fork():
-        sys.stdin.read()
-        os._exit(0)
-print("ready", flush=True)
-sys.stdin.read()
-"""
 
 
 @contextmanager
 def family() -> Iterator[int]:
     with subprocess.Popen(
-        [sys.executable, "-W", "ignore", "-I", "-S", "-c", FAMILY],
+        [sys.executable, "-W", "ignore", "-I", "-S", "-c", TEXTS["family"]],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
     ) as child:
@@ -45,7 +36,7 @@ def family() -> Iterator[int]:
         yield child.pid
 
 
-def test_all_descendants_count_and_what_they_share_once() -> None:
+def test_all_descendants_count_and_what_they_share_once():
     found = Family(os.getpid())
     before = found.usage().tasks, found.private_memory_bytes()
     with family():
@@ -54,14 +45,12 @@ def test_all_descendants_count_and_what_they_share_once() -> None:
         assert 100 * MIB < found.private_memory_bytes() - before[1] < 150 * MIB
 
 
-def test_an_ancestor_does_not_count() -> None:
+def test_an_ancestor_does_not_count():
     with family() as child:
         assert Family(child).usage().tasks == 2
 
 
-def test_whose_parent_ends_during_a_look_is_found_by_the_next(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_whose_parent_ends_during_a_look_is_found_by_the_next(monkeypatch):
     """He has told of a parent that is not there any more, and has another one by now."""
     gone = 1 << 30
     look = linux.process_stat
@@ -78,7 +67,7 @@ def test_whose_parent_ends_during_a_look_is_found_by_the_next(
         assert found.usage().tasks == before + 4
 
 
-def test_a_process_that_does_not_exist_has_no_family() -> None:
+def test_a_process_that_does_not_exist_has_no_family():
     assert Family(1 << 30).usage() == (0, 0, 0, 0)
 
 
@@ -95,7 +84,7 @@ def test_a_process_that_does_not_exist_has_no_family() -> None:
         ),
     ],
 )
-def test_too_much_ends_them(limits: RunLimits, said: str) -> None:
+def test_too_much_ends_them(limits, said):
     ended = threading.Event()
     with family():
         guard = LimitsGuard(limits)
@@ -105,9 +94,7 @@ def test_too_much_ends_them(limits: RunLimits, said: str) -> None:
     assert said in str(guard.remark)
 
 
-def test_the_last_look_finds_what_came_after_the_one_before(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_last_look_finds_what_came_after_the_one_before(monkeypatch):
     monkeypatch.setattr("grader.run.processes.limits_guard.EVERY_S", DEADLINE_S)
     ended = threading.Event()
     with family():
@@ -118,7 +105,7 @@ def test_the_last_look_finds_what_came_after_the_one_before(
     assert "used more than 50 MiB of memory" in str(guard.remark)
 
 
-def test_the_last_look_lets_be_who_takes_little() -> None:
+def test_the_last_look_lets_be_who_takes_little():
     ended = threading.Event()
     with family():
         guard = LimitsGuard()

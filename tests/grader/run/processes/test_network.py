@@ -10,6 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader import scratch
 from grader.errors import NotNow
@@ -17,36 +18,20 @@ from grader.run.processes import network, refusal
 from grader.run.run_context import RunContext, open_context
 from tests.tiers import others_are_more
 
-#: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning
-#: up, as a killed run does.
-TALK = """
-import os, select, sys, time
-import rclpy
-from std_msgs.msg import String
-rclpy.init()
-node = rclpy.create_node(sys.argv[1])
-heard = []
-if sys.argv[1] == "talker":
-    publisher = node.create_publisher(String, "/x", 10)
-else:
-    node.create_subscription(String, "/x", lambda message: heard.append(message.data), 10)
-print("up", flush=True)
-until = time.monotonic() + float(sys.argv[2])
-while time.monotonic() < until and not heard:
-    rclpy.spin_once(node, timeout_sec=0.02)
-    if sys.argv[1] == "talker":
-        publisher.publish(String(data="hello"))
-        if select.select([0], [], [], 0)[0]:
-            break
-print(*heard, flush=True)
-print(sum("fastrtps" in line or "fastdds" in line
-          for line in open("/proc/self/maps") if "/dev/shm" in line), flush=True)
-os.kill(os.getpid(), 9)
-"""
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
+
 PIPES = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
 
 
 DOMAIN = "ROS domain"
+
+
+def is_private() -> bool:
+    """Whether a run has a network of its own here."""
+    namespaces = network.private_network()
+    for namespace in (namespaces or {}).values():
+        os.close(namespace)
+    return namespaces is not None
 
 
 @pytest.fixture(
@@ -56,7 +41,7 @@ def kind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str
     """How a run is kept apart."""
     if request.param == DOMAIN:
         monkeypatch.setattr(network, "_refused", {network._as_root, network._as_user})
-    return DOMAIN if network.private_network() is None else "private network"
+    return "private network" if is_private() else DOMAIN
 
 
 def inside(namespaces: Mapping[str, int]) -> list[str]:
@@ -66,11 +51,11 @@ def inside(namespaces: Mapping[str, int]) -> list[str]:
 
 
 def talk(context: RunContext, role: str, seconds: float) -> "subprocess.Popen[str]":
-    words = [*inside(context.namespaces), sys.executable, "-c", TALK, role, str(seconds)]
+    words = [*inside(context.namespaces), sys.executable, "-c", TEXTS["talk"], role, str(seconds)]
     return subprocess.Popen(words, env=dict(context.env), text=True, **PIPES)
 
 
-def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind: str) -> None:
+def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind):
     with ExitStack() as stack:
         ours, other = (stack.enter_context(open_context()) for _ in range(2))
         assert kind in ours.isolation
@@ -84,7 +69,7 @@ def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind: str) -> None:
 
 @pytest.mark.more("which of them there are depends on the machine")
 @pytest.mark.parametrize("way", [network._as_root, network._as_user])
-def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
+def test_both_ways_to_a_private_network(way, tmp_path):
     try:
         namespaces = way()
     except OSError:
@@ -105,8 +90,8 @@ def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
     [(errno.EPERM, [1, 0]), (errno.EMFILE, [refusal.TRIES, refusal.TRIES])],
 )
 def test_what_is_refused_for_good_is_not_asked_for_again_and_the_rest_is(
-    monkeypatch: pytest.MonkeyPatch, number: int, asked_for: list[int]
-) -> None:
+    monkeypatch, number, asked_for
+):
     asked = [0]
 
     def refuse() -> network.Namespaces:
@@ -130,35 +115,14 @@ def test_what_is_refused_for_good_is_not_asked_for_again_and_the_rest_is(
     assert all(text.endswith("unshare (net): Too many open files") for text in told)
 
 
-#: In a user namespace in which there may be so many networks, one of which is there already.
-FEW_NETWORKS = """
-import os, sys
-from pathlib import Path
-from grader.errors import NotNow
-from grader import linux
-from grader.run.processes import network, refusal
-refusal.PAUSES_S = (0.0, 0.0)
-user, group = os.getuid(), os.getgid()
-linux.unshare(linux.CLONE_NEWUSER)
-for name, text in ("setgroups", "deny"), ("uid_map", f"0 {user} 1"), ("gid_map", f"0 {group} 1"):
-    Path("/proc/self", name).write_text(text)
-linux.unshare(linux.CLONE_NEWNET)
-Path("/proc/sys/user/max_net_namespaces").write_text(sys.argv[1])
-try:
-    print(network.private_network())
-except NotNow as error:
-    print(error.message)
-"""
-
-
-@pytest.mark.applies(network.private_network() is not None, reason="networks are to be had")
+@pytest.mark.applies(is_private(), reason="networks are to be had")
 @pytest.mark.parametrize(
     ("most", "told"),
     [("0", "None"), ("1", "net): No space left on device"), ("9", "{'")],
 )
-def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most: str, told: str) -> None:
+def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most, told):
     done = subprocess.run(
-        [sys.executable, "-c", FEW_NETWORKS, most],
+        [sys.executable, "-c", TEXTS["few_networks"], most],
         env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[4])},
         capture_output=True,
         text=True,
@@ -167,7 +131,7 @@ def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most: str, told
     assert told in done.stdout, done.stdout + done.stderr
 
 
-def test_a_run_context_leaves_nothing(kind: str) -> None:
+def test_a_run_context_leaves_nothing(kind):
     fds = len(list(Path("/proc/self/fd").iterdir()))
     with open_context() as context:
         assert context.folder.is_dir()
@@ -175,7 +139,7 @@ def test_a_run_context_leaves_nothing(kind: str) -> None:
     assert len(list(Path("/proc/self/fd").iterdir())) == fds
 
 
-def test_runs_that_start_together_do_not_clear_each_other_away() -> None:
+def test_runs_that_start_together_do_not_clear_each_other_away():
     def make(_: int) -> bool:
         with scratch.make_folder() as path:
             (path / "tmp").mkdir()

@@ -2,7 +2,6 @@
 
 import errno
 import os
-from pathlib import Path
 
 import pytest
 
@@ -18,7 +17,7 @@ from grader.run.processes.refusal import Refusal
         *((n, False) for n in (errno.EMFILE, errno.ENOMEM, errno.ENOSPC, errno.ETIMEDOUT, 0)),
     ],
 )
-def test_an_error_is_for_good_or_not(number: int, is_final: bool) -> None:
+def test_an_error_is_for_good_or_not(number, is_final):
     assert Refusal(number, "mount", "?").is_final is is_final
 
 
@@ -33,8 +32,8 @@ def test_an_error_is_for_good_or_not(number: int, is_final: bool) -> None:
     ],
 )
 def test_no_room_for_a_namespace_is_for_good_where_there_may_be_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str, is_final: bool
-) -> None:
+    tmp_path, monkeypatch, step, is_final
+):
     monkeypatch.setattr(refusal, "MOST", str(tmp_path / "max_{kind}"))
     for kind, most in (("net", 0), ("mnt", 1), ("user", 1)):
         (tmp_path / f"max_{kind}").write_text(f"{most}\n")
@@ -51,7 +50,7 @@ def test_no_room_for_a_namespace_is_for_good_where_there_may_be_none(
         (OSError("odd"), "test_refusal._raise: odd"),
     ],
 )
-def test_an_error_comes_through_a_pipe_as_a_line(error: Exception, told: str) -> None:
+def test_an_error_comes_through_a_pipe_as_a_line(error, told):
     try:
         _raise(error)
     except Exception as raised:
@@ -67,7 +66,7 @@ def _raise(error: Exception) -> None:
 
 
 @pytest.mark.parametrize("line", ["", "nsenter: no", "1 no colon", "99999999999 a: b", "² a: b"])
-def test_any_other_line_is_what_it_says(line: str) -> None:
+def test_any_other_line_is_what_it_says(line):
     assert Refusal.from_line(line) == Refusal(0, "", line)
 
 
@@ -80,9 +79,7 @@ def test_any_other_line_is_what_it_says(line: str) -> None:
         ([errno.EMFILE] * 9, refusal.TRIES),
     ],
 )
-def test_what_may_pass_is_tried_again_a_few_times(
-    monkeypatch: pytest.MonkeyPatch, answers: list[int | None], tries: int
-) -> None:
+def test_what_may_pass_is_tried_again_a_few_times(monkeypatch, answers, tries):
     monkeypatch.setattr(refusal, "PAUSES_S", (0.0, 0.0))
     left = [None if n is None else Refusal(n, "x", os.strerror(n)) for n in answers]
     before = len(left)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+import yaml
 
 from grader import linux, scratch
 from grader.run.processes import supervisor
@@ -18,32 +19,11 @@ from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess, await_ends
 from tests.children import in_child
 
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
+
 ROOT = Path(__file__).parents[4]
 #: Stands before a command that is not to make namespaces.
 UNPRIVILEGED = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
-#: Starts a program that hides as well as it can, says its time, and ends or waits.
-HIDES = """
-import subprocess, sys, time
-subprocess.Popen(["sleep", sys.argv[1]], env={}, start_new_session=True)
-print("hidden", flush=True)
-time.sleep(float(sys.argv[2]))
-"""
-#: A grader with one submission, that says when both are up.
-GRADER = """
-import sys
-from grader.run.processes import started_process
-from grader.run.processes.fork_server_main import ProcessCommand
-from grader.run.run_context import open_context
-started_process.end_on_signals()
-with open_context() as context:
-    command = ProcessCommand([sys.executable, "-c", *sys.argv[1:]], context.env)
-    student = started_process.SubmissionProcess(command)
-    try:
-        print(student.pid, context.folder, flush=True)
-        student.wait(60.0)
-    finally:
-        student.end()
-"""
 
 
 def sleeper(seconds: int) -> list[psutil.Process]:
@@ -53,7 +33,7 @@ def sleeper(seconds: int) -> list[psutil.Process]:
 
 
 @pytest.mark.applies(os.geteuid() == 0, reason="only root is sure to get a namespace")
-def test_a_simulator_cannot_be_seen_by_a_submission_with_a_namespace_of_its_own() -> None:
+def test_a_simulator_cannot_be_seen_by_a_submission_with_a_namespace_of_its_own():
     words = [sys.executable, "-c", f"import os; os.kill({os.getpid()}, 0)"]
     student = SubmissionProcess(ProcessCommand(words, os.environ))
     assert student.wait(20.0) == 1
@@ -62,7 +42,7 @@ def test_a_simulator_cannot_be_seen_by_a_submission_with_a_namespace_of_its_own(
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_ends_a_grader_with_all_that_it_has(number: signal.Signals) -> None:
+def test_a_signal_ends_a_grader_with_all_that_it_has(number):
     grader, student, folder, seconds = graded(700 + number)
     grader.send_signal(number)
     grader.communicate(timeout=20)
@@ -72,7 +52,7 @@ def test_a_signal_ends_a_grader_with_all_that_it_has(number: signal.Signals) -> 
 
 
 @pytest.mark.parametrize("prefix", [(), UNPRIVILEGED])
-def test_a_killed_grader_takes_its_submission_along(prefix: tuple[str, ...]) -> None:
+def test_a_killed_grader_takes_its_submission_along(prefix):
     grader, _, folder, seconds = graded(774, prefix)
     family = psutil.Process(grader.pid).children(recursive=True)
     grader.kill()
@@ -89,7 +69,7 @@ def graded(
     """A grader in the middle of its work; its submission, its folder, its hidden sleeper."""
     seconds = number * 1000 + os.getpid() % 1000
     grader = subprocess.Popen(
-        [*prefix, sys.executable, "-c", GRADER, HIDES, str(seconds), "1000"],
+        [*prefix, sys.executable, "-c", TEXTS["grader"], TEXTS["hides"], str(seconds), "1000"],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,
@@ -117,7 +97,7 @@ def _walkers_are_ended() -> None:
         os.waitpid(-1, os.WNOHANG)
 
 
-def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
+def test_who_forks_and_ends_all_the_time_is_ended_as_well():
     in_child(_walkers_are_ended)
 
 
@@ -135,18 +115,18 @@ def _one_without_its_first_thread_is_ended() -> None:
 
 
 @pytest.mark.timeout(30)
-def test_who_looks_like_one_that_is_over_is_ended_as_well() -> None:
+def test_who_looks_like_one_that_is_over_is_ended_as_well():
     in_child(_one_without_its_first_thread_is_ended)
 
 
-def test_a_process_whose_end_nobody_has_asked_for_has_ended() -> None:
+def test_a_process_whose_end_nobody_has_asked_for_has_ended():
     # a long patience: it ends with the process and not with that
     with subprocess.Popen(["true"]) as child:
         os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
         assert not await_ends([psutil.Process(child.pid)], 1000.0)
 
 
-def test_what_it_held_is_given_back_at_its_end() -> None:
+def test_what_it_held_is_given_back_at_its_end():
     looks = """
 import gc, os, sys, threading
 from grader.run.processes.fork_server_main import ProcessCommand

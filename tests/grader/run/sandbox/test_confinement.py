@@ -19,10 +19,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from grader.run.processes import levels
 from grader.run.sandbox import landlock
 from tests.tiers import others_are_more
+
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 TESTS = Path(__file__).parents[3]
 ROOT = TESTS.parent
@@ -35,107 +38,6 @@ LEVELS = {
     "namespaces": levels.here().level == "namespaces",
     "landlock": landlock.abi() > 0,
 }
-#: Tries everything once, and says what came of it: "done", or the name of the error.
-TRIES = r"""
-import ctypes, errno, json, os, resource, signal, socket, sys
-told = json.loads(sys.argv[1])
-libc = ctypes.CDLL(None, use_errno=True)
-found = {}
-found["fds"] = [os.readlink("/proc/self/fd/%d" % n).partition(":")[0] for n in range(100)
-                if os.path.exists("/proc/self/fd/%d" % n)]
-
-def attempt(name, do):
-    try:
-        value = do()
-        found[name] = "done" if value is None else value
-    except OSError as error:
-        found[name] = errno.errorcode[error.errno]
-
-def call(function, *words):
-    words = [ctypes.c_long(w) if isinstance(w, int) else w for w in words]
-    if getattr(libc, function)(*words) < 0:
-        raise OSError(ctypes.get_errno(), "")
-
-def read(path):
-    open(path, "rb").read(1)
-
-def write(path, size=1):
-    with open(path, "ab") as file:
-        for _ in range(size):
-            file.write(bytes(1 << 20) if size > 1 else b"x")
-
-def connect(family, address):
-    with socket.socket(family, socket.SOCK_STREAM) as one:
-        one.connect(address)
-
-def udp():
-    one, other = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
-    one.bind(("127.0.0.1", 0))
-    other.sendto(b"x", one.getsockname())
-    one.settimeout(5)
-    one.recv(9)
-
-for name, path in told["paths"].items():
-    attempt("read " + name, lambda: read(path))
-    attempt("write " + name, lambda: write(path + ".new" if os.path.isfile(path) else path))
-attempt("list /", lambda: sorted(os.listdir("/")))
-attempt("list own", lambda: sorted(os.listdir(".")))
-grader = int(os.environ["GRADER"])
-attempt("pids", lambda: len([n for n in os.listdir("/proc") if n.isdigit()]))
-for name in ("mem", "environ", "maps", "fd", "cwd", "cmdline"):
-    for who, pid in (("grader", grader), ("parent", os.getppid()), ("outside", told["outside"])):
-        at = "/proc/%d/%s" % (pid, name)
-        attempt("%s of %s" % (name, who), lambda: os.listdir(at) and None if name == "fd"
-                else os.readlink(at) and None if name == "cwd" else read(at))
-attempt("signal grader", lambda: os.kill(grader, 0))
-attempt("signal outside", lambda: os.kill(told["outside"], 0))
-attempt("signal parent", lambda: os.kill(os.getppid() or grader, 0))
-attempt("ptrace", lambda: call("ptrace", 16, grader, 0, 0))
-attempt("read memory", lambda: call("process_vm_readv", grader, 0, 0, 0, 0, 0))
-attempt("umount /proc", lambda: call("umount2", b"/proc", 2))
-attempt("umount /tmp", lambda: call("umount2", b"/tmp", 2))
-attempt("mount", lambda: call("mount", b"none", b"/tmp", b"tmpfs", 0, b""))
-attempt("remount", lambda: call("mount", b"none", b"/", b"", 32 | 4096, b""))
-attempt("unshare", lambda: call("unshare", 0x10000000))
-attempt("setns", lambda: call("setns", os.open("/proc/self/ns/net", os.O_RDONLY), 0))
-attempt("chroot", lambda: os.chroot("."))
-attempt("setuid", lambda: os.setuid(0))
-attempt("packets", lambda: socket.socket(17, socket.SOCK_RAW).close())
-attempt("crypto", lambda: socket.socket(38, socket.SOCK_SEQPACKET).close())
-attempt("udp", udp)
-attempt("tcp outside", lambda: connect(socket.AF_INET, ("127.0.0.1", told["port"])))
-attempt("unix outside", lambda: connect(socket.AF_UNIX, told["socket"]))
-attempt("abstract outside", lambda: connect(socket.AF_UNIX, told["abstract"]))
-attempt("terminal", lambda: read("/dev/tty"))
-attempt("ptmx", lambda: read("/dev/ptmx"))
-tmp = os.environ["TMPDIR"]
-attempt("tmp", lambda: write(tmp + "/x"))
-attempt("null", lambda: write("/dev/null"))
-attempt("stderr", lambda: open("/dev/stderr", "w").close())
-attempt("tmp is empty", lambda: os.listdir(tmp) == ["x"])
-attempt("fill", lambda: write(tmp + "/y", 100))
-try:
-    os.remove(tmp + "/y")
-except OSError:
-    pass
-found["status"] = dict(line.split(":\t") for line in open("/proc/self/status").read().splitlines()
-                       if line.startswith(("Cap", "NoNew", "Seccomp:", "Groups", "Sig")))
-found["uid"] = [os.getuid(), os.geteuid(), os.getgid()]
-found["core"] = resource.getrlimit(resource.RLIMIT_CORE)
-found["group"] = os.getpgrp() == os.getpid()
-found["home"] = os.environ.get("HOME")
-print(json.dumps(found))
-"""
-#: Where nothing else would be refused, nothing else is tried: it would be done.
-LOOKS = r"""
-import json, os, resource, sys
-found = {"core": resource.getrlimit(resource.RLIMIT_CORE), "group": os.getpgrp() == os.getpid()}
-found["fds"] = [os.readlink("/proc/self/fd/%d" % n).partition(":")[0] for n in range(100)
-                if os.path.exists("/proc/self/fd/%d" % n)]
-found["status"] = dict(line.split(":\t") for line in open("/proc/self/status").read().splitlines()
-                       if line.startswith("NoNew"))
-print(json.dumps(found))
-"""
 
 
 @dataclass
@@ -172,8 +74,8 @@ def run() -> Iterator[Any]:
             (outer / name / "file.txt").write_text("x")
         for name in ("scratch", "neighbour", "home"):
             (outer / name).chmod(0o777)
-        (outer / "submission" / "tries.py").write_text(TRIES)
-        (outer / "submission" / "looks.py").write_text(LOOKS)
+        (outer / "submission" / "tries.py").write_text(TEXTS["tries"])
+        (outer / "submission" / "looks.py").write_text(TEXTS["looks"])
         listener = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
         by_path, abstract = (stack.enter_context(socket.socket(socket.AF_UNIX)) for _ in range(2))
         by_path.bind(str(outer / "socket"))
@@ -258,7 +160,7 @@ def tried(run: Any, user: str, level: str) -> Tried:
     return found
 
 
-def test_it_reads_python_and_what_was_handed_in_and_writes_one_folder(tried: Tried) -> None:
+def test_it_reads_python_and_what_was_handed_in_and_writes_one_folder(tried):
     tried.assert_done(
         *("read own", "write own", "write own folder"),
         *("read python", "read usr", "read host", "tmp", "null", "udp", "stderr"),
@@ -267,23 +169,23 @@ def test_it_reads_python_and_what_was_handed_in_and_writes_one_folder(tried: Tri
     assert tried.found["tmp is empty"] is (tried.level == "landlock")
 
 
-def test_it_reads_nothing_else(tried: Tried) -> None:
+def test_it_reads_nothing_else(tried):
     places = ("neighbour", "home", "exercise", "judge", "solution", "git", "passwords")
     tried.assert_refused(*(f"read {place}" for place in places))
     if tried.level == "namespaces":
         assert not {"home", "sys", "run", "var", "srv", "boot"} & set(tried.found["list /"])
 
 
-def test_it_writes_nothing_else(tried: Tried) -> None:
+def test_it_writes_nothing_else(tried):
     places = ("neighbour", "home", "usr", "python", "host", "kernel", "judge")
     tried.assert_refused(*(f"write {place}" for place in places))
 
 
-def test_what_it_can_write_has_an_end(tried: Tried) -> None:
+def test_what_it_can_write_has_an_end(tried):
     assert tried.found["fill"] == ("ENOSPC" if tried.level == "namespaces" else "EFBIG")
 
 
-def test_processes_outside_are_out_of_sight_and_reach(tried: Tried) -> None:
+def test_processes_outside_are_out_of_sight_and_reach(tried):
     for who in ("grader", "parent", "outside"):
         names = ("mem", "environ", "maps", "fd", "cwd", "cmdline")
         tried.assert_refused(*(f"{name} of {who}" for name in names))
@@ -295,17 +197,17 @@ def test_processes_outside_are_out_of_sight_and_reach(tried: Tried) -> None:
         tried.assert_refused("pids")
 
 
-def test_nothing_can_be_mounted_uncovered_or_entered(tried: Tried) -> None:
+def test_nothing_can_be_mounted_uncovered_or_entered(tried):
     tried.assert_refused("umount /proc", "umount /tmp", "mount", "remount")
     tried.assert_refused("unshare", "setns", "chroot")
 
 
-def test_no_socket_leads_out_and_there_is_no_terminal(tried: Tried) -> None:
+def test_no_socket_leads_out_and_there_is_no_terminal(tried):
     tried.assert_refused("packets", "crypto", "tcp outside", "unix outside", "abstract outside")
     tried.assert_refused("terminal", "ptmx")
 
 
-def test_it_has_no_privileges_and_gets_none(tried: Tried) -> None:
+def test_it_has_no_privileges_and_gets_none(tried):
     status = tried.found["status"]
     sets = ("CapInh", "CapPrm", "CapEff", "CapAmb")
     if tried.user != "user" or tried.level == "namespaces":
@@ -319,7 +221,7 @@ def test_it_has_no_privileges_and_gets_none(tried: Tried) -> None:
             assert status["Groups"].strip() == ""
 
 
-def test_nothing_is_inherited(tried: Tried) -> None:
+def test_nothing_is_inherited(tried):
     tried.assert_begun_anew()
     status = tried.found["status"]
     assert int(status["SigBlk"], 16) == 0
@@ -330,12 +232,12 @@ def test_nothing_is_inherited(tried: Tried) -> None:
 
 
 @pytest.mark.applies(LEVELS["namespaces"], reason="there is that level")
-def test_an_older_kernel_mounts_one_after_the_other(run: Any, user: str) -> None:
+def test_an_older_kernel_mounts_one_after_the_other(run, user):
     tried = run(user, "namespaces", "mount_setattr")
     test_it_reads_python_and_what_was_handed_in_and_writes_one_folder(tried)
     test_it_writes_nothing_else(tried)
 
 
-def test_limits_hold_without_anything_else(run: Any, user: str) -> None:
+def test_limits_hold_without_anything_else(run, user):
     tried = run(user, "limits")
     tried.assert_begun_anew()

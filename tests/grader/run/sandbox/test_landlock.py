@@ -50,7 +50,7 @@ def confined(places: Path, act: Callable[[Path], Any], max_abi: int = 1 << 16) -
 
 
 @needs(1)
-def test_files_are_read_where_that_is_allowed_only(places: Path) -> None:
+def test_files_are_read_where_that_is_allowed_only(places):
     (places / "read/link").symlink_to(places / "hidden/file")
 
     def act(at: Path) -> list[Any]:
@@ -74,7 +74,7 @@ def test_files_are_read_where_that_is_allowed_only(places: Path) -> None:
 
 
 @needs(1)
-def test_files_are_made_and_changed_where_writing_is_allowed_only(places: Path) -> None:
+def test_files_are_made_and_changed_where_writing_is_allowed_only(places):
     def act(at: Path) -> dict[str, list[int]]:
         return {
             name: [
@@ -101,7 +101,7 @@ def test_files_are_made_and_changed_where_writing_is_allowed_only(places: Path) 
 
 
 @needs(1)
-def test_a_socket_is_bound_where_writing_is_allowed_only(places: Path) -> None:
+def test_a_socket_is_bound_where_writing_is_allowed_only(places):
     def act(at: Path) -> list[int]:
         with socket.socket(socket.AF_UNIX) as one:
             return [error_of(one.bind, str(at / name / "socket")) for name in ("read", "write")]
@@ -111,7 +111,7 @@ def test_a_socket_is_bound_where_writing_is_allowed_only(places: Path) -> None:
 
 @needs(1)
 @pytest.mark.parametrize("kind", [stat.S_IFCHR, stat.S_IFBLK])
-def test_no_devices_are_made_by_root_either(places: Path, kind: int) -> None:
+def test_no_devices_are_made_by_root_either(places, kind):
     def act(at: Path) -> int:
         return error_of(os.mknod, at / "write/device", kind | 0o600, os.makedev(1, 3))
 
@@ -119,7 +119,7 @@ def test_no_devices_are_made_by_root_either(places: Path, kind: int) -> None:
 
 
 @needs(1)
-def test_programs_run_where_reading_is_allowed_only(places: Path) -> None:
+def test_programs_run_where_reading_is_allowed_only(places):
     for name in ("read", "hidden"):
         (places / name / "program").write_bytes(Path("/bin/true").read_bytes())
         (places / name / "program").chmod(0o755)
@@ -132,7 +132,7 @@ def test_programs_run_where_reading_is_allowed_only(places: Path) -> None:
 
 
 @needs(1)
-def test_a_single_file_can_be_allowed(places: Path) -> None:
+def test_a_single_file_can_be_allowed(places):
     def act() -> list[Any]:
         landlock.restrict([str(places / "read/file")], ["/dev/null", str(places / "write/file")])
         (places / "write/file").write_text("changed")
@@ -148,7 +148,7 @@ def test_a_single_file_can_be_allowed(places: Path) -> None:
 
 
 @needs(1)
-def test_what_is_open_stays_open_and_what_is_started_is_confined_too(places: Path) -> None:
+def test_what_is_open_stays_open_and_what_is_started_is_confined_too(places):
     file = os.open(places / "hidden/file", os.O_RDONLY)
 
     def act(at: Path) -> list[Any]:
@@ -163,7 +163,7 @@ def test_what_is_open_stays_open_and_what_is_started_is_confined_too(places: Pat
 
 
 @needs(1)
-def test_it_can_only_become_stricter(places: Path) -> None:
+def test_it_can_only_become_stricter(places):
     def act(at: Path) -> list[int]:
         landlock.restrict([str(at)], [str(at)])
         return [error_of((at / "hidden/file").read_text), error_of((at / "read/file").read_text)]
@@ -172,7 +172,7 @@ def test_it_can_only_become_stricter(places: Path) -> None:
 
 
 @needs(2)
-def test_files_move_between_folders_that_may_be_written(places: Path) -> None:
+def test_files_move_between_folders_that_may_be_written(places):
     def act(at: Path) -> int:
         return error_of(os.rename, at / "write/file", at / "write/sub/file")
 
@@ -181,7 +181,7 @@ def test_files_move_between_folders_that_may_be_written(places: Path) -> None:
 
 
 @needs(3)
-def test_no_file_is_truncated_from_afar(places: Path) -> None:
+def test_no_file_is_truncated_from_afar(places):
     def act(at: Path) -> list[int]:
         found = [error_of(os.truncate, at / name / "file", 0) for name in ("hidden", "read")]
         return [*found, error_of(os.truncate, at / "write/file", 0)]
@@ -200,7 +200,7 @@ def _asks_tcp(port: int) -> list[int]:
 
 
 @needs(4)
-def test_tcp_is_neither_called_nor_listened_to(places: Path) -> None:
+def test_tcp_is_neither_called_nor_listened_to(places):
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
         assert confined(places, lambda _: _asks_tcp(port)) == [EACCES, EACCES]
@@ -208,7 +208,7 @@ def test_tcp_is_neither_called_nor_listened_to(places: Path) -> None:
 
 
 @needs(4)
-def test_udp_goes_on_for_dds(places: Path) -> None:
+def test_udp_goes_on_for_dds(places):
     def act(_: Path) -> int:
         with socket.socket(type=socket.SOCK_DGRAM) as one:
             one.bind(("127.0.0.1", 0))
@@ -218,7 +218,7 @@ def test_udp_goes_on_for_dds(places: Path) -> None:
 
 
 @needs(5)
-def test_devices_take_no_commands(places: Path) -> None:
+def test_devices_take_no_commands(places):
     def act(max_abi: int) -> int:
         landlock.restrict(["/dev/urandom"], [], max_abi=max_abi)
         with Path("/dev/urandom").open("rb") as device:
@@ -228,7 +228,7 @@ def test_devices_take_no_commands(places: Path) -> None:
 
 
 @needs(6)
-def test_signals_stay_inside(places: Path) -> None:
+def test_signals_stay_inside(places):
     def act(_: Path) -> list[int]:
         own = subprocess.Popen(["/bin/sleep", "60"])
         os.kill(own.pid, signal.SIGKILL)
@@ -239,7 +239,7 @@ def test_signals_stay_inside(places: Path) -> None:
 
 
 @needs(6)
-def test_abstract_sockets_of_others_are_out_of_reach(places: Path) -> None:
+def test_abstract_sockets_of_others_are_out_of_reach(places):
     name = f"\0turtlesim-{os.getpid()}"
 
     def act(_: Path) -> int:
@@ -253,5 +253,5 @@ def test_abstract_sockets_of_others_are_out_of_reach(places: Path) -> None:
         assert confined(places, act, max_abi=5) == 0
 
 
-def test_where_there_is_none_it_is_told() -> None:
+def test_where_there_is_none_it_is_told():
     assert error_of(lambda: landlock.restrict([], [], max_abi=0)) == errno.ENOSYS

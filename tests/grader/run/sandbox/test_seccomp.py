@@ -16,9 +16,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from grader.run.sandbox import seccomp
 from tests.children import NOBODYS_UID, error_of, in_child
+
+TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 needs_seccomp = pytest.mark.applies(seccomp.is_there(), reason="there are filters of system calls")
 ROOT = Path(__file__).parents[4]
@@ -97,7 +100,7 @@ def every_number(machine: str) -> dict[str, int]:
 
 
 @pytest.mark.more("the headers of the kernel are not everywhere; every call is made below")
-def test_numbers_are_those_of_the_kernels_headers(machine: str) -> None:
+def test_numbers_are_those_of_the_kernels_headers(machine):
     if not HEADERS[machine].exists():
         pytest.skip("no headers of the kernel here")
     found = re.findall(r"^#define __NR(?:3264)?_(\w+) (\d+)$", HEADERS[machine].read_text(), re.M)
@@ -107,26 +110,26 @@ def test_numbers_are_those_of_the_kernels_headers(machine: str) -> None:
     assert len(both) > 50
 
 
-def test_no_number_stands_for_two_calls(machine: str) -> None:
+def test_no_number_stands_for_two_calls(machine):
     numbers = list(every_number(machine).values())
     assert len(numbers) == len(set(numbers))
 
 
-def test_a_listed_call_is_refused_whatever_its_arguments(machine: str) -> None:
+def test_a_listed_call_is_refused_whatever_its_arguments(machine):
     place = seccomp.MACHINES[machine][0]
     for numbers in (each for group in seccomp.REFUSED.values() for each in group.values()):
         if numbers[place] is not None:
             assert answer(machine, numbers[place], 1, 2, 3) == EPERM
 
 
-def test_whose_files_are_in_sight_are_not_opened_to_others(machine: str, apart: bool) -> None:
+def test_whose_files_are_in_sight_are_not_opened_to_others(machine, apart):
     place = seccomp.MACHINES[machine][0]
     for numbers in seccomp.OF_FILES.values():
         if numbers[place] is not None:
             assert answer(machine, numbers[place], apart=apart) == (0 if apart else EPERM)
 
 
-def test_calls_of_other_machines_and_later_kernels_are_unknown(machine: str) -> None:
+def test_calls_of_other_machines_and_later_kernels_are_unknown(machine):
     i386, x32_bit = 0x40000003, 0x40000000
     assert answer(machine, 1, arch=i386) == ENOSYS
     assert answer(machine, x32_bit | 101) == ENOSYS
@@ -139,7 +142,7 @@ def test_calls_of_other_machines_and_later_kernels_are_unknown(machine: str) -> 
     assert answer(machine, x32_bit | seccomp.FCNTL[place], 3, seccomp.F_SETLEASE) == ENOSYS
 
 
-def test_threads_and_processes_are_made_but_no_namespaces(machine: str) -> None:
+def test_threads_and_processes_are_made_but_no_namespaces(machine):
     number = seccomp.CLONE[seccomp.MACHINES[machine][0]]
     assert answer(machine, number, CLONE_THREAD_OF_GLIBC) == 0
     assert answer(machine, number, signal.SIGCHLD) == 0
@@ -147,7 +150,7 @@ def test_threads_and_processes_are_made_but_no_namespaces(machine: str) -> None:
         assert answer(machine, number, 1 << bit | signal.SIGCHLD) == EPERM
 
 
-def test_nothing_is_typed_into_a_terminal(machine: str) -> None:
+def test_nothing_is_typed_into_a_terminal(machine):
     number = seccomp.IOCTL[seccomp.MACHINES[machine][0]]
     fionread, tiocgwinsz = 0x541B, 0x5413
     assert [answer(machine, number, 0, request) for request in (fionread, tiocgwinsz)] == [0, 0]
@@ -156,7 +159,7 @@ def test_nothing_is_typed_into_a_terminal(machine: str) -> None:
         assert answer(machine, number, 0, 1 << 32 | request) == EPERM  # the kernel sees 32 bits
 
 
-def test_nobody_waits_for_a_file_or_is_told_of_it(machine: str, apart: bool) -> None:
+def test_nobody_waits_for_a_file_or_is_told_of_it(machine, apart):
     number = seccomp.FCNTL[seccomp.MACHINES[machine][0]]
     f_setfl, f_setlk, f_getlease, f_dupfd_cloexec = 4, 6, 1025, 1030
     for command in (f_setfl, f_setlk, f_getlease, f_dupfd_cloexec):
@@ -166,7 +169,7 @@ def test_nobody_waits_for_a_file_or_is_told_of_it(machine: str, apart: bool) -> 
         assert answer(machine, number, 3, 1 << 32 | command, apart=apart) == EPERM
 
 
-def test_limits_and_priorities_are_the_callers_own(machine: str) -> None:
+def test_limits_and_priorities_are_the_callers_own(machine):
     place = seccomp.MACHINES[machine][0]
     for numbers in (seccomp.PRLIMIT64, *seccomp.OF_A_PROCESS.values()):
         assert answer(machine, numbers[place], 0, 7) == 0
@@ -183,7 +186,7 @@ def test_limits_and_priorities_are_the_callers_own(machine: str) -> None:
     assert answer(machine, number, 0, idle) == 0
 
 
-def test_sockets_are_those_of_dds(machine: str, apart: bool) -> None:
+def test_sockets_are_those_of_dds(machine, apart):
     def ask(*words: int) -> int:
         number = seccomp.SOCKET[seccomp.MACHINES[machine][0]]
         return answer(machine, number, *words, apart=apart)
@@ -204,7 +207,7 @@ def test_sockets_are_those_of_dds(machine: str, apart: bool) -> None:
         assert ask(family, STREAM, 0) == EAFNOSUPPORT
 
 
-def test_a_pair_of_sockets_leads_nowhere_else(machine: str, apart: bool) -> None:
+def test_a_pair_of_sockets_leads_nowhere_else(machine, apart):
     def ask(*words: int) -> int:
         number = seccomp.SOCKETPAIR[seccomp.MACHINES[machine][0]]
         return answer(machine, number, *words, apart=apart)
@@ -234,7 +237,7 @@ def _call_each(numbers: dict[str, int]) -> dict[str, int]:
 
 
 @needs_seccomp
-def test_the_kernel_refuses_every_listed_call() -> None:
+def test_the_kernel_refuses_every_listed_call():
     place = seccomp.MACHINES[os.uname().machine][0]
     numbers = {
         name: number
@@ -280,7 +283,7 @@ def _at_work(apart: bool) -> dict[str, Any]:
 
 
 @needs_seccomp
-def test_a_process_goes_on_without_what_is_refused(apart: bool) -> None:
+def test_a_process_goes_on_without_what_is_refused(apart):
     elsewhere = 0 if apart else EAFNOSUPPORT
     assert in_child(_at_work, apart) == {
         "unshare": [-1, EPERM],
@@ -315,11 +318,11 @@ def _threads_before() -> list[int]:
 
 
 @needs_seccomp
-def test_threads_that_were_there_have_it_too() -> None:
+def test_threads_that_were_there_have_it_too():
     assert in_child(_threads_before) == [EAFNOSUPPORT]
 
 
-def test_a_machine_that_is_not_known_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_machine_that_is_not_known_is_told(monkeypatch):
     known = os.uname()
     other = os.uname_result((*known[:4], "riscv64"))
     monkeypatch.setattr(os, "uname", lambda: other)
@@ -330,37 +333,9 @@ def test_a_machine_that_is_not_known_is_told(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @needs_seccomp
-def test_a_node_publishes_to_itself(apart: bool) -> None:
-    code = NODE.format(root=str(ROOT), apart=apart)
+def test_a_node_publishes_to_itself(apart):
+    code = TEXTS["node"].format(root=str(ROOT), apart=apart)
     env = {**os.environ, "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
     words = [sys.executable, "-c", code]
     ended = subprocess.run(words, env=env, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "heard\n", "")
-
-
-NODE = """
-import sys
-sys.path.insert(0, {root!r})
-from grader import linux
-from grader.run import limits
-from grader.run.sandbox import seccomp
-seccomp.install(is_apart={apart})
-for limit in limits.rlimits(is_alone=False):
-    linux.lower_limit(*limit)
-import rclpy
-from rclpy.executors import MultiThreadedExecutor
-from std_msgs.msg import Empty
-
-rclpy.init()
-node = rclpy.create_node("alone")
-executor = MultiThreadedExecutor(8)
-executor.add_node(node)
-heard = rclpy.task.Future()
-node.create_subscription(Empty, "echo", heard.set_result, 1)
-publisher = node.create_publisher(Empty, "echo", 1)
-node.create_timer(0.01, lambda: publisher.publish(Empty()))
-executor.spin_until_future_complete(heard, timeout_sec=20)
-executor.shutdown()
-print("heard" if heard.done() else "nothing")
-rclpy.shutdown()
-"""

@@ -13,9 +13,7 @@ def endpoints() -> SimulatorEndpoints:
     return SimulatorEndpoints(lambda: 0, lambda remark: None)
 
 
-def test_what_a_program_has_is_known_until_it_says_that_it_is_gone(
-    endpoints: SimulatorEndpoints,
-) -> None:
+def test_what_a_program_has_is_known_until_it_says_that_it_is_gone(endpoints):
     endpoints.note(Table((TALKS,)))
     assert endpoints.published == {"/chatter": "std_msgs/msg/String"}
     assert [each.node for each in endpoints.theirs] == ["/a"]
@@ -24,9 +22,7 @@ def test_what_a_program_has_is_known_until_it_says_that_it_is_gone(
     assert endpoints.published == {"/chatter": "std_msgs/msg/String"}
 
 
-def test_a_writer_is_heard_by_readers_of_its_type_whose_quality_of_service_fits(
-    endpoints: SimulatorEndpoints,
-) -> None:
+def test_a_writer_is_heard_by_readers_of_its_type_whose_quality_of_service_fits(endpoints):
     writer = Writer(TALKS.channel, TALKS.type, QoSProfile(depth=10))
     endpoints.add(writer)
     hears = TALKS._replace(writes=False)
@@ -49,8 +45,6 @@ def test_a_writer_is_heard_by_readers_of_its_type_whose_quality_of_service_fits(
     ],
     ids=["the simulator's", "another program's", "removes ours", "no reliability", "too many"],
 )
-def test_what_no_program_of_ours_says_of_its_endpoints_is_refused(
-    endpoints: SimulatorEndpoints, table: Table
-) -> None:
+def test_what_no_program_of_ours_says_of_its_endpoints_is_refused(endpoints, table):
     with pytest.raises(ValueError, match=r"."):
         endpoints.note(table)

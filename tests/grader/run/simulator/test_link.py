@@ -68,14 +68,14 @@ def mailbox(heard: StudentLink, theirs: socket.socket) -> socket.socket:
 @pytest.mark.parametrize(
     "data", [b"?", b"A", b"T{}", encode(Reply(0, State.OVER, 0)), b"\xff" * 1000]
 )
-def test_nonsense_ends_the_conversation(listen: Listen, theirs: socket.socket, data: bytes) -> None:
+def test_nonsense_ends_the_conversation(listen, theirs, data):
     heard = listen()
     theirs.send(data)
     assert heard.receive() is None
     assert (heard.silence, len(heard.flags)) == ("broken", 1)
 
 
-def test_requests_come_through_and_notes_are_kept(listen: Listen, theirs: socket.socket) -> None:
+def test_requests_come_through_and_notes_are_kept(listen, theirs):
     heard = listen()
     for packet in (Note(Kind.STUCK), ADVANCE):
         theirs.send(encode(packet))
@@ -83,16 +83,14 @@ def test_requests_come_through_and_notes_are_kept(listen: Listen, theirs: socket
     assert heard.waits == "stuck"
 
 
-def test_a_million_remarks_are_few_flags(listen: Listen) -> None:
+def test_a_million_remarks_are_few_flags(listen):
     heard = listen()
     for number in range(100):
         heard.flag(f"remark {number}")
     assert len(heard.flags) == link.MOST_FLAGS
 
 
-def test_what_a_dead_process_has_mailed_and_reached_is_known(
-    listen: Listen, theirs: socket.socket
-) -> None:
+def test_what_a_dead_process_has_mailed_and_reached_is_known(listen, theirs):
     page = account.make()
     heard = listen(page=page)
     parcels = [Parcel(3, 0, number, 7, b"command") for number in range(5)]
@@ -107,7 +105,7 @@ def test_what_a_dead_process_has_mailed_and_reached_is_known(
     os.close(page)
 
 
-def test_nonsense_in_the_mail_ends_the_conversation(listen: Listen, theirs: socket.socket) -> None:
+def test_nonsense_in_the_mail_ends_the_conversation(listen, theirs):
     heard = listen()
     with mailbox(heard, theirs) as mail:
         mail.send(b"?")
@@ -117,9 +115,7 @@ def test_nonsense_in_the_mail_ends_the_conversation(listen: Listen, theirs: sock
     heard.mailbox.close()
 
 
-def test_a_run_that_uses_up_its_processor_time_is_slow(
-    listen: Listen, theirs: socket.socket, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_uses_up_its_processor_time_is_slow(listen, theirs, monkeypatch):
     monkeypatch.setattr(link, "CPU_CHECK_S", 0.0)
     heard = listen(run_cpu_s=0.0)
     theirs.send(encode(ADVANCE))
@@ -129,12 +125,8 @@ def test_a_run_that_uses_up_its_processor_time_is_slow(
 
 @pytest.mark.parametrize(("excused_cpu_s", "silence"), [(0.0, "flooding"), (60.0, "")])
 def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing(
-    listen: Listen,
-    theirs: socket.socket,
-    monkeypatch: pytest.MonkeyPatch,
-    excused_cpu_s: float,
-    silence: str,
-) -> None:
+    listen, theirs, monkeypatch, excused_cpu_s, silence
+):
     monkeypatch.setattr(link, "CPU_CHECK_S", 0.0)
     # of this process, whose pid stands for the submission's, nothing is limited
     heard = listen(run_cpu_s=math.inf, simulator_cpu_s=30.0)
@@ -154,8 +146,8 @@ def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing
     ],
 )
 def test_what_is_not_supported_is_refused_and_what_fails_does_not_name_the_submission(
-    listen: Listen, theirs: socket.socket, kind: Kind, remark: str, told: str
-) -> None:
+    listen, theirs, kind, remark, told
+):
     theirs.send(encode(Note(kind, plain_text(remark))))
     with pytest.raises(Refused, match=told):
         listen().receive()
@@ -179,12 +171,8 @@ NAPS = "import time\nwhile True:\n time.sleep(0.1)\n for _ in range(10_000): pas
     ],
 )
 def test_a_silent_process_is_waited_for_by_what_it_does(
-    listen: Listen,
-    words: tuple[str, ...],
-    is_stopped: bool,
-    patience: dict[str, float],
-    silence: str,
-) -> None:
+    listen, words, is_stopped, patience, silence
+):
     with subprocess.Popen(words) as process:
         if is_stopped:
             process.send_signal(signal.SIGSTOP)
@@ -198,9 +186,7 @@ def test_a_silent_process_is_waited_for_by_what_it_does(
     assert found == silence
 
 
-def test_a_process_that_has_ended_is_gone_although_a_descendant_holds_the_link(
-    listen: Listen,
-) -> None:
+def test_a_process_that_has_ended_is_gone_although_a_descendant_holds_the_link(listen):
     with subprocess.Popen(["true"]) as process:
         os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
         heard = listen(process.pid, asleep_s=1000.0)

@@ -61,13 +61,13 @@ def patched(clock: types.SimpleNamespace, connected_s: float) -> type:
     ("name", "waited_s"), [("/turtle1/cmd_vel", 8), ("/turtle/cmd_vel", 4), ("/other", 0)]
 )
 def test_a_name_that_is_there_is_waited_for_longer_than_one_that_may_be_wrong(
-    clock: types.SimpleNamespace, name: str, waited_s: float
-) -> None:
+    clock, name, waited_s
+):
     patched(clock, connected_s=8.0)().create_publisher(object, name)
     assert clock.now_s == pytest.approx(waited_s, abs=0.1)
 
 
-def test_names_that_may_be_wrong_are_waited_for_together(clock: types.SimpleNamespace) -> None:
+def test_names_that_may_be_wrong_are_waited_for_together(clock):
     node = patched(clock, connected_s=1000.0)()
     for _ in range(10):
         node.create_publisher(object, "/turtle/cmd_vel")
@@ -85,21 +85,21 @@ def start(
 
 
 @pytest.mark.parametrize("name", ["says", "Node.main"])
-def test_a_program_gets_its_arguments_and_finds_nothing_of_ours(tmp_path: Path, name: str) -> None:
+def test_a_program_gets_its_arguments_and_finds_nothing_of_ours(tmp_path, name):
     run = start(tmp_path, name, "--ros-args", "-r", "__ns:=/a")
     assert run.returncode == 0, run.stderr
     said = "arguments: ['--ros-args', '-r', '__ns:=/a'] [True, False, False, False]"
     assert run.stdout.splitlines() == [said]
 
 
-def test_one_that_fails_is_told_without_our_lines(tmp_path: Path) -> None:
+def test_one_that_fails_is_told_without_our_lines(tmp_path):
     run = start(tmp_path, "fails")
     assert run.returncode == 1
     assert "RuntimeError: broken" in run.stderr
     assert MAIN not in run.stderr
 
 
-def test_a_module_that_is_not_the_submission_s_is_named(tmp_path: Path) -> None:
+def test_a_module_that_is_not_the_submission_s_is_named(tmp_path):
     run = start(tmp_path, "says", module="signal")
     assert run.returncode == 1
     assert "'signal' is also the name of a module" in run.stderr
