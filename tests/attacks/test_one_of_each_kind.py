@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import pwd
 import socket
 import subprocess
 import sys
@@ -75,7 +74,6 @@ def test_it_gains_nothing(name, tmp_path, listeners):
         **{"HOME": str(home), "TEMP": "/tmp", "UID": os.getuid(), "ADDRESS": "127.0.0.1"},
         **{"TCP": listeners["TCP"].getsockname()[1], "UDP": 9, "UNIX": str(home / "none")},
         "ABSTRACT": listeners["ABSTRACT"].getsockname()[1:].decode(),
-        "USER": pwd.getpwuid(os.getuid()).pw_name,
     }
     submission = getattr(handed_in, attack.make)(tmp_path / "attacker", attack.program, known)
     words = ["run", submission, "--exercise", tmp_path / "exercise.yaml", "--out", out]

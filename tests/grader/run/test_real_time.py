@@ -14,13 +14,14 @@ from tests import runs
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen
 
-PLAN = Plan(Limits(first_motion_s=5, rest_s=0.2, total_s=60))
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 
 def recorded(name: str, later_s: float = 0.0) -> Recording:
+    """A submission that begins later than the time in which it has to move."""
     text = f"import time; time.sleep({later_s})\n{TEXTS[name]}"
-    return runs.recorded(runs.written(text, f"{name}.py"), PLAN, time="real")
+    plan = Plan(Limits(first_motion_s=later_s or 30, rest_s=0.2, total_s=60))
+    return runs.recorded(runs.written(text, f"{name}.py"), plan, time="real")
 
 
 @pytest.mark.parametrize("later_s", others_are_more("it waits", (0.0, 5.1), 0.0))
