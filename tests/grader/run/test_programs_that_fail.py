@@ -13,6 +13,7 @@ from tests.grader.run.test_several_programs import TEXTS, package
 from turtlesim_py.world.events import CmdVel
 
 PLAN = Plan(Limits(first_motion_s=20, rest_s=20, total_s=4))
+PATIENCE = Patience(start_cpu_s=2.0, stall_cpu_s=0.5)
 STAGES = ["AT_IMPORT", "AT_CONSTRUCTOR", "AT_SPIN", "IN_CALLBACK", "WHILE_ASKED"]
 #: What the program does -> the outcomes that it may have.
 FATES = {
@@ -37,7 +38,7 @@ def test_the_others_go_on_and_it_is_to_blame(tmp_path, fate, stage):
         text = text.replace(other, "pass" if other != "AT_IMPORT" else "")
     folder = package(tmp_path, "asks", victim=text, drives=TEXTS["drives"])
     with open_submission(folder) as submission:
-        recording = virtual_time.run(submission, PLAN, patience=Patience(stall_cpu_s=0.5))
+        recording = virtual_time.run(submission, PLAN, patience=PATIENCE)
     run = recording.run
     assert run.time == "virtual", run.flags
     asks, victim, drives = run.programs
