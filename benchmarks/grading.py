@@ -29,7 +29,7 @@ import grader  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
 from grader.testing.solutions import read_solutions  # noqa: E402
 from tests.attacks.attacks import ATTACKS  # noqa: E402
-from tests.submissions.beginners import CHANGED, changed  # noqa: E402
+from tests.hand_ins import SUBMISSIONS, read  # noqa: E402
 
 REFERENCE = ROOT / "turtlesim_challenge" / "turtle_controller.py"
 JOBS = 2
@@ -76,11 +76,19 @@ def programs() -> list[str]:
     chance = random.Random(1)
     right = [each.text() for each in read_solutions(load_exercise("turtlesim_challenge"))]
     # except those that use a minute of a processor each
-    mistakes = [n for n in sorted(CHANGED) if not n.startswith(("loops", "floods"))]
+    mistakes = [
+        name
+        for name, row in sorted(read("first_lines").items())
+        if {"says", "replace"} <= set(row) and not name.startswith(("loops", "floods"))
+    ]
+    texts = SUBMISSIONS / "first_lines"
     return [
         *(right[0] for _ in range(RIGHT // 2)),
         *chance.sample(right, RIGHT - RIGHT // 2),
-        *(changed(name) for name in chance.sample(mistakes, MISTAKEN)),
+        *(
+            (texts / f"{name}.py").read_text(encoding="utf-8")
+            for name in chance.sample(mistakes, MISTAKEN)
+        ),
         *(ATTACKS[name].program for name in HOSTILE),
         NO_PROGRAM,
     ]

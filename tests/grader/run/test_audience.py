@@ -12,7 +12,7 @@ from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
 from grader.scenes.turtlesim.live import TurtlesimPage
 from tests.grader.run.conftest import LIMITS
-from tests.runs import SUBMISSIONS
+from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more
 from turtlesim_py.live.feed import News
 from turtlesim_py.world import picture

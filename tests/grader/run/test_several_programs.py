@@ -19,7 +19,7 @@ from grader.scenes.scene import Limits
 from tests import runs
 from tests.files import lay
 from tests.grader.run import conftest
-from tests.runs import SUBMISSIONS
+from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen
 

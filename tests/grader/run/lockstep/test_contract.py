@@ -20,7 +20,7 @@ from grader.run.lockstep import contract
 from grader.run.opening import open_submission
 from grader.run.processes import levels
 from grader.scenes.scene import Limits
-from tests.runs import SUBMISSIONS
+from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more
 
 GROUPS = (contract.ENTITIES, contract.PROGRAM)
