@@ -18,16 +18,14 @@ TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 
 def recorded(name: str, later_s: float = 0.0) -> Recording:
-    """A submission that begins later than the time in which it has to move."""
     text = f"import time; time.sleep({later_s})\n{TEXTS[name]}"
-    plan = Plan(Limits(first_motion_s=later_s or 30, rest_s=0.2, total_s=60))
+    plan = Plan(Limits(first_motion_s=5, rest_s=0.2, total_s=60))
     return runs.recorded(runs.written(text, f"{name}.py"), plan, time="real")
 
 
 @pytest.mark.parametrize("later_s", others_are_more("it waits", (0.0, 5.1), 0.0))
 def test_the_first_command_arrives(later_s):
-    recording = recorded("commands_at_once", later_s)
-    assert (recording.run.outcome, len(recording.trace.of_kind(CmdVel))) == ("finished", 1)
+    assert len(recorded("commands_at_once", later_s).trace.of_kind(CmdVel)) == 1
 
 
 @pytest.mark.more("the first command stands for it")
