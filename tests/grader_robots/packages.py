@@ -15,9 +15,10 @@ from unittest.mock import patch
 
 from grader.exercise.loading import load_exercise
 from grader.inspection import inspector
+from grader.inspection.answer import Inspection, decode
 from grader.inspection.examining import steps
 from grader.inspection.examining.main import inspect
-from grader.inspection.trace import PackageTrace, decode, encode
+from grader.inspection.trace import PackageTrace, encode
 from grader.recording.recording import Recording, Recordings, Run
 from grader.testing.solutions import read_solutions
 from tests import apart, once
@@ -44,10 +45,20 @@ def looked_at(
     Args:
         cpu_s, wall_s: so much time may a step take.
     """
+    return inspected(path, cpu_s, wall_s, package=package, inspectors=INSPECTORS).trace
+
+
+def inspected(
+    root: Path,
+    cpu_s: float = steps.LIMITS.cpu_s,
+    wall_s: float = steps.LIMITS.wall_s,
+    **order: object,
+) -> Inspection:
+    """The answer to an order for an inspection; see `grader.inspection.examining.main.inspect`."""
     process = _looking()
     assert process.stdin is not None
     assert process.stdout is not None
-    process.stdin.write(json.dumps([str(path), package, cpu_s, wall_s]).encode() + b"\n")
+    process.stdin.write(json.dumps([str(root), cpu_s, wall_s, order]).encode() + b"\n")
     process.stdin.flush()
     size = int.from_bytes(process.stdout.read(8), "big")
     assert size, "what looks at packages has died"
@@ -72,13 +83,10 @@ def look_without_end() -> None:
     import setuptools  # noqa: F401  once, and not by each copy that runs a setup.py
 
     for line in sys.stdin:
-        path, package, cpu_s, wall_s = json.loads(line)
+        root, cpu_s, wall_s, order = json.loads(line)
         limits = replace(steps.LIMITS, cpu_s=cpu_s, wall_s=wall_s)
         with patch.object(steps, "LIMITS", limits), tempfile.TemporaryDirectory() as scratch:
-            found = inspect(
-                Path(path), Path(scratch).resolve(), package=package, inspectors=INSPECTORS
-            ).trace
-        told = encode(found)
+            told = encode(inspect(Path(root), Path(scratch).resolve(), **order))
         sys.stdout.buffer.write(len(told).to_bytes(8, "big") + told)
         sys.stdout.buffer.flush()
 

@@ -10,7 +10,7 @@ import pytest
 from grader.run.opening import open_submission
 from grader.submission.start import EntryPoint
 from tests.files import lay
-from tests.grader.submission.test_opening import NODE, below
+from tests.grader.submission.copies import NODE, below
 
 SETUP = """
 import os
@@ -59,10 +59,6 @@ def changed(name: str, old: str, new: str) -> dict[str, str | None]:
     return {name: PACKAGE[name].replace(old, new)}
 
 
-def test_a_package_as_ros2_pkg_create_makes_it_needs_no_note(tmp_path: Path) -> None:
-    assert notes(lay(tmp_path, PACKAGE)) == ()
-
-
 def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
     lay(tmp_path, {"node.py": NODE, "README.md": ""})
     assert notes(tmp_path / "node.py") == notes(tmp_path)
@@ -70,107 +66,90 @@ def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
     assert note.startswith("Nothing in node.py calls main(): the grader did")
 
 
+NOT_BUILT, NOT_FOUND = "colcon would not build this: ", "ros2 run would not find this: "
+NOT_STARTED, NO_PACKAGE = (
+    "ros2 run would not start this: ",
+    ", so that colcon takes it for no ROS package",
+)
+NOT_PARSED = f"{NOT_FOUND}package.xml does not parse"
+LICENSE, BUILD_TYPE = "<license>BSD</license>", "<build_type>ament_python</build_type>"
+MANIFEST_HAS = {
+    # what stands there instead -> the note
+    ("</license>", "</licence>"): f"{NOT_PARSED}: <license> of line 7 is not closed{NO_PACKAGE}",
+    ("A</maintainer>", "A<maintainer>"): (
+        f"{NOT_PARSED}: <maintainer> of line 6 is not closed{NO_PACKAGE}"
+    ),
+    (LICENSE, "<license>B&D</license>"): (
+        f"{NOT_PARSED}, line 7: not well-formed (invalid token){NO_PACKAGE}"
+    ),
+    (LICENSE, ""): f"{NOT_FOUND}package.xml has no <license>{NO_PACKAGE}",
+    ("0.1.0", "1.0"): (
+        f"{NOT_FOUND}package.xml has the version 1.0; expected three numbers, as 0.1.0{NO_PACKAGE}"
+    ),
+    (BUILD_TYPE, ""): (
+        f"{NOT_BUILT}package.xml names no build type; expected {BUILD_TYPE} in <export>"
+    ),
+    ("ament_python", "ament_cmake"): (
+        f"{NOT_BUILT}package.xml names the build type ament_cmake; expected {BUILD_TYPE} in "
+        "<export>"
+    ),
+    ("<name>spiral", "<name>circle"): (
+        f"{NOT_FOUND}package.xml calls the package circle, and setup.cfg and setup.py call it "
+        "spiral: expected <name>spiral</name>"
+    ),
+}
+LISTS, LIB = "packages=[package_name]", "install_scripts=$base/lib/spiral"
+USES_ANOTHER = {"spiral/utils/__init__.py": "", "spiral/utils/walls.py": ""}
+USES_ANOTHER["spiral/node.py"] = f"from spiral.utils import walls\n{NODE}"
+
+
 @pytest.mark.parametrize(
     ("change", "note"),
     [
-        ({"package.xml": None}, "colcon would not build this: no package.xml beside setup.py"),
+        *((changed("package.xml", *words), note) for words, note in MANIFEST_HAS.items()),
+        ({"package.xml": None}, f"{NOT_BUILT}no package.xml beside setup.py"),
         (
             {"package.xml": None, **changed("setup.py", "['package.xml']", "[]")},
-            "ros2 run would not find this: no package.xml beside setup.py",
+            f"{NOT_FOUND}no package.xml beside setup.py",
         ),
         (
-            changed("package.xml", "</license>", "</licence>"),
-            "ros2 run would not find this: package.xml does not parse: <license> of line 7 is not "
-            "closed, so that colcon takes it for no ROS package",
-        ),
-        (
-            changed("package.xml", "A</maintainer>", "A<maintainer>"),
-            "ros2 run would not find this: package.xml does not parse: <maintainer> of line 6 is "
-            "not closed, so that colcon takes it for no ROS package",
-        ),
-        (
-            changed("package.xml", "<license>BSD</license>", "<license>B&D</license>"),
-            "ros2 run would not find this: package.xml does not parse, line 7: not well-formed "
-            "(invalid token), so that colcon takes it for no ROS package",
-        ),
-        (
-            changed("package.xml", "<license>BSD</license>", ""),
-            "ros2 run would not find this: package.xml has no <license>, so that colcon takes it "
-            "for no ROS package",
-        ),
-        (
-            changed("package.xml", "0.1.0", "1.0"),
-            "ros2 run would not find this: package.xml has the version 1.0; expected three "
-            "numbers, as 0.1.0, so that colcon takes it for no ROS package",
-        ),
-        (
-            changed("package.xml", "<build_type>ament_python</build_type>", ""),
-            "colcon would not build this: package.xml names no build type; expected "
-            "<build_type>ament_python</build_type> in <export>",
-        ),
-        (
-            changed("package.xml", "ament_python", "ament_cmake"),
-            "colcon would not build this: package.xml names the build type ament_cmake; expected "
-            "<build_type>ament_python</build_type> in <export>",
-        ),
-        (
-            changed("package.xml", "<name>spiral", "<name>circle"),
-            "ros2 run would not find this: package.xml calls the package circle, and setup.cfg and "
-            "setup.py call it spiral: expected <name>spiral</name>",
-        ),
-        (
-            changed("setup.cfg", "install_scripts=$base/lib/spiral", "install_scripts=$base/lib/s"),
+            changed("setup.cfg", LIB, "install_scripts=$base/lib/s"),
             "ros2 run spiral would find nothing: setup.cfg installs programs in $base/lib/s, "
-            "and package.xml calls the package spiral: expected install_scripts=$base/lib/spiral",
+            f"and package.xml calls the package spiral: expected {LIB}",
         ),
         (
-            {
-                "spiral/utils/__init__.py": "",
-                "spiral/utils/walls.py": "",
-                "spiral/node.py": f"from spiral.utils import walls\n{NODE}",
-            },
-            "ros2 run would not start this: setup.py lists the packages spiral, and so does not "
-            "install spiral.utils",
+            USES_ANOTHER,
+            f"{NOT_STARTED}setup.py lists the packages spiral, and so does not install "
+            "spiral.utils",
         ),
         (
             {"resource/spiral": None},
-            "colcon would not build this: setup.py installs resource/spiral, and there is no such "
-            "file",
+            f"{NOT_BUILT}setup.py installs resource/spiral, and there is no such file",
         ),
-        (
-            {"setup.cfg": None},
-            "ros2 run would not find this: no setup.cfg with install_scripts=$base/lib/spiral "
-            "below [install]",
-        ),
+        ({"setup.cfg": None}, f"{NOT_FOUND}no setup.cfg with {LIB} below [install]"),
         (
             changed("setup.cfg", "install_scripts", "script_dir"),
-            "ros2 run would not find this: setup.cfg has no install_scripts=$base/lib/spiral below "
-            "[install]",
+            f"{NOT_FOUND}setup.cfg has no {LIB} below [install]",
         ),
         (
-            changed("setup.py", "packages=[package_name]", "packages=['spirale']"),
-            "colcon would not build this: setup.py lists the package spirale, and there is no such "
-            "folder",
+            changed("setup.py", LISTS, "packages=['spirale']"),
+            f"{NOT_BUILT}setup.py lists the package spirale, and there is no such folder",
         ),
         (
-            changed("setup.py", "packages=[package_name]", "packages=[]"),
-            "ros2 run would not start this: setup.py lists no packages, and so does not install "
-            "spiral",
+            changed("setup.py", LISTS, "packages=[]"),
+            f"{NOT_STARTED}setup.py lists no packages, and so does not install spiral",
         ),
         (
-            {
-                "spiral/__init__.py": None,
-                **changed("setup.py", "packages=[package_name]", "packages=find_packages()"),
-            },
-            "ros2 run would not start this: setup.py lists no packages, and so does not install "
-            "spiral: there is no spiral/__init__.py",
+            {"spiral/__init__.py": None, **changed("setup.py", LISTS, "packages=find_packages()")},
+            f"{NOT_STARTED}setup.py lists no packages, and so does not install spiral: there is no "
+            "spiral/__init__.py",
         ),
         (
             changed("setup.py", "'console_scripts'", "'console_script'"),
             "setup.py names no console script, so that `ros2 run` finds nothing to start. Expected "
             "in its entry_points: 'console_scripts' instead of 'console_script'",
         ),
-        ({"setup.py": None, "setup.cfg": None}, "colcon would not build this: no setup.py"),
+        ({"setup.py": None, "setup.cfg": None}, f"{NOT_BUILT}no setup.py"),
     ],
 )
 def test_each_shortcoming_is_a_note(
@@ -184,6 +163,7 @@ def test_each_shortcoming_is_a_note(
 @pytest.mark.parametrize(
     "change",
     [
+        {},
         changed("setup.py", "['resource/' + package_name]", "glob('resource/*')"),
         changed("setup.py", "[package_name]", "find_packages(exclude=['test'])"),
         {"setup.cfg": "", **changed("setup.py", "packages=", "cmdclass={'a': 1}, packages=")},

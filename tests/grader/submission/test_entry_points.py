@@ -4,14 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from grader.errors import SubmissionError
 from grader.run.opening import open_submission
-from grader.submission.start import EntryPoint, Submission
+from grader.submission.start import EntryPoint
 from tests.files import lay
-from tests.grader.submission.copies import in_place
+from tests.grader.submission.copies import GUARDED, NODE, below, found_in, refused
 
-NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
-GUARDED = NODE + '\n\nif __name__ == "__main__":\n    main()\n'
 SETUP = """
 from setuptools import find_packages, setup
 package_name = '{package}'
@@ -35,22 +32,6 @@ def package(name: str, *entries: str, module: str = "turtle_controller") -> dict
         f"{name}/{module}.py": GUARDED,
         "test/test_flake8.py": "def main():\n    pass\n",
     }
-
-
-def below(folder: str, files: dict[str, str]) -> dict[str, str]:
-    return {f"{folder}/{name}": text for name, text in files.items()}
-
-
-def found_in(path: Path, executable: str | None = None) -> Submission:
-    with open_submission(path, executable) as submission:
-        return in_place(submission)
-
-
-def refused(path: Path, executable: str | None = None) -> str:
-    with pytest.raises(SubmissionError) as error, open_submission(path, executable):
-        pass
-    assert "Traceback" not in str(error.value)
-    return str(error.value)
 
 
 # packages and workspaces

@@ -11,7 +11,8 @@ from grader.submission.finding import find, find_inspected
 from grader.submission.refusals import readable
 from grader.submission.set_ups import NotInspected
 from tests.files import lay
-from tests.grader.submission.test_opening import NODE, PACKAGE
+from tests.grader.submission.copies import NODE
+from tests.grader.submission.test_opening import PACKAGE
 
 
 @pytest.fixture

@@ -6,15 +6,19 @@ The files are of the kinds that public courses have; `record_launches` has run t
 
 import json
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from grader.inspection.answer import Inspection
+from grader.run import inspecting
 from grader.submission.launching import LaunchAsked
 from grader.submission.start import Program
 from tests.grader.submission.record_launches import FOLDER, RECORDED
-from tests.grader.submission.test_launching import notes, opened
+from tests.grader.submission.test_launching import opened
+from tests.grader_robots.packages import inspected
 
 STARTS = json.loads(RECORDED.read_text())
 #: What the grader does not start, and says so.
@@ -23,6 +27,18 @@ LEFT_OUT = ("sleep", "rqt_graph", "static_transform_publisher", "turtlesim_node"
 OF_COMPOSED = ("component_container", "talker")
 #: Two moments are the same, on a machine with something else to do [s].
 SAME_S = 0.2
+
+
+@cache
+def all_of_it(*folders: str) -> Inspection:
+    order = {"set_ups": folders, "program": "turtle_controller", "inspectors": None, "given": {}}
+    return inspected(FOLDER, **order)
+
+
+@pytest.fixture(autouse=True)
+def inspection(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All launch files are evaluated once, and not again for each of them."""
+    monkeypatch.setattr(inspecting, "inspect", lambda _, folders, *__: (all_of_it(*folders), ()))
 
 
 def in_real_time(programs: tuple[Program, ...]) -> Iterator[tuple[float, Program]]:
@@ -50,8 +66,24 @@ def comparable(words: list[str]) -> list[Any]:
             for each in found]  # fmt: skip
 
 
+#: What is said of what a file leaves out.
+OTHERS = "{} starts programs of other packages, and these were not: "
+SAID = {
+    "mimic": [
+        "turtlesim_node of {} was started without info, __ns:=/turtlesim1",
+        f"{OTHERS}turtlesim turtlesim_node, rqt_graph rqt_graph",
+    ],
+    "events": ["of {} was not followed: EmitEvent, a function for an event"],
+    "composed": [
+        f"{OTHERS}rclcpp_components component_container, LifecycleNode demo talker",
+        "of {} was not followed: SetEnvironmentVariable, additional_env of listener, prefix of "
+        "worker",
+    ],
+}
+
+
 @pytest.mark.parametrize("file", STARTS)
-def test_what_is_started_is_what_ros2_launch_starts(file: str) -> None:
+def test_what_is_started_is_what_ros2_launch_starts_and_the_rest_is_said(file: str) -> None:
     submission = opened(FOLDER, launch=LaunchAsked(file))
     skipped = LEFT_OUT + (OF_COMPOSED if "composed" in file else ())
     real = [each for each in STARTS[file] if not each[0].startswith(skipped)]
@@ -62,33 +94,6 @@ def test_what_is_started_is_what_ros2_launch_starts(file: str) -> None:
         words = words[3:] if name.startswith("ros2") else words
         assert comparable(list(program.arguments)) == comparable(words), name
         assert at_s == pytest.approx(real_s - STARTS[file][0][1], abs=SAME_S), name
-
-
-@pytest.mark.parametrize(
-    ("file", "said"),
-    [
-        ("mimic.launch.py", "turtlesim_node of {} was started without info, __ns:=/turtlesim1"),
-        (
-            "mimic.launch.py",
-            "{} starts programs of other packages, and these were not: turtlesim turtlesim_node, "
-            "rqt_graph rqt_graph",
-        ),
-        (
-            "events.launch.py",
-            "of {} was not followed: EmitEvent, a function for an event",
-        ),
-        (
-            "composed.launch.py",
-            "{} starts programs of other packages, and these were not: "
-            "rclcpp_components component_container, LifecycleNode demo talker",
-        ),
-        (
-            "composed.launch.py",
-            "of {} was not followed: SetEnvironmentVariable, additional_env of listener, prefix of "
-            "worker",
-        ),
-    ],
-)
-def test_what_is_left_out_is_said(file: str, said: str) -> None:
-    found = notes(opened(FOLDER, launch=LaunchAsked(file)))
-    assert any(said.format(f"launch/{file}") in each for each in found), found
+    notes = "\n".join(map(str, submission.notes))
+    for said in SAID.get(Path(file).name.partition(".")[0], ()):
+        assert said.format(f"launch/{Path(file).name}") in notes

@@ -1,6 +1,7 @@
 """A launch file that plainly starts several nodes of a package says what to start; none is run."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -9,11 +10,15 @@ from grader.run.opening import open_submission
 from grader.submission.launching import LaunchAsked
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 from tests.files import lay
+from tests.grader.submission.copies import NODE
 from tests.grader.submission.test_building import PACKAGE
-from tests.grader.submission.test_opening import NODE
 
 HEAD = """from launch import LaunchDescription
-from launch_ros.actions import Node
+from launch.actions import *
+from launch.conditions import IfCondition
+from launch.event_handlers import OnShutdown
+from launch.substitutions import *
+from launch_ros.actions import *
 import launch_ros.actions
 
 
@@ -45,6 +50,11 @@ def opened(
         return submission
 
 
+def launched(folder: Path, actions: str, name: str = "a.launch.py", **asked: Any) -> Submission:
+    """The package with a launch file of these actions."""
+    return opened(lay(folder, TWO | {f"launch/{name}": LIST.format(actions)}), **asked)
+
+
 def names(submission: Submission) -> list[str]:
     return [program.name for program in submission.programs]
 
@@ -72,8 +82,7 @@ def test_what_a_node_is_given_becomes_the_arguments_of_ros(
 ) -> None:
     words = ("--fast",) if arguments is None else ("--ros-args", *arguments) if arguments else ()
     given = DRIVE.replace(")", f"{node})")
-    text = LIST.format(f"{given}, {PENS}")
-    start = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text})).start
+    start = launched(tmp_path, f"{given}, {PENS}").start
     assert isinstance(start, Launch)
     assert start.programs[0].arguments == words
 
@@ -128,17 +137,13 @@ EVENT = "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))"
 def test_what_a_launch_file_does_besides_is_followed_or_named(
     tmp_path: Path, more: str, third: str, note: str
 ) -> None:
-    head = "from launch.actions import *\nfrom launch.conditions import IfCondition\n"
-    head += "from launch.event_handlers import OnShutdown\n"
-    text = head + LIST.format(f"{DRIVE}, {PENS}, {more}")
-    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
+    submission = launched(tmp_path, f"{DRIVE}, {PENS}, {more}")
     assert names(submission) == ["turtle_controller-1", "pen_node-2", *([third] if third else [])]
     assert any(each.startswith(note) for each in notes(submission)) or not note
 
 
 def test_what_is_started_again_is_said_once(tmp_path: Path) -> None:
-    text = LIST.format(f"{DRIVE}, {THIRD.format(', respawn=True')}")
-    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
+    submission = launched(tmp_path, f"{DRIVE}, {THIRD.format(', respawn=True')}")
     assert names(submission) == ["turtle_controller-1", *["pen_node-2"] * 4]
     assert str(submission.found) == "launch/a.launch.py, which starts turtle_controller, pen_node"
 
@@ -156,22 +161,18 @@ def test_a_launch_file_that_starts_a_program_in_cpp_cannot_be_graded(tmp_path: P
 def test_what_a_timer_starts_is_started_later(tmp_path: Path) -> None:
     timer = "TimerAction(period={}, actions=[{}])"
     inner = timer.format("1.5", PENS)
-    text = f"from launch.actions import *\n{LIST.format(timer.format(1.0, f'{DRIVE}, {inner}'))}"
-    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
+    submission = launched(tmp_path, timer.format(1.0, f"{DRIVE}, {inner}"))
     assert [program.delay_s for program in submission.programs] == [1.0, 2.5]
 
 
 def test_what_is_set_for_all_nodes_of_a_group_is_given_to_each(tmp_path: Path) -> None:
     given = "PushRosNamespace('left'), SetParameter('rate', 2), SetRemap('a', 'b')"
-    text = f"from launch.actions import *\nfrom launch_ros.actions import *\n{LIST}".format(
-        f"GroupAction([{given}, {DRIVE}]), {PENS}"
-    )
-    first, second = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text})).programs
+    first, second = launched(tmp_path, f"GroupAction([{given}, {DRIVE}]), {PENS}").programs
     words = ("--ros-args", "-r", "__ns:=/left", "-p", "rate:=2", "-r", "a:=b")
     assert (first.arguments, second.arguments) == (words, ())
 
 
-INCLUDES = HEAD.replace("import launch_ros", "from launch.actions import *\nimport launch_ros") + (
+INCLUDES = HEAD + (
     "    part = __file__.replace('all', 'part')\n"
     f"    return LaunchDescription([IncludeLaunchDescription(part), {DRIVE}])\n"
 )
@@ -196,7 +197,7 @@ def test_a_launch_file_in_xml_is_evaluated_too(tmp_path: Path) -> None:
 
 
 def test_several_nodes_of_a_launch_file_are_started(tmp_path: Path) -> None:
-    submission = opened(lay(tmp_path, TWO | {"launch/both.launch.py": BOTH}))
+    submission = launched(tmp_path, f"{DRIVE}, {PENS}", "both.launch.py")
     root = submission.root
     assert submission.start == Launch(
         (
@@ -223,7 +224,7 @@ def test_it_settles_what_to_start_where_no_script_has_the_usual_name(tmp_path: P
 
 
 def test_who_asks_for_one_program_gets_that_alone(tmp_path: Path) -> None:
-    submission = opened(lay(tmp_path, TWO | {"launch/both.launch.py": BOTH}), "pen_node")
+    submission = launched(tmp_path, f"{DRIVE}, {PENS}", "both.launch.py", executable="pen_node")
     assert submission.start == EntryPoint("spiral.pens", "main")
     assert str(submission.remarks[-1]) == (
         "launch/both.launch.py was evaluated and not run: pen_node was started by itself, "
@@ -234,8 +235,7 @@ def test_who_asks_for_one_program_gets_that_alone(tmp_path: Path) -> None:
 def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path: Path) -> None:
     simulator = "Node(package='turtlesim', executable='turtlesim_node')"
     other = "Node(package='rqt_graph', executable='rqt_graph')"
-    text = LIST.format(f"{simulator}, {DRIVE}, {other}, {PENS}")
-    submission = opened(lay(tmp_path, TWO | {"launch/all_launch.py": text}))
+    submission = launched(tmp_path, f"{simulator}, {DRIVE}, {other}, {PENS}", "all_launch.py")
     assert notes(submission) == [
         "launch/all_launch.py starts programs of other packages, and these were not: "
         "rqt_graph rqt_graph",
@@ -244,32 +244,32 @@ def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("text", "note"),
+    ("actions", "note"),
     [
         (
-            LIST.format("nothing(), " + DRIVE),
+            f"nothing(), {DRIVE}",
             "launch/a.launch.py was not run, and what it starts cannot be read (NameError: name "
             "'nothing' is not defined): judged is turtle_controller alone",
         ),
         (
-            LIST.format(DRIVE.replace(")", ", namespace='left')")),
+            DRIVE.replace(")", ", namespace='left')"),
             "launch/a.launch.py was evaluated and not run: turtle_controller was started by "
             "itself, without its namespace",
         ),
-        (LIST.format(DRIVE.replace(")", ", name='me')")), "another console script"),
+        (DRIVE.replace(")", ", name='me')"), "another console script"),
     ],
 )
 def test_a_launch_file_that_is_not_run_is_told_where_it_matters(
-    tmp_path: Path, text: str, note: str
+    tmp_path: Path, actions: str, note: str
 ) -> None:
-    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
+    submission = launched(tmp_path, actions)
     assert submission.start == EntryPoint("spiral.node", "main")
     assert any(str(remark).startswith(note) for remark in submission.remarks)
 
 
 def test_what_ros2_launch_would_not_find_is_told(tmp_path: Path) -> None:
-    other = LIST.format(DRIVE.replace("turtle_controller", "turtle_controller.py"))
-    remarks = opened(lay(tmp_path, TWO | {"launch/a.launch.py": other})).remarks
+    other = DRIVE.replace("turtle_controller", "turtle_controller.py")
+    remarks = launched(tmp_path, other).remarks
     assert any("would not find launch/a.launch.py" in str(remark) for remark in remarks)
     assert any("starts turtle_controller.py, which setup.py" in str(remark) for remark in remarks)
 
@@ -292,22 +292,18 @@ def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_argument
     tmp_path: Path,
 ) -> None:
     node = "Node(package='spiral', executable=LaunchConfiguration('which'), name='n')"
-    head = "from launch.actions import *\nfrom launch.substitutions import *\n"
-    text = head + LIST.format(f"DeclareLaunchArgument('which'), {node}")
-    lay(tmp_path, TWO | {"launch/a.launch.py": text})
     asked = LaunchAsked("a.launch.py", {"which": "pen_node"})
-    assert names(opened(tmp_path, launch=asked)) == ["pen_node-1"]
-    assert opened(tmp_path, launch=asked).programs[0].arguments[-1] == "__node:=n"
+    found = launched(tmp_path, f"DeclareLaunchArgument('which'), {node}", launch=asked)
+    assert names(found) == ["pen_node-1"]
+    assert found.programs[0].arguments[-1] == "__node:=n"
     with pytest.raises(SubmissionError, match="was not provided"):
         opened(tmp_path, launch=LaunchAsked("a.launch.py"))
 
 
 def test_an_argument_that_is_not_declared_is_told(tmp_path: Path) -> None:
-    text = "from launch.actions import *\n" + LIST.format(
-        f"DeclareLaunchArgument('speed', default_value='1'), {DRIVE}, {PENS}"
-    )
-    lay(tmp_path, TWO | {"launch/a.launch.py": text})
-    found = opened(tmp_path, launch=LaunchAsked("a.launch.py", {"sped": "2"}))
+    declares = "DeclareLaunchArgument('speed', default_value='1')"
+    asked = LaunchAsked("a.launch.py", {"sped": "2"})
+    found = launched(tmp_path, f"{declares}, {DRIVE}, {PENS}", launch=asked)
     assert "launch/a.launch.py declares no argument sped, only speed" in notes(found)
     assert names(found) == ["turtle_controller-1", "pen_node-2"]
 
@@ -324,19 +320,16 @@ def test_of_two_launch_files_none_is_needed_where_the_exercise_names_the_program
 
 
 def test_a_launch_file_that_fails_half_way_starts_nothing_and_is_told(tmp_path: Path) -> None:
-    fails = "from launch.actions import *\n" + LIST.format(
-        f"{DRIVE}, OpaqueFunction(function=lambda _: 1 / 0), {PENS}"
-    )
-    lay(tmp_path, TWO | {"launch/a.launch.py": fails})
-    found = opened(tmp_path, programs=("pen_node", "turtle_controller"))
+    fails = f"{DRIVE}, OpaqueFunction(function=lambda _: 1 / 0), {PENS}"
+    found = launched(tmp_path, fails, programs=("pen_node", "turtle_controller"))
     assert names(found) == ["pen_node-1", "turtle_controller-2"]
     said = "launch/a.launch.py cannot be launched: ZeroDivisionError: division by zero"
-    assert f"{said} (launch/a.launch.py, line 8)" in notes(found)
+    assert f"{said} (launch/a.launch.py, line 11)" in notes(found)
 
 
 def test_a_file_of_parameters_that_is_not_there_is_only_told(tmp_path: Path) -> None:
     node = DRIVE.replace(")", ", parameters=['/nowhere/all.yaml'])")
-    found = opened(lay(tmp_path, TWO | {"launch/a.launch.py": LIST.format(f"{node}, {PENS}")}))
+    found = launched(tmp_path, f"{node}, {PENS}")
     assert names(found) == ["turtle_controller-1", "pen_node-2"]
     assert any("was started without --params-file, /nowhere/all.y" in each for each in notes(found))
 
