@@ -31,7 +31,7 @@ from tests.grader.reports import samples
 from tests.programs import DEADLINE_S, Program
 from tests.tiers import others_are_more
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
 
 #: What the lanes show, RGBA in base64, and their width.
 PIXELS = """

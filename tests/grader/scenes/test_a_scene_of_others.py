@@ -5,12 +5,19 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from grader.errors import SceneFailure
+from grader.recording import subject
+from grader.scenes.scene import Scene, expect_reason
 from tests import once
 from tests.docs.test_examples import BLINKING, ROOT, environment_with, run_examples
+from tests.tiers import others_are_more
+
+pytestmark = pytest.mark.timeout(300)
 
 #: The scene of the page, and its mistakes: an entry point each.
 MISTAKES = '''
@@ -139,12 +146,6 @@ SENTENCES = {
         name: f"the scene {name} raised {RAISED} (mistakes.py, line " for name in (*HOOKS, "sha256")
     },
 }
-#: One of each kind; the others, by the same mechanism, and half minutes are for make test-all.
-USUAL = ("ticks", "traces", "reads", "exits", "loses", "nothing", "view", "sha256")
-CASES = [
-    name if name in USUAL else pytest.param(name, marks=pytest.mark.more("a grading each"))
-    for name in SENTENCES
-]
 NAMES = (*SENTENCES, "ends_its_process", "misnamed", "bright")
 
 
@@ -186,8 +187,25 @@ def run(folder: Path, name: str, *more: str) -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-@pytest.mark.timeout(300)
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("hook", subject.HOOKS)
+def test_what_a_hook_may_not_raise_is_told_as_the_scene_s(hook: str) -> None:
+    def fails(_: object, error: BaseException) -> None:
+        raise error
+
+    scene = type("Other", (Scene,), {"name": "other", hook: fails})
+    call = partial(getattr(scene, hook), scene)
+    said = rf"the scene other raised {RAISED} \(test_a_scene_of_others\.py, line \d+\)"
+    with pytest.raises(SceneFailure, match=said):
+        call(ZeroDivisionError("no lamp has this"))
+    for allowed in subject.HOOKS[hook]:
+        with pytest.raises(allowed):
+            call(allowed("a mistake"))
+
+
+@pytest.mark.parametrize(
+    "name",
+    others_are_more("a grading each; the hooks are called one by one, too", SENTENCES, "ticks"),
+)
 def test_a_mistake_of_a_scene_is_told_as_that_scene_s(folder: Path, name: str) -> None:
     code, told = run(folder, name)
     assert code == 3, told
@@ -196,32 +214,34 @@ def test_a_mistake_of_a_scene_is_told_as_that_scene_s(folder: Path, name: str) -
     assert not (folder / f"out_{name}" / "result.json").exists()
 
 
-@pytest.mark.timeout(300)
-@pytest.mark.parametrize(
-    "name",
-    ["ticks", pytest.param("nothing", marks=pytest.mark.more("ticks stands for it"))],
-)
+def test_a_reason_that_there_is_not_is_told_as_the_scene_s() -> None:
+    for reason in (None, "enough"):
+        with pytest.raises(SceneFailure, match=f"the scene other returned {reason!r}, expected"):
+            expect_reason("other", reason)  # type: ignore[arg-type]
+    assert expect_reason("other", "rest") == "rest"
+
+
+@pytest.mark.more("in virtual time the same")
+@pytest.mark.parametrize("name", ["ticks", "nothing"])
 def test_a_mistake_of_a_scene_is_told_in_real_time_too(folder: Path, name: str) -> None:
     code, told = run(folder, name, "--time", "real")
     assert code == 3, told
     assert SENTENCES[name] in told
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.more("hostile programs end simulators in make test")
 def test_a_simulator_that_ends_without_a_word_may_have_been_ended(folder: Path) -> None:
     code, _ = run(folder, "ends_its_process")
     result = json.loads((folder / "out_ends_its_process" / "result.json").read_text())
     assert (code, result["score"], result["run"]["outcome"]) == (0, 0, "killed")
 
 
-@pytest.mark.timeout(300)
 def test_a_scene_has_the_name_of_its_entry_point(folder: Path) -> None:
     code, told = run(folder, "misnamed")
     assert code == 2, told
     assert "'misnamed' is of mistakes:misnamed of lamp, whose name is 'lamp'" in told
 
 
-@pytest.mark.timeout(300)
 def test_a_scene_may_have_more_than_it_must(folder: Path) -> None:
     exercise = folder / "bright" / "exercise.yaml"
     varied = "varied_runs: {count: 1, seed: 1, nearest_m: 1, farthest_m: 2}\n"
@@ -243,7 +263,7 @@ def test_a_scene_may_have_more_than_it_must(folder: Path) -> None:
     assert not (out / "result.json").exists()
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.more("pages of packages have neither picture nor path")
 def test_a_page_shows_no_picture_and_no_path_where_a_scene_has_none(folder: Path) -> None:
     code, _ = run(folder, "lamp/blink")
     page = (folder / "out_blink" / "report.html").read_text()
@@ -253,7 +273,6 @@ def test_a_page_shows_no_picture_and_no_path_where_a_scene_has_none(folder: Path
     assert "Where the lamp went" not in page
 
 
-@pytest.mark.timeout(300)
 def test_a_sheet_leaves_out_what_a_scene_does_not_say(folder: Path) -> None:
     python = str(folder / "venv" / "bin" / "python")
     words = ["-m", "grader", "new", "begin", "--exercise", "lamp/blink"]

@@ -16,7 +16,7 @@ from tests.grader_robots.scene.robots import walks
 from tests.grader_robots.scene.test_view import URDF
 from tests.tiers import others_are_more
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
 
 READER = """
 async () => {

@@ -28,7 +28,7 @@ from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
 from tests.tiers import others_are_more
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
 
 TICKS = 300
 #: What the canvas shows, RGBA in base64.
