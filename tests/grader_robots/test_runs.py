@@ -13,7 +13,7 @@ from grader.recording.recording import Recordings
 from grader.testing.solutions import read_solutions
 from grader_robots.scene import motion
 from grader_robots.scene.trace import RobotTrace
-from tests import runs
+from tests import archive, runs
 
 EXERCISE = load_exercise("state_publisher")
 LOOP = EXERCISE.folder / "right" / "constructor_loop.py"
@@ -35,13 +35,8 @@ def trace_of(recordings: Recordings) -> RobotTrace:
 def test_a_loop_in_the_constructor_runs_in_virtual_time(recorded):
     assert recorded.nominal.run.time == "virtual"
     assert recorded.nominal.run.outcome == "finished"
+    assert recorded.nominal.package is None  # a single file is in none
     assert len(trace_of(recorded).joint_states) == 600  # 30 a second for 20 s
-
-
-def test_two_runs_are_equal(recorded):
-    again = runs.recordings(LOOP, EXERCISE, number=2)
-    assert again.nominal.run.trace_sha256 == recorded.nominal.run.trace_sha256
-    assert trace_of(again).messages == trace_of(recorded).messages
 
 
 def test_what_comes_30_times_a_second_goes_out_15_times(recorded):
@@ -49,18 +44,13 @@ def test_what_comes_30_times_a_second_goes_out_15_times(recorded):
     assert len(own) == pytest.approx(300, abs=3)
 
 
-def test_a_recording_is_read_back_as_it_was(recorded, tmp_path):
+def test_a_recording_is_read_back_as_it_was_and_so_is_its_package(tmp_path):
+    recorded = archive.recordings("state_publisher", "right")
     judging.save_recordings(recorded, tmp_path / "recording")
     read = judging.load_recordings(tmp_path / "recording")
     assert trace_of(read).messages == trace_of(recorded).messages
     verdicts = [judging.judge(each, EXERCISE).verdicts for each in (recorded, read)]
     assert verdicts[0] == verdicts[1]
-
-
-def test_what_is_found_of_its_package_is_read_back_too(tmp_path):
-    recorded = grading.record(REFERENCE, SHORT)
-    judging.save_recordings(recorded, tmp_path / "recording")
-    read = judging.load_recordings(tmp_path / "recording")
     assert read.nominal.package == recorded.nominal.package
     assert [each.name for each in read.nominal.package.setup.scripts] == ["state_publisher"]
     assert recorded.nominal.run.flags == ()
@@ -78,6 +68,7 @@ def test_what_a_launch_file_would_have_started_otherwise_is_told(tmp_path):
     )
 
 
+@pytest.mark.more("a run in real time")
 def test_the_same_in_real_time():
     recorded = grading.record(LOOP, SHORT, time="real").nominal
     assert recorded.run.time == "real"
@@ -97,10 +88,6 @@ def test_what_is_added_so_that_it_starts_here_is_not_looked_at(tmp_path):
     (package / "setup.py").write_text(setup.replace("packages=[package_name]", found))
     (script,) = grading.record(package, SHORT).nominal.package.setup.scripts
     assert str(script.fault) == "setup.py does not list the package walker, so nothing installs it"
-
-
-def test_a_single_file_is_in_no_package(recorded):
-    assert recorded.nominal.package is None
 
 
 def test_two_questions_for_the_time_in_one_step_get_two_answers(tmp_path):

@@ -33,7 +33,7 @@ rclpy.spin(node)
 """
 
 
-@pytest.mark.parametrize("period_ms", [5, 20, 41])
+@pytest.mark.parametrize("period_ms", [5, 41])
 def test_a_message_has_its_own_time_within_a_tick(tmp_path: Path, period_ms: int) -> None:
     file = tmp_path / "sends.py"
     file.write_text(SENDS.format(period=period_ms / 1000))

@@ -46,7 +46,7 @@ def test_who_does_all_gets_all() -> None:
     others_are_more(
         "names, values and a flood stand for the rest",
         EARNED,
-        *("poses_as_a_peer", "sends_odd_values", "has_odd_types", "floods_with_texts"),
+        *("poses_as_a_peer", "sends_odd_values", "floods_with_texts"),
     ),
 )
 def test_a_hostile_program_earns_only_what_it_does(name: str) -> None:

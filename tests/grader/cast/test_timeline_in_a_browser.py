@@ -14,7 +14,6 @@ import pytest
 
 from grader.cast import timeline
 from grader.cast.pages import TimelinePage, render
-from grader.cast.trace import CastTrace
 from grader.cli import main
 from grader.exercise.loading import load_exercise
 from grader.recording import saving
@@ -26,10 +25,9 @@ from grader.scenes.live import Grading
 from tests import runs
 from tests.barriers import barriers
 from tests.browser import WIDTHS, clipped, cut_off, needs_browser, obstacles, open_browser
-from tests.grader.exercise.expect.traces import endpoint, event, line, text, trace
+from tests.grader.exercise.expect.traces import endpoint, line, text, trace
 from tests.grader.reports import samples
 from tests.programs import DEADLINE_S, Program
-from tests.tiers import others_are_more
 
 pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
 
@@ -193,7 +191,7 @@ def test_another_recording_is_there_for_comparison(
     assert cells(page, CURRENT)[0] <= "3.50"
 
 
-@pytest.mark.parametrize("width", others_are_more("the narrowest stands for all", WIDTHS, 320))
+@pytest.mark.parametrize("width", WIDTHS)
 def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: int) -> None:
     page = visit((folder / "replay.html").as_uri(), width, reduced_motion="reduce")
     for button in page.locator("#runs button").all()[:2]:
@@ -205,7 +203,6 @@ def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: i
     assert clipped(page) == {}
 
 
-@pytest.mark.more("tables of other reports are in `make test`")
 def test_nobody_is_kept_from_reading_it_in_the_report(
     tmp_path: Path, visit: Any, everything: Recordings
 ) -> None:
@@ -265,7 +262,7 @@ def test_who_looks_back_stays_there_while_it_grows(live: TimelinePage, visit: An
     assert page.locator(ROWS).count() == 0
 
 
-@pytest.mark.parametrize("width", others_are_more("the narrowest", [320, 1280], 320))
+@pytest.mark.parametrize("width", [320, 1280])
 def test_nobody_is_kept_from_looking_on(live: TimelinePage, visit: Any, width: int) -> None:
     live.hear([news(10.0)])
     live.update(Grading("node.py, talker", "nominal run", "Score: 1 of 2", "Do this first."))
@@ -288,35 +285,3 @@ def test_a_run_is_seen_to_its_end(tmp_path: Path, visit: Any) -> None:
         page.select_option("#about", "/chatter")
         page.wait_for_selector(f"{CURRENT}:has-text('Hello 4')")
         assert page.inner_text("#grading-score") == "Score: 100 of 100"
-
-
-# Data ---------------------------------------------------------------------------------------------
-
-
-def test_what_came_late_is_told_with_the_last() -> None:
-    first, late, last = (text(n, "/chatter", str(n)) for n in (1, 2, 3))
-    told = {each["id"]: each for each in timeline.items(trace(first, last))}
-    told |= {each["id"]: each for each in timeline.items(trace(first, late, last), 2_000_000_000)}
-    assert [each["text"] for each in told.values()] == ["1", "2", "3"]
-
-
-def test_a_parameter_is_set_or_got_and_a_refusal_says_why() -> None:
-    answers: dict[str, Any] = {"node": "/node", "sent_ns": 0, "answered_ns": 1}
-    events = (
-        event("parameter", **answers, values={"p": "world", "q": 0.5}),
-        event("parameter", **answers, set={"p": "", "q": "too large"}),
-    )
-    told = [each["text"] for each in timeline.items(trace(*events))]
-    assert told == ["get p → world, get q → 0.5", "set p, set q → too large"]
-
-
-def test_a_program_of_many_nodes_has_as_many_lanes_as_can_be_seen() -> None:
-    nodes = (endpoint("topic /chatter", node=f"/n{number:04}") for number in range(5_000))
-    lanes = timeline.lanes(trace(*nodes))
-    assert len(lanes) == timeline.MOST_NODES + 1
-    assert lanes[-2:] == [timeline.OTHERS, "/peer"]
-
-
-def test_a_run_without_anything_has_the_program_s_lane() -> None:
-    assert timeline.items(CastTrace()) == []
-    assert timeline.lanes(CastTrace()) == [timeline.PROGRAM]

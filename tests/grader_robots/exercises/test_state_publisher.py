@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -76,19 +77,32 @@ def walker(every=2, radius=2.0, speed=0.5, height=0.7, look=math.pi / 2, joints=
     return controller
 
 
-def lost(controller, package=PACKAGE, ticks=1000):
-    """The checks that lose points, with the share that is left."""
-    trace = drive(controller, ticks, EXERCISE.setting)
-    recording = Recording(trace, scene="robot", package=package)
+@cache
+def driven(controller):
+    return drive(controller, 1000, EXERCISE.setting)
+
+
+#: Does everything right.
+WALKS = walker()
+
+
+def judged(controller, package):
+    recording = Recording(driven(controller), scene="robot", package=package)
     found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
     assert [v.rationale for v in found if "fault of the exercise" in str(v.rationale)] == []
+    return found
+
+
+def lost(controller=WALKS, package=PACKAGE):
+    """The checks that lose points, with the share that is left."""
+    found = judged(controller, package)
     return {v.check: round(v.score / v.max_score, 2) for v in found if not v.passed}
 
 
 @pytest.mark.parametrize(
     "controller",
     [
-        walker(),
+        WALKS,
         walker(every=6, radius=0.5, speed=-0.4, height=0.4),
         walker(every=1, radius=4.0, speed=1.0),
         walker(joints=lambda t: {"swivel": math.remainder(-3 * t, math.tau)}),
@@ -120,15 +134,12 @@ def test_each_mistake_loses_what_it_should(controller, losses):
 
 def said(controller, check, package=PACKAGE):
     """What a check says, and its help."""
-    trace = drive(controller, 1000, EXERCISE.setting)
-    recording = Recording(trace, scene="robot", package=package)
-    found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
+    found = judged(controller, package)
     return next((str(v.rationale), str(v.help)) for v in found if v.check == check)
 
 
 def test_who_sends_a_single_transform_is_not_told_that_it_is_another():
-    send = walker()
-    rationale, _ = said(lambda tick, now: send(tick, now) if tick < 4 else (), "odometry")
+    rationale, _ = said(lambda tick, now: WALKS(tick, now) if tick < 4 else (), "odometry")
     assert rationale.startswith("Only 1 transform from 'odom' to 'axis' came on /tf")
 
 
@@ -146,7 +157,7 @@ def test_what_is_wrong_is_not_mixed_with_what_is_right():
 def test_a_path_from_the_current_folder_is_called_one():
     lacking = Lacking("file", "/somewhere/urdf/walker.urdf", "", LAUNCH.file)
     package = replace(PACKAGE, launches=(replace(LAUNCH, lacking=(lacking,)),))
-    rationale, _ = said(walker(), "launch", package)
+    rationale, _ = said(WALKS, "launch", package)
     assert "asks for urdf/walker.urdf, a path from the current folder" in rationale
 
 
@@ -176,7 +187,7 @@ def test_a_path_from_the_current_folder_is_called_one():
     ],
 )
 def test_a_package_is_judged_by_what_it_installs(setup, losses):
-    assert lost(walker(), PackageTrace(setup, launches=(LAUNCH,), texts=(URDF,))) == losses
+    assert lost(package=PackageTrace(setup, launches=(LAUNCH,), texts=(URDF,))) == losses
 
 
 @pytest.mark.parametrize(
@@ -216,17 +227,16 @@ def test_a_package_is_judged_by_what_it_installs(setup, losses):
 )
 def test_a_launch_file_starts_robot_and_node_and_finds_what_it_reads(launch, losses):
     trace = PackageTrace(SETUP, launches=(launch,), texts=(URDF, "urdf/walker.urdf"))
-    assert lost(walker(), trace) == losses
+    assert lost(package=trace) == losses
 
 
 def test_of_several_launch_files_the_best_counts():
     bad = replace(LAUNCH, problem=Obstacle("error", plain_text("it does not parse")))
-    assert lost(walker(), PackageTrace(SETUP, launches=(bad, LAUNCH), texts=(URDF,))) == {}
+    assert lost(package=PackageTrace(SETUP, launches=(bad, LAUNCH), texts=(URDF,))) == {}
 
 
 def test_what_the_grader_does_not_know_is_not_judged():
     unknown = replace(LAUNCH, problem=Obstacle("unknown", plain_text("it imports launch_x")))
     trace = PackageTrace(SETUP, launches=(unknown,), texts=(URDF,))
-    recording = Recording(drive(walker(), 1000, EXERCISE.setting), scene="robot", package=trace)
-    found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
+    found = judged(WALKS, trace)
     assert [verdict.check for verdict in found if verdict.status == "not_judged"] == ["launch"]

@@ -10,6 +10,7 @@ from grader.testing.checking import examine
 from grader.testing.solutions import read_solutions
 from grader_robots.inspection.oddities import odd_traces
 from tests.grader_robots.packages import looked_at, recorded, written
+from tests.tiers import others_are_more
 
 EXERCISE = load_exercise("thymio_package")
 REFERENCE = EXERCISE.folder / "reference"
@@ -25,13 +26,19 @@ FIRST_LINES = {
 }
 
 
-@pytest.mark.parametrize("name", [name for name, each in SOLUTIONS.items() if each.is_right])
+RIGHT = [name for name, each in SOLUTIONS.items() if each.is_right]
+EACH = "half a second each; the first mutant is graded by each make test"
+
+
+@pytest.mark.parametrize("name", others_are_more(EACH, RIGHT, RIGHT[-1]))
 def test_a_right_thymio_keeps_all_points(name, tmp_path):
     result = judge(recorded(looked_at(SOLUTIONS[name].lay_out(tmp_path))), EXERCISE)
     assert [verdict.check for verdict in result.verdicts if not verdict.passed] == []
 
 
-@pytest.mark.parametrize("name", FIRST_LINES)
+@pytest.mark.parametrize(
+    "name", others_are_more(EACH, FIRST_LINES, "body_of_numbers", "in_grams", "never_put_there")
+)
 def test_the_first_line_of_a_wrong_thymio_names_its_mistake(name, tmp_path):
     solution = SOLUTIONS[name]
     result = judge(recorded(looked_at(solution.lay_out(tmp_path))), EXERCISE)

@@ -14,9 +14,10 @@ from grader.exercise.loading import load_exercise
 from grader.inspection.trace import FAILED
 from grader.run import inspecting
 from grader.run.processes import levels, network
-from tests import runs
+from tests import archive, runs
 from tests.grader.run.test_opening import FORGES
 from tests.grader_robots.packages import EXERCISE, REFERENCE, looked_at, recorded, written
+from tests.tiers import others_are_more
 
 NEVER_ENDS = "while True:\n    pass\n"
 
@@ -25,10 +26,10 @@ def shares(result):
     return {v.check: v.score / v.max_score for v in result.verdicts}
 
 
-def test_two_looks_are_equal_and_are_what_is_found_without_confinement():
-    once, again = (runs.graded(REFERENCE, EXERCISE, number=number) for number in (1, 2))
-    assert once.score == once.max_score == 100
-    assert once.run.trace_sha256 == again.run.trace_sha256 == looked_at(REFERENCE).sha256()
+def test_what_is_found_is_the_same_without_confinement():
+    once = archive.result("description_package", "right")  # each test_archive looks at it anew
+    assert once.run.trace_sha256 == looked_at(REFERENCE).sha256()
+    assert (once.score, once.max_score) == (100, 100)
     assert (once.run.outcome, once.run.ticks, once.run.simulated_s) == ("finished", 0, 0)
 
 
@@ -53,26 +54,20 @@ def test_of_several_packages_one_can_be_asked_for(tmp_path):
         files = {"package.xml": manifest.replace("walker_description", name)}
         written(tmp_path / name, files)
     for name in ("a_description", "b_description"):
-        trace = grader.record(tmp_path, EXERCISE, executable=name).nominal.trace
-        assert trace.setup.name == name
+        assert looked_at(tmp_path, name).setup.name == name
+    trace = grader.record(tmp_path, EXERCISE, executable="b_description").nominal.trace
+    assert trace.setup.name == "b_description"
     with pytest.raises(SubmissionError, match="has no package c_description; there is"):
         grader.record(tmp_path, EXERCISE, executable="c_description")
 
 
-@pytest.mark.parametrize(
-    ("files", "words"),
-    [({"a.txt": ""}, "holds no ROS 2 package"), ({}, "holds no ROS 2 package")],
-)
-def test_what_holds_no_package_is_refused(files, words, tmp_path):
-    for name, text in files.items():
-        (tmp_path / name).write_text(text)
-    with pytest.raises(SubmissionError, match=words):
-        grader.grade(tmp_path, EXERCISE)
-
-
-def test_a_single_file_is_refused(tmp_path):
+def test_what_holds_no_package_is_refused(tmp_path):
     file = tmp_path / "walker.urdf"
+    with pytest.raises(SubmissionError, match="holds no ROS 2 package"):
+        grader.grade(tmp_path, EXERCISE)
     file.write_text("<robot name='a'/>")
+    with pytest.raises(SubmissionError, match="holds no ROS 2 package"):
+        grader.grade(tmp_path, EXERCISE)
     with pytest.raises(SubmissionError, match=r"neither a folder nor a \.zip"):
         grader.grade(file, EXERCISE)
 
@@ -104,7 +99,7 @@ for _ in range(8):
 
 def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
     path = written(tmp_path, {"launch/spawn.launch.py": NEVER_ENDS})
-    result = judging.judge(recorded(looked_at(path, cpu_s=1.0)), EXERCISE)
+    result = judging.judge(recorded(looked_at(path, cpu_s=0.3)), EXERCISE)
     assert shares(result) | {"launch": 1.0, "spawn": 0.0} == shares(result)
     assert "did not come to an end" in str(result.diagnosis.cause)
 
@@ -126,7 +121,8 @@ def test_a_set_up_that_kills_who_looks_is_judged_and_gets_nothing(tmp_path):
     assert "killed by the signal SIGKILL" in str(result.diagnosis.cause)
 
 
-def test_a_set_up_that_stops_who_looks_is_judged_and_gets_nothing(tmp_path):
+def test_a_set_up_that_stops_who_looks_is_judged_and_gets_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(inspecting, "EVERY_S", 0.05)
     stop = "import os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
     result = grader.grade(written(tmp_path, {"setup.py": stop}), EXERCISE)
     assert result.score == 0
@@ -159,7 +155,9 @@ def test_an_exercise_without_nodes_has_no_limits(tmp_path):
     assert EXERCISE.conditions == {}
 
 
-@pytest.mark.parametrize("what", ["stubs", "empty", "prefix", ""])
+@pytest.mark.parametrize(
+    "what", others_are_more("a grading each", ["stubs", "empty", "prefix", ""], "prefix")
+)
 def test_a_set_up_that_puts_a_file_where_it_is_looked_at_is_judged(what, tmp_path):
     code = (
         "import glob, os, shutil, tempfile\n"
@@ -187,7 +185,7 @@ for folder in (tempfile.gettempdir(), os.path.expanduser("~"), "/tmp", os.getcwd
 """
 
 
-@pytest.mark.parametrize("size", [2**20, 0], ids=["bytes", "files"])
+@pytest.mark.parametrize("size", others_are_more("files: as bytes", [2**20, 0], 2**20))
 def test_a_set_up_that_leaves_no_room_is_judged(size, tmp_path):
     text = (REFERENCE / "setup.py").read_text()
     text = f"{FULL.replace('SIZE', str(size))}{text}"

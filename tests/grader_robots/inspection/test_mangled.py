@@ -32,6 +32,7 @@ def test_a_link_out_of_a_mangled_package_is_not_written_through(kind: str, tmp_p
     assert (tmp_path / OUTSIDE).read_text(encoding="ascii") == SAYS
 
 
+@pytest.mark.more("a search; what it has found is in test_hostile")
 @pytest.mark.timeout(4 * CASES)
 @settings(max_examples=CASES)
 @given(package=packages())

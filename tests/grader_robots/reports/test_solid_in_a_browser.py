@@ -14,7 +14,6 @@ from tests.grader.reports.samples import verdict
 from tests.grader_robots.reports.test_parts import package_trace, page_of
 from tests.grader_robots.scene.robots import walks
 from tests.grader_robots.scene.test_view import URDF
-from tests.tiers import others_are_more
 
 pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
 
@@ -90,7 +89,7 @@ def read(browser, folder, page: str, width: int) -> dict:
     return said
 
 
-@pytest.mark.parametrize("width", others_are_more("the narrow screen is tried", [375, 1280], 375))
+@pytest.mark.parametrize("width", [375, 1280])
 def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(
     browser, robot, width, tmp_path
 ):

@@ -26,7 +26,6 @@ from tests.browser import (
 from tests.grader.driving import RED, Spiral, drive, pen, twist
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
-from tests.tiers import others_are_more
 
 pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
 
@@ -272,14 +271,7 @@ def test_keys_that_a_reader_needs_elsewhere_move_nothing(visit):
     assert "Play" in page.inner_text("#play")
 
 
-@pytest.mark.parametrize(
-    "name",
-    others_are_more(
-        "another language, the same page",
-        ("view.html", "compared.html", "fr.html", "zh.html"),
-        *("compared.html", "fr.html"),
-    ),
-)
+@pytest.mark.parametrize("name", ["view.html", "compared.html", "fr.html", "zh.html"])
 def test_nothing_is_wider_than_the_screen(visit, name):
     page = visit("#tick=120", name=name)
     for width in WIDTHS:
@@ -318,10 +310,7 @@ def test_which_run_is_shown_is_seen_where_the_reader_chooses_the_colours(visit):
     ("language", "tick", "curve"),
     [
         ("fr", "1,920 s, pas 120 sur 300", "écart\N{NO-BREAK SPACE}: "),
-        pytest.param(
-            *("zh", "1.920 s\uff0c第 120 步\uff0c共 300 步", "相距\uff1a"),
-            marks=pytest.mark.more("as French"),
-        ),
+        ("zh", "1.920 s\uff0c第 120 步\uff0c共 300 步", "相距\uff1a"),
     ],
 )
 def test_it_speaks_the_language_of_the_call_whatever_the_browsers(visit, language, tick, curve):
