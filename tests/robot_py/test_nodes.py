@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import signal
+import subprocess
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +20,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from tests.graph import DEEP, Graph
-from tests.programs import Program
+from tests.programs import ROOT, Program
 from tests.robot_py import urdf_cases as cases
 
 ROBOTS = Path(__file__).parent / "robots"
@@ -106,51 +110,69 @@ def test_another_description_at_run_time_is_published_and_so_are_its_frames(grap
         assert program.stop() == 0
 
 
-@pytest.mark.parametrize(
-    ("arguments", "complaint"),
-    [
-        ([], "[FATAL]"),
-        ([], "robot_state_publisher: robot_description parameter must not be empty"),
-        (["/no/such.urdf"], "Failed to open URDF file: /no/such.urdf"),
-        (
-            ["--ros-args", "-p", "robot_description:=hello"],
-            "Unable to initialize urdf::model from robot description",
-        ),
-        (
-            [str(ROBOTS / "walker.urdf"), "--ros-args", "-p", "publish_frequency:=1001.0"],
-            "publish_frequency must be between 0 and 1000",
-        ),
-        (
-            [str(ROBOTS / "walker.urdf"), "--ros-args", "-p", "publish_frequency:=30"],
-            "parameter publish_frequency is 30, expected a number with a decimal point",
-        ),
-    ],
-)
-def test_it_does_not_start_with_what_it_cannot_use(arguments, complaint):
-    with state_publisher(*arguments) as program:
-        assert program.wait() == 2
-        assert complaint in program.text()
-        assert "Traceback" not in program.text()
+#: Calls the `main` of a module with one list of arguments after the other.
+CALLS = """
+import importlib, json, sys
+main = importlib.import_module(sys.argv[1]).main
+for arguments in json.loads(sys.argv[2]):
+    print("code", main(["node", *arguments]), file=sys.stderr)
+"""
 
 
-def test_a_file_is_taken_with_a_warning_where_there_is_no_parameter():
-    with state_publisher(str(ROBOTS / "rover.urdf")) as program:
+def refuses(module: str, refused: Sequence[tuple[Sequence[str], str]]) -> None:
+    """A program ends with code 2, and a complaint, for each of these arguments."""
+    asked = json.dumps([arguments for arguments, _ in refused])
+    words = [sys.executable, "-c", CALLS, f"robot_py.{module}", asked]
+    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
+    *said, rest = ended.stderr.split("code 2\n")
+    assert (len(said), rest, "Traceback" in ended.stderr) == (len(refused), "", False)
+    for text, (arguments, complaint) in zip(said, refused, strict=True):
+        assert complaint in text, arguments
+
+
+def test_it_does_not_start_with_what_it_cannot_use():
+    file, ros = str(ROBOTS / "walker.urdf"), "--ros-args"
+    refuses(
+        "robot_state_publisher",
+        [
+            ([], "[FATAL]"),
+            ([], "robot_state_publisher: robot_description parameter must not be empty"),
+            (["/no/such.urdf"], "Failed to open URDF file: /no/such.urdf"),
+            (
+                [ros, "-p", "robot_description:=hello"],
+                "Unable to initialize urdf::model from robot description",
+            ),
+            (
+                [file, ros, "-p", "publish_frequency:=1001.0"],
+                "publish_frequency must be between 0 and 1000",
+            ),
+            (
+                [file, ros, "-p", "publish_frequency:=30"],
+                "parameter publish_frequency is 30, expected a number with a decimal point",
+            ),
+        ],
+    )
+
+
+def test_a_file_is_taken_with_a_warning_where_there_is_no_parameter_and_dropped_parts_are_told(
+    tmp_path,
+):
+    file = tmp_path / "cone.urdf"
+    file.write_text(cases.shape("<cone/>"))
+    with state_publisher(str(file)) as program:
         warning = program.wait_for_line("No robot_description parameter, but command-line argument")
         assert "[WARN]" in warning
         program.wait_for_line("Robot initialized")
-        assert program.stop(signal.SIGTERM) == 0
-
-
-def test_dropped_parts_are_told_on_the_terminal(tmp_path):
-    with state_publisher(*described(tmp_path, cases.shape("<cone/>"))) as program:
-        program.wait_for_line("Robot initialized")
-        assert program.lines[:2] == [
+        assert [line for line in program.lines if line.startswith("Error:")] == [
             "Error:   Unknown geometry type 'cone'\n",
             "Error:   Could not parse visual element for Link [a]\n",
         ]
+        assert program.stop(signal.SIGTERM) == 0
 
 
-def test_joints_are_published_as_soon_as_a_description_is_latched(graph, walker):
+def test_joints_are_published_as_soon_as_a_description_is_latched_and_of_a_bad_one_is_warned(
+    graph, walker
+):
     with joint_publisher() as program:
         program.wait_for_line("Waiting for robot_description to be published")
         with state_publisher(*walker):
@@ -162,6 +184,10 @@ def test_joints_are_published_as_soon_as_a_description_is_latched(graph, walker)
             assert states[0].header.stamp.sec > 0
             children = [one.child_frame_id for one in transforms[0].transforms]
             assert children == ["rod", "head", "body"]
+            sender = graph.publisher(String, "/robot_description", LATCHED)
+            sender.publish(String(data=cases.robot('<joint name="a" type="revolute"/>')))
+            line = program.wait_for_line('Limits must be specified for joint "a" of type')
+            assert "[WARN]" in line
             assert program.stop() == 0
 
 
@@ -177,36 +203,18 @@ def test_joints_come_from_a_file_and_a_source_moves_them(graph):
         assert program.stop() == 0
 
 
-def test_a_description_that_joints_cannot_be_read_from_is_warned_of(graph):
-    with joint_publisher() as program:
-        sender = graph.publisher(String, "/robot_description", LATCHED)
-        sender.publish(String(data=cases.robot('<joint name="a" type="revolute"/>')))
-        line = program.wait_for_line('Limits must be specified for joint "a" of type "revolute"')
-        assert "[WARN]" in line
-        assert program.stop() == 0
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code", "complaint"),
-    [
-        (["/no/such.urdf"], 2, "joint_state_publisher: /no/such.urdf: [Errno 2]"),
-        (["--ros-args", "-p", "rate:=0"], 2, "parameter rate is 0, expected a number above 0"),
-        (["--ros-args", "-p", "rate:=fast"], 2, "parameter rate is 'fast', expected a number"),
-        (["--ros-args", "-p", "use_mimic_tags:=1"], 2, "is 1, expected true or false"),
-        (["--ros-args", "-p", "source_list:=[]"], 2, "a parameter cannot be used:"),
-        (["--ros-args", "-p", "zeros.a:=up"], 2, "parameter zeros.a is 'up', expected a number"),
-        (
-            ["--ros-args", "-p", "dependent_joints.a.factor:=2.0"],
-            2,
-            "All dependent_joints must at least have a parent",
-        ),
-    ],
-)
-def test_joints_are_not_published_with_what_cannot_be_used(arguments, code, complaint):
-    with joint_publisher(*arguments) as program:
-        assert program.wait() == code
-        assert complaint in program.text()
-        assert "Traceback" not in program.text()
+def test_joints_are_not_published_with_what_cannot_be_used():
+    given = {
+        "rate:=0": "parameter rate is 0, expected a number above 0",
+        "rate:=fast": "parameter rate is 'fast', expected a number",
+        "use_mimic_tags:=1": "is 1, expected true or false",
+        "source_list:=[]": "a parameter cannot be used:",
+        "zeros.a:=up": "parameter zeros.a is 'up', expected a number",
+        "dependent_joints.a.factor:=2.0": "All dependent_joints must at least have a parent",
+    }
+    refused = [(["--ros-args", "-p", value], complaint) for value, complaint in given.items()]
+    no_file = (["/no/such.urdf"], "joint_state_publisher: /no/such.urdf: [Errno 2]")
+    refuses("joint_state_publisher", [no_file, *refused])
 
 
 def test_a_circle_of_mimics_ends_it_with_code_1(tmp_path):
