@@ -120,15 +120,8 @@ class Bright(Lamp):
 
 
 bright = Bright()
-for hook in HOOKS:
-    globals()[hook] = type("Other", (Lamp,), {"name": hook, hook: fails})()
+shows = type("Other", (Lamp,), {"name": "shows", "view": fails})()
 '''
-#: Methods of a scene that the grader calls in a run that does not get all points.
-HOOKS = (
-    *("message_definitions", "bag_topics", "to_messages", "scenario", "wrong_setting"),
-    *("view", "pictures", "remarks", "endpoints", "interfaces_for", "starts"),
-)
-MISTAKES = f"HOOKS = {HOOKS!r}\n{MISTAKES}"
 RAISED = "ZeroDivisionError: no lamp has this"
 SENTENCES = {
     "ticks": f"the scene ticks raised {RAISED} (mistakes.py, line ",
@@ -143,7 +136,8 @@ SENTENCES = {
     "sleeps": "the scene sleeps raised Overdue: it did not return (mistakes.py, line ",
     "loops": "the scene loops raised Overdue: it did not return (mistakes.py, line ",
     **{
-        name: f"the scene {name} raised {RAISED} (mistakes.py, line " for name in (*HOOKS, "sha256")
+        name: f"the scene {name} raised {RAISED} (mistakes.py, line "
+        for name in ("shows", "sha256")
     },
 }
 NAMES = (*SENTENCES, "ends_its_process", "misnamed", "bright")

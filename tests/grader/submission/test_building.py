@@ -187,12 +187,6 @@ def test_a_set_up_that_cannot_be_evaluated_is_a_note_with_its_line(tmp_path: Pat
         )
 
 
-def test_a_place_that_os_path_join_makes_is_known(tmp_path: Path) -> None:
-    change = changed("setup.py", "'share/' + package_name", "os.path.join('share', package_name)")
-    (note,) = notes(lay(tmp_path, PACKAGE | change | {"setup.cfg": ""}))
-    assert "setup.cfg has no install_scripts" in note
-
-
 def test_a_package_inside_is_named_with_its_folder(tmp_path: Path) -> None:
     files = {name: text for name, text in PACKAGE.items() if name != "setup.cfg"}
     lay(tmp_path, {"README.md": "", **below("src/spiral", files)})

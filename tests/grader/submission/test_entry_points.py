@@ -20,6 +20,9 @@ setup(
 """
 
 
+TARGET = "spiral.turtle_controller:main"
+
+
 def package(name: str, *entries: str, module: str = "turtle_controller") -> dict[str, str]:
     """Write down an ament_python package as `ros2 pkg create` makes it."""
     listed = ", ".join(map(repr, entries or (f"turtle_controller = {name}.{module}:main",)))
@@ -45,28 +48,58 @@ def test_a_package_starts_by_its_console_script(tmp_path: Path) -> None:
     assert str(found.found) == "console script turtle_controller in setup.py"
 
 
-def test_turtle_controller_is_preferred_to_other_scripts(tmp_path: Path) -> None:
-    target = "spiral.turtle_controller:main"
-    lay(tmp_path, package("spiral", f"a = {target}", f"turtle_controller = {target}"))
-    assert str(found_in(tmp_path).found) == "console script turtle_controller in setup.py"
-    assert str(found_in(tmp_path, "a").found) == "console script a in setup.py"
+def test_turtle_controller_is_preferred_and_the_only_script_needs_no_particular_name(
+    tmp_path: Path,
+) -> None:
+    lay(tmp_path / "two", package("spiral", f"a = {TARGET}", f"turtle_controller = {TARGET}"))
+    said = "console script {} in setup.py"
+    assert str(found_in(tmp_path / "two").found) == said.format("turtle_controller")
+    assert str(found_in(tmp_path / "two", "a").found) == said.format("a")
+    only = found_in(lay(tmp_path / "one", package("spiral", f"draw = {TARGET}")))
+    assert only.start == EntryPoint("spiral.turtle_controller", "main")
 
 
-def test_the_only_console_script_needs_no_particular_name(tmp_path: Path) -> None:
-    lay(tmp_path, package("spiral", "draw = spiral.turtle_controller:main"))
-    assert found_in(tmp_path).start == EntryPoint("spiral.turtle_controller", "main")
+SPIRAL = package("spiral")
+TEXT = {"spiral/turtle_controller.py.txt" if "controller" in name else name: text
+        for name, text in SPIRAL.items()}  # fmt: skip
+TWO = package("spiral", module="draw") | {"spiral/pens.py": GUARDED}
+NO_SCRIPTS = {"setup.py": SETUP.format(package="spiral", entries="")}
+OTHERS = "class Node: ...\ndef Main(): ...\n"
 
 
-def test_several_console_scripts_are_listed_with_the_option_that_chooses(tmp_path: Path) -> None:
-    target = "spiral.turtle_controller:main"
-    text = refused(lay(tmp_path, package("spiral", f"a = {target}", f"b = {target}")))
-    assert "several console scripts: a, b" in text
-    assert "--executable NAME" in text
+@pytest.mark.parametrize(
+    ("files", "executable", "words"),
+    [
+        (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "console scripts: a, b"),
+        (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "--executable NAME"),
+        (SPIRAL, "spirral", "no console script spirral; it has: turtle_controller"),
+        # a module is never taken from elsewhere
+        (package("spiral", "x = json.tool:main"), None, "there is no file json/tool.py"),
+        (
+            package("spiral", "x = spiral.turtle_controler:main"),
+            *(None, "no file spiral/turtle_controler.py. Near: spiral/turtle_controller.py."),
+        ),
+        (TEXT, None, "turtle_controller.py.txt: rename it to turtle_controller.py, without .txt."),
+        (
+            SPIRAL | {"spiral/turtle_controller.py": OTHERS},
+            *(None, "turtle_controller.py defines no function main (it defines: Main, Node)"),
+        ),
+        (TWO | NO_SCRIPTS, None, "setup.py names no console script"),
+        (TWO | NO_SCRIPTS, None, "'turtle_controller = my_package.turtle_controller:main'"),
+    ],
+)
+def test_what_names_no_program_of_the_package_is_refused_with_what_there_is(
+    tmp_path: Path, files: dict[str, str], executable: str | None, words: str
+) -> None:
+    assert words in refused(lay(tmp_path, files), executable)
 
 
-def test_an_executable_that_is_not_there_is_named_beside_those_that_are(tmp_path: Path) -> None:
-    text = refused(lay(tmp_path, package("spiral")), "spirral")
-    assert "no console script spirral; it has: turtle_controller" in text
+@pytest.mark.parametrize("script", ["turtle_controller", "draw"])
+def test_the_same_script_in_two_packages_is_refused(tmp_path: Path, script: str) -> None:
+    for name in ("a", "b"):
+        entry = f"{script} = {name}.turtle_controller:main"
+        lay(tmp_path, below(f"src/{name}", package(name, entry)))
+    assert f"{script} more than once: src/a/setup.py, src/b/setup.py" in refused(tmp_path)
 
 
 def test_the_package_is_found_in_a_workspace(tmp_path: Path) -> None:
@@ -83,18 +116,6 @@ def test_of_several_packages_the_one_with_the_script_is_taken(tmp_path: Path) ->
     lay(tmp_path, below("src/b", package("b")))
     assert found_in(tmp_path).root == tmp_path / "src/b"
     assert found_in(tmp_path, "helper").root == tmp_path / "src/a"
-
-
-def test_the_same_script_in_two_packages_is_refused(tmp_path: Path) -> None:
-    for name in ("a", "b"):
-        lay(tmp_path, below(f"src/{name}", package(name)))
-    assert "turtle_controller more than once: src/a/setup.py, src/b/setup.py" in refused(tmp_path)
-
-
-def test_two_packages_that_each_have_the_only_script_are_refused(tmp_path: Path) -> None:
-    for name in ("a", "b"):
-        lay(tmp_path, below(f"src/{name}", package(name, f"draw = {name}.turtle_controller:main")))
-    assert "draw more than once: src/a/setup.py, src/b/setup.py" in refused(tmp_path)
 
 
 def test_a_package_may_be_called_test(tmp_path: Path) -> None:
@@ -149,35 +170,7 @@ def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_t
     assert "'turtle_controller = spiral.turtle_controller:main'" in note
 
 
-def test_several_programs_and_a_setup_py_without_scripts_are_refused(tmp_path: Path) -> None:
-    files = package("spiral", module="draw") | {"spiral/pens.py": GUARDED}
-    files["setup.py"] = SETUP.format(package="spiral", entries="")
-    text = refused(lay(tmp_path, files))
-    assert "setup.py names no console script" in text
-    assert "'turtle_controller = my_package.turtle_controller:main'" in text
-
-
 # the module of a console script
-
-
-def test_a_missing_module_is_never_taken_from_elsewhere(tmp_path: Path) -> None:
-    text = refused(lay(tmp_path, package("spiral", "turtle_controller = json.tool:main")))
-    assert "there is no file json/tool.py" in text
-
-
-def test_a_missing_module_is_named_with_what_comes_near(tmp_path: Path) -> None:
-    entry = "turtle_controller = spiral.turtle_controler:main"
-    text = refused(lay(tmp_path, package("spiral", entry)))
-    assert "no file spiral/turtle_controler.py. Near: spiral/turtle_controller.py." in text
-
-
-def test_a_module_that_was_saved_as_text_is_named(tmp_path: Path) -> None:
-    files = package("spiral")
-    files["spiral/turtle_controller.py.txt"] = files.pop("spiral/turtle_controller.py")
-    text = refused(lay(tmp_path, files))
-    assert text.endswith(
-        "There is spiral/turtle_controller.py.txt: rename it to turtle_controller.py, without .txt."
-    )
 
 
 def test_a_module_of_another_submission_is_out_of_reach(tmp_path: Path) -> None:
@@ -213,35 +206,6 @@ def test_a_missing_init_file_is_added_to_a_copy(tmp_path: Path) -> None:
         assert "with the missing turtlesim_challenge/__init__.py added" in str(submission.found)
     assert not submission.root.exists()
     assert not (tmp_path / "turtlesim_challenge/__init__.py").exists()
-
-
-@pytest.mark.parametrize("source", ["", "src/"])
-def test_a_missing_init_file_takes_nothing_away(tmp_path: Path, source: str) -> None:
-    """Neither the package's own files where it has a source folder, nor packages beside it."""
-    where = "where='src', exclude=" if source else "exclude="
-    setup = SETUP.format(package="s", entries="'turtle_controller = s.node:main'")
-    beside = {"my_desc/package.xml": "", "my_desc/urdf/robot.urdf": "<robot/>"}
-    own = {
-        "setup.py": setup.replace("exclude=", where),
-        "package.xml": "",
-        "launch/a.launch.py": "",
-    }
-    files = {f"my_pkg/{name}": text for name, text in own.items()} | beside
-    with open_submission(lay(tmp_path, files | {f"my_pkg/{source}s/node.py": NODE})) as submission:
-        package = submission.package
-        assert package is not None
-        assert submission.root == package / source
-        assert (submission.root / "s/__init__.py").read_text() == ""
-        assert (package / "launch/a.launch.py").exists()
-        assert (package.parent / "my_desc/urdf/robot.urdf").exists()
-        assert submission.copy is not None
-        assert package.is_relative_to(submission.copy.folder)
-
-
-def test_a_missing_function_is_named_with_those_that_are_there(tmp_path: Path) -> None:
-    files = package("s") | {"s/turtle_controller.py": "class Node: ...\ndef Main(): ...\n"}
-    text = refused(lay(tmp_path, files))
-    assert "s/turtle_controller.py defines no function main (it defines: Main, Node)" in text
 
 
 def test_a_module_that_does_not_parse_is_left_to_the_interpreter(tmp_path: Path) -> None:

@@ -63,49 +63,6 @@ def notes(submission: Submission) -> list[str]:
     return [str(note) for note in submission.notes]
 
 
-@pytest.mark.parametrize(
-    ("node", "arguments"),
-    [
-        ("", ()),
-        (", output='screen', emulate_tty=True", ()),
-        (", name='a', namespace='left'", ("-r", "__node:=a", "-r", "__ns:=/left")),
-        (", remappings=[('a', '/b'), ('~/c', 'd')]", ("-r", "a:=/b", "-r", "~/c:=d")),
-        (
-            ", parameters=[{'rate': 2.5, 'on': True}, {'name': 'x: y', 'many': [1, 2]}]",
-            ("-p", "rate:=2.5", "-p", "on:=true", "-p", 'name:="x: y"', "-p", "many:=[1, 2]"),
-        ),
-        (", arguments=['--fast']", None),
-    ],
-)
-def test_what_a_node_is_given_becomes_the_arguments_of_ros(
-    tmp_path: Path, node: str, arguments: tuple[str, ...] | None
-) -> None:
-    words = ("--fast",) if arguments is None else ("--ros-args", *arguments) if arguments else ()
-    given = DRIVE.replace(")", f"{node})")
-    start = launched(tmp_path, f"{given}, {PENS}").start
-    assert isinstance(start, Launch)
-    assert start.programs[0].arguments == words
-
-
-@pytest.mark.parametrize(
-    "body",
-    [
-        f"    a = {DRIVE}\n    b = {PENS}\n    return LaunchDescription([a, b])\n",
-        f"    ld = LaunchDescription()\n    ld.add_action({DRIVE})\n    b = {PENS}\n"
-        "    ld.add_action(b)\n    return ld\n",
-        f"    '''Both.'''\n    both = [launch_ros.actions.{DRIVE}, {PENS}]\n"
-        "    return LaunchDescription(initial_entities=both)\n",
-        "    names = ['turtle_controller', 'pen_node']\n"
-        "    return LaunchDescription([Node(package='spiral', executable=n) for n in names])\n",
-    ],
-)
-def test_however_a_launch_file_is_written_what_counts_is_what_it_starts(
-    tmp_path: Path, body: str
-) -> None:
-    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": HEAD + body}))
-    assert names(submission) == ["turtle_controller-1", "pen_node-2"]
-
-
 THIRD = "Node(package='spiral', executable='pen_node'{})"
 EVENT = "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))"
 
@@ -113,9 +70,6 @@ EVENT = "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))"
 @pytest.mark.parametrize(
     ("more", "third", "note"),
     [
-        ("DeclareLaunchArgument('a', default_value='b')", "", ""),
-        (THIRD.format(""), "pen_node-3", ""),
-        (THIRD.format(", condition=IfCondition('true')"), "pen_node-3", ""),
         (THIRD.format(", condition=IfCondition('false')"), "", ""),
         (
             "ExecuteProcess(cmd=['ls', '-l'])",
@@ -126,11 +80,6 @@ EVENT = "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))"
             EVENT.format(THIRD.format("")),
             "",
             "launch/a.launch.py starts programs after an event, and these were not: pen_node",
-        ),
-        (
-            THIRD.format(", additional_env={'A': 'b'}"),
-            "pen_node-3",
-            "of launch/a.launch.py was not followed: additional_env of pen_node",
         ),
     ],
 )
@@ -158,20 +107,6 @@ def test_a_launch_file_that_starts_a_program_in_cpp_cannot_be_graded(tmp_path: P
         opened(tmp_path)
 
 
-def test_what_a_timer_starts_is_started_later(tmp_path: Path) -> None:
-    timer = "TimerAction(period={}, actions=[{}])"
-    inner = timer.format("1.5", PENS)
-    submission = launched(tmp_path, timer.format(1.0, f"{DRIVE}, {inner}"))
-    assert [program.delay_s for program in submission.programs] == [1.0, 2.5]
-
-
-def test_what_is_set_for_all_nodes_of_a_group_is_given_to_each(tmp_path: Path) -> None:
-    given = "PushRosNamespace('left'), SetParameter('rate', 2), SetRemap('a', 'b')"
-    first, second = launched(tmp_path, f"GroupAction([{given}, {DRIVE}]), {PENS}").programs
-    words = ("--ros-args", "-r", "__ns:=/left", "-p", "rate:=2", "-r", "a:=b")
-    assert (first.arguments, second.arguments) == (words, ())
-
-
 INCLUDES = HEAD + (
     "    part = __file__.replace('all', 'part')\n"
     f"    return LaunchDescription([IncludeLaunchDescription(part), {DRIVE}])\n"
@@ -183,17 +118,6 @@ def test_a_launch_file_that_another_includes_is_none_to_choose(tmp_path: Path) -
     files = {"launch/all.launch.py": INCLUDES, "launch/part.launch.py": part}
     submission = opened(lay(tmp_path, TWO | files))
     assert names(submission) == ["pen_node-1", "pen_node-2", "turtle_controller-3"]
-
-
-def test_a_launch_file_in_xml_is_evaluated_too(tmp_path: Path) -> None:
-    node = "<node pkg='spiral' exec='{}' {}>{}</node>"
-    inside = "<remap from='a' to='/b'/><param name='rate' value='2.5'/>"
-    drive = node.format("turtle_controller", "name='n' output='screen'", inside)
-    text = f"<launch>{drive}{node.format('pen_node', '', '')}</launch>"
-    start = opened(lay(tmp_path, TWO | {"launch/a.launch.xml": text})).start
-    assert isinstance(start, Launch)
-    words = ("--ros-args", "-r", "__node:=n", "-p", "rate:=2.5", "-r", "a:=/b")
-    assert [program.arguments for program in start.programs] == [words, ()]
 
 
 def test_several_nodes_of_a_launch_file_are_started(tmp_path: Path) -> None:

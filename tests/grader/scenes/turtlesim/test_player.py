@@ -175,20 +175,18 @@ def test_the_first_input_that_differs_is_named():
         if tick == 50:
             arena.clear()
 
-    one, two = (drive(each, 100)[0] for each in (eventful, later))
+    one, two, shorter = (
+        drive(*each)[0] for each in ((eventful, 100), (later, 100), (eventful, 90))
+    )
     found = first_difference(one, two)
     assert found is not None
     assert found["tick"] == 50
     assert [call["op"] for call in found["mine"]] == ["cmd_vel"]
     assert [call["op"] for call in found["other"]] == ["cmd_vel", "clear"]
     assert first_difference(one, one) is None
-
-
-def test_one_that_ended_earlier_differs_where_the_other_goes_on():
-    one, two = (drive(eventful, ticks)[0] for ticks in (100, 90))
-    found = first_difference(one, two)
-    assert found is not None
-    assert (found["tick"], found["other"]) == (91, [])
+    ended = first_difference(one, shorter)
+    assert ended is not None
+    assert (ended["tick"], ended["other"]) == (91, [])
 
 
 COMMANDS = [{"op": "cmd_vel", "turtle": "turtle1", "tick": tick} for tick in (1, 2, 3)]
@@ -202,19 +200,16 @@ def lines_of(sent: Sent) -> list[int | None]:
     return [None if each is None else lines[each] for each in found]
 
 
-def test_as_many_as_were_sent_have_come_and_each_has_its_line():
-    sent = Sent("/turtle1/cmd_vel", 3, LINES, ((0, 2), (1, 1)))
-    assert lines_of(sent) == [None, 5, 5, 9]
-
-
-def test_what_was_not_told_to_the_end_is_known_as_far_as_it_was_told():
-    assert lines_of(Sent("/turtle1/cmd_vel", 3, LINES, ((0, 2),))) == [None, 5, 5, None]
-
-
-@pytest.mark.parametrize("times", [2, 4])
-def test_where_not_as_many_came_only_the_first_is_known(times):
-    sent = Sent("/turtle1/cmd_vel", times, LINES, ((0, 2), (1, 10**15)))
-    assert lines_of(sent) == [None, 5, None, None]
+@pytest.mark.parametrize(
+    ("times", "told", "lines"),
+    [
+        (3, ((0, 2), (1, 1)), [5, 5, 9]),
+        (3, ((0, 2),), [5, 5, None]),  # not told to the end
+        *((times, ((0, 2), (1, 10**15)), [5, None, None]) for times in (2, 4)),
+    ],
+)
+def test_what_came_has_its_line_as_far_as_as_many_were_sent(times, told, lines):
+    assert lines_of(Sent("/turtle1/cmd_vel", times, LINES, told)) == [None, *lines]
 
 
 def test_nothing_is_known_of_what_was_sent_by_another_name():

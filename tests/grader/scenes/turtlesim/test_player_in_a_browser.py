@@ -139,34 +139,32 @@ def window(ticks: int) -> np.ndarray:
     return TurtleTrace.of(drive(Wild(), ticks=ticks).trace).window
 
 
-def test_at_the_end_it_shows_the_recorded_window_to_the_pixel(visit, runs):
+def test_every_moment_is_exact_in_whatever_order_they_are_looked_at(visit, runs):
     page = visit()
     at(page, TICKS)
     assert (pixels(page) == TurtleTrace.of(runs.nominal.trace).window).all()
-
-
-def test_every_moment_is_exact_in_whatever_order_they_are_looked_at(visit):
-    page = visit()
     for frame in (0, TICKS, 149, 150, 3, 260, 199, 148, 200, 99, 100):
         go(page, frame)
         assert (pixels(page) == window(frame)).all(), frame
+    page.click("#forth")
+    at(page, 101)
+    assert (pixels(page) == window(101)).all()
+    page.click("#back")
+    page.click("#back")
+    at(page, 99)
+    assert "1.584 s, tick 99 of 300" in page.inner_text("#time")
 
 
-def test_a_varied_run_begins_where_it_began_and_ends_as_recorded(visit, runs):
+def test_all_runs_are_there_one_by_one_and_side_by_side(visit, runs):
     page = visit("#run=1&tick=120")
     at(page, 120, 1)
     assert (pixels(page) == TurtleTrace.of(runs.varied[0].trace).window).all()
-
-
-def test_a_step_is_a_tick(visit):
-    page = visit("#tick=50")
-    page.click("#forth")
-    at(page, 51)
-    assert (pixels(page) == window(51)).all()
-    page.click("#back")
-    page.click("#back")
-    at(page, 49)
-    assert "0.784 s, tick 49 of 300" in page.inner_text("#time")
+    page.get_by_role("button", name="Side by side").click()
+    at(page, TICKS, -1)
+    for number, run in enumerate(runs, 1):
+        shown = pixels(page, f"#beside figure:nth-child({number}) canvas")
+        assert (shown == TurtleTrace.of(run.trace).window).all()
+    assert obstacles(page) == []
 
 
 def test_it_plays_to_the_end_and_then_rests(visit):
@@ -211,16 +209,6 @@ def test_a_curve_can_be_dragged(visit):
     page.mouse.up()
 
 
-def test_all_runs_are_there_side_by_side(visit, runs):
-    page = visit()
-    page.get_by_role("button", name="Side by side").click()
-    at(page, TICKS, -1)
-    for number, run in enumerate(runs, 1):
-        shown = pixels(page, f"#beside figure:nth-child({number}) canvas")
-        assert (shown == TurtleTrace.of(run.trace).window).all()
-    assert obstacles(page) == []
-
-
 def test_all_of_it_goes_by_keyboard_alone(visit):
     page = visit()
     page.locator("#slider").focus()
@@ -257,8 +245,12 @@ def test_two_ways_lie_over_each_other_and_are_told_apart_by_more_than_colour(vis
     assert obstacles(page) == []
 
 
-def test_nobody_is_kept_out(visit):
-    assert barriers(visit("#tick=120", reduced_motion="reduce")) == []
+def test_nobody_is_kept_out_and_nothing_moves_by_itself_where_less_motion_is_asked_for(visit):
+    page = visit("#tick=120", reduced_motion="reduce")
+    assert barriers(page) == []
+    page.get_by_role("button", name="too far").click()
+    at(page, 80, 1)
+    assert moving(page) == 0
 
 
 def test_keys_that_a_reader_needs_elsewhere_move_nothing(visit):
@@ -288,13 +280,6 @@ def test_a_value_that_jumps_to_and_fro_does_not_fill_its_plot(visit):
         each.evaluate("it => getComputedStyle(it).strokeOpacity") for each in (jumps, curve)
     )
     assert "L" in jumps.get_attribute("d") and float(faint) < float(whole) == 1
-
-
-def test_nothing_moves_by_itself_where_less_motion_is_asked_for(visit):
-    page = visit("#tick=120", reduced_motion="reduce")
-    page.get_by_role("button", name="too far").click()
-    at(page, 80, 1)
-    assert moving(page) == 0
 
 
 def test_which_run_is_shown_is_seen_where_the_reader_chooses_the_colours(visit):

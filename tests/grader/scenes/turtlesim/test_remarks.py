@@ -19,6 +19,8 @@ from turtlesim_py.world.events import (
     TeleportRelative,
 )
 
+MOVES = "it moves a turtle without driving"
+
 
 @pytest.fixture(scope="module")
 def trace() -> TurtleTrace:
@@ -41,32 +43,19 @@ def test_the_messages_of_newer_releases_are_named_and_the_older_are_not(trace):
 
 
 @pytest.mark.parametrize(
-    ("event", "sentence"),
+    ("event", "at_s", "effect"),
     [
-        (
-            TeleportAbsolute(tick=100, x=1.0, y=2.0, theta=0.0),
-            "The node called teleport_absolute once, first at 1.60 s: "
-            "it moves a turtle without driving.",
-        ),
-        (
-            TeleportRelative(tick=100, turtle="another", linear=1.0, angular=0.0),
-            "The node called teleport_relative once, first at 1.60 s: "
-            "it moves a turtle without driving.",
-        ),
-        (
-            Spawn(tick=1, x=1.0, y=2.0, theta=0.0, name=""),
-            "The node called spawn once, first at 0.02 s: it adds a turtle.",
-        ),
-        (
-            Kill(tick=50, name="nobody"),
-            "The node called kill once, first at 0.80 s: it removes a turtle.",
-        ),
-        (Reset(tick=50), "The node called reset once, first at 0.80 s: it starts the arena anew."),
-        (Clear(tick=50), "The node called clear once, first at 0.80 s: it wipes the drawing."),
+        (TeleportAbsolute(tick=100, x=1.0, y=2.0, theta=0.0), "1.60", MOVES),
+        (TeleportRelative(tick=100, turtle="b", linear=1.0, angular=0.0), "1.60", MOVES),
+        (Spawn(tick=1, x=1.0, y=2.0, theta=0.0, name=""), "0.02", "it adds a turtle"),
+        (Kill(tick=50, name="nobody"), "0.80", "it removes a turtle"),
+        (Reset(tick=50), "0.80", "it starts the arena anew"),
+        (Clear(tick=50), "0.80", "it wipes the drawing"),
     ],
 )
-def test_an_intervention_is_told_with_its_time_and_effect(trace, event, sentence):
-    assert told(replace(trace, events=(*trace.events, event))) == [sentence]
+def test_an_intervention_is_told_with_its_time_and_effect(trace, event, at_s, effect):
+    said = f"The node called {event.op} once, first at {at_s} s: {effect}."
+    assert told(replace(trace, events=(*trace.events, event))) == [said]
 
 
 def test_many_are_one_sentence_with_their_number_and_the_first_time(trace):
