@@ -21,7 +21,8 @@ from tests.grader_robots.packages import (
 )
 from tests.tiers import others_are_more
 
-DISPLAY = "launch/display.launch.py"
+DISPLAY, XACRO = "launch/display.launch.py", "urdf/walker.urdf.xacro"
+NO_SPAWN: dict[str, str | None] = {"launch/spawn.launch.py": None}
 #: Mutant -> words of the first line. What each loses stands in mutants.yaml.
 FIRST_LINES = {
     "urdf_not_installed": "urdf/walker.urdf.xacro is in the package, and nothing installs it",
@@ -64,6 +65,13 @@ FIRST_LINES = {
 
 def graded(path: Path, exercise: object = EXERCISE) -> Result:
     return judge(recorded(looked_at(path)), exercise)  # type: ignore[arg-type]
+
+
+def changed(folder: Path, file: str, old: str, new: str, **more: str | None) -> Path:
+    """The reference with a passage of a file replaced, and without other files."""
+    text = (REFERENCE / file).read_text()
+    assert old in text
+    return written(folder, {file: text.replace(old, new), **more})
 
 
 def lost(result: Result) -> dict[str, float]:
@@ -147,13 +155,11 @@ def test_rviz_as_a_plain_program_is_rviz(tmp_path):
 
 
 def test_an_angle_in_degrees_is_told_as_one(tmp_path):
-    file = "urdf/walker.urdf.xacro"
     joint = (
         '<link name="fin"/><joint name="fin_joint" type="fixed"><parent link="base_link"/>'
         '<child link="fin"/><origin rpy="90 0 0"/></joint></robot>'
     )
-    text = (REFERENCE / file).read_text().replace("</robot>", joint)
-    result = graded(written(tmp_path, {file: text}))
+    result = graded(changed(tmp_path, XACRO, "</robot>", joint))
     assert lost(result) == {"urdf": 0.5}
     assert "'fin_joint' is turned by 90 rad, as if in degrees" in str(result.diagnosis.cause)
 
@@ -176,10 +182,8 @@ def test_the_starter_is_told_what_to_begin_with():
 
 
 def test_a_name_of_launch_that_nobody_knows_is_not_judged_and_never_failed(tmp_path):
-    text = (REFERENCE / DISPLAY).read_text()
-    text = text.replace("import Command, Launch", "import Wondrous, Command, Launch")
-    spawn = {"launch/spawn.launch.py": None}
-    result = graded(written(tmp_path, {DISPLAY: text, **spawn}))
+    names = ("import Command, Launch", "import Wondrous, Command, Launch")
+    result = graded(changed(tmp_path, DISPLAY, *names, **NO_SPAWN))
     status = {verdict.check: verdict.status for verdict in result.verdicts}
     assert status["launch"] == "not_judged"
     assert "failed" not in status.values()
@@ -188,65 +192,50 @@ def test_a_name_of_launch_that_nobody_knows_is_not_judged_and_never_failed(tmp_p
 
 
 def test_a_file_of_another_package_is_nobody_s_fault(tmp_path):
-    text = (REFERENCE / DISPLAY).read_text()
-    text = text.replace('share, "urdf", "walker.urdf.xacro"', 'other, "urdf", "ur.urdf.xacro"')
-    text = text.replace(
-        "    model =", '    other = get_package_share_directory("ur_description")\n    model ='
-    )
-    result = graded(written(tmp_path, {DISPLAY: text, "launch/spawn.launch.py": None}))
+    other = 'get_package_share_directory("ur_description"), "urdf", "ur.urdf.xacro"'
+    package = changed(tmp_path, DISPLAY, 'share, "urdf", "walker.urdf.xacro"', other, **NO_SPAWN)
+    result = graded(package)
     status = {verdict.check: verdict.status for verdict in result.verdicts}
     assert status["launch"] == "not_judged"
     assert status["installed"] == "passed"
 
 
 def test_what_a_description_does_not_say_is_found_where_urdfdom_is_silent(tmp_path):
-    file = "urdf/walker.urdf.xacro"
-    text = (REFERENCE / file).read_text()
-    joint = (
-        '<joint name="again" type="fixed"><parent link="base_link"/><child link="camera"/></joint>'
-    )
-    result = graded(written(tmp_path, {file: text.replace("</robot>", f"{joint}</robot>")}))
+    joint = '<joint name="again" type="fixed"><parent link="base_link"/><child link="camera"/>'
+    result = graded(changed(tmp_path, XACRO, "</robot>", f"{joint}</joint></robot>"))
     assert lost(result) == {"urdf": 0.5}
     assert "'camera' hangs on 2 joints" in str(result.diagnosis.cause)
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "says"),
+    ("uri", "says"),
     [
         (
-            "package://walker_description/meshes/camera.stl",
             "file:///home/me/ros2_ws/src/walker_description/meshes/camera.stl",
             "a path of one machine",
         ),
         (
-            "package://walker_description/meshes/camera.stl",
             "package://walker_description/camera.stl",
             "camera.stl is installed as package://walker_description/meshes/camera.stl",
         ),
     ],
 )
-def test_a_wrong_way_to_a_mesh_that_is_installed_is_a_fault_of_the_description(
-    old, new, says, tmp_path
-):
-    file = "urdf/walker.urdf.xacro"
-    text = (REFERENCE / file).read_text()
-    assert old in text
-    result = graded(written(tmp_path, {file: text.replace(old, new)}))
+def test_a_wrong_way_to_a_mesh_that_is_installed_is_a_fault_of_the_description(uri, says, tmp_path):
+    installed = "package://walker_description/meshes/camera.stl"
+    result = graded(changed(tmp_path, XACRO, installed, uri))
     assert lost(result) == {"meshes": 0}
     assert says in str(result.diagnosis.cause)
 
 
 def test_a_second_declaration_is_told_as_what_it_is(tmp_path):
-    file = "urdf/walker.urdf.xacro"
     link = '<link name="base_link"/>'
-    text = (REFERENCE / file).read_text().replace(link, f"<?xacro?>{link}")
-    result = graded(written(tmp_path, {file: text}))
+    result = graded(changed(tmp_path, XACRO, link, f"<?xacro?>{link}"))
     assert lost(result)["urdf"] == 0
     assert "take the other away" in str(result.diagnosis.help)
 
 
 def test_who_asks_for_what_is_not_there_is_told_with_the_line(tmp_path):
-    text = (REFERENCE / DISPLAY).read_text().replace('"walker.rviz"', '"wolker.rviz"')
-    line = 1 + next(n for n, each in enumerate(text.splitlines()) if "wolker" in each)
-    result = graded(written(tmp_path, {DISPLAY: text}))
-    assert f"{DISPLAY} (line {line}) asks for" in str(result.diagnosis.cause)
+    package = changed(tmp_path, DISPLAY, '"walker.rviz"', '"wolker.rviz"')
+    lines = (package / DISPLAY).read_text().splitlines()
+    line = 1 + next(number for number, each in enumerate(lines) if "wolker" in each)
+    assert f"{DISPLAY} (line {line}) asks for" in str(graded(package).diagnosis.cause)

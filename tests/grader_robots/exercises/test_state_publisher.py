@@ -161,6 +161,10 @@ def test_a_path_from_the_current_folder_is_called_one():
     assert "asks for urdf/walker.urdf, a path from the current folder" in rationale
 
 
+MISSING = plain_text("there is no module walker.x")
+NAME_ERROR = Obstacle("error", plain_text("NameError: x"))
+
+
 @pytest.mark.parametrize(
     ("setup", "losses"),
     [
@@ -168,64 +172,45 @@ def test_a_path_from_the_current_folder_is_called_one():
         (replace(SETUP, manifest=plain_text("there is none")), {"package": 0.5, "launch": 0}),
         (replace(SETUP, absent=("urdf/a.urdf",)), {"package": 0.5, "launch": 0}),
         (replace(SETUP, folders=("meshes/a",)), {"package": 0.5, "launch": 0}),
+        (replace(SETUP, problem=NAME_ERROR), {"package": 0.5, "launch": 0}),
         (replace(SETUP, scripts_folder=""), {"package": 0.5}),
-        (
-            replace(
-                SETUP, scripts=(replace(SCRIPT, fault=plain_text("there is no module walker.x")),)
-            ),
-            {"package": 0.5},
-        ),
-        (
-            replace(SETUP, scripts=(SCRIPT, replace(SCRIPT, name="b", fault=plain_text("no")))),
-            {"package": 0.5},
-        ),
+        (replace(SETUP, scripts=(replace(SCRIPT, fault=MISSING),)), {"package": 0.5}),
+        (replace(SETUP, scripts=(SCRIPT, replace(SCRIPT, fault=MISSING))), {"package": 0.5}),
         (replace(SETUP, scripts=()), {"package": 0, "launch": 0.6}),
-        (
-            replace(SETUP, problem=Obstacle("error", plain_text("NameError: x"))),
-            {"package": 0.5, "launch": 0},
-        ),
     ],
 )
 def test_a_package_is_judged_by_what_it_installs(setup, losses):
     assert lost(package=PackageTrace(setup, launches=(LAUNCH,), texts=(URDF,))) == losses
 
 
+def lacks(kind, name, *more):
+    return {"nodes": (ROBOT, OWN, *more), "lacking": (Lacking(kind, name, "", ""),)}
+
+
+WITH_RVIZ = replace(node("rviz2", "rviz2"), arguments=("-d", RVIZ))
+
+
 @pytest.mark.parametrize(
-    ("launch", "losses"),
+    ("changes", "losses"),
     [
-        (
-            replace(LAUNCH, problem=Obstacle("error", plain_text("it does not parse"))),
-            {"launch": 0},
-        ),
-        (
-            replace(LAUNCH, problem=Obstacle("argument", plain_text("it needs an argument"))),
-            {"launch": 0},
-        ),
-        (replace(LAUNCH, nodes=(OWN,)), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(OWN,), includes=(Include("a", "b.launch.py", ()),)), {}),
-        (replace(LAUNCH, nodes=(ROBOT,)), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(replace(ROBOT, parameters=()), OWN)), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(replace(ROBOT, parameters=(described(1),)), OWN)), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(ROBOT, replace(OWN, package="other"))), {"launch": 0.6}),
-        (replace(LAUNCH, lacking=(Lacking("executable", "walker x", "", ""),)), {"launch": 0}),
-        (
-            replace(LAUNCH, nodes=(ROBOT, OWN, node("j", "joint_state_publisher_gui"))),
-            {"launch": 0.6},
-        ),
-        (replace(LAUNCH, lacking=(Lacking("file", "/home/me/a.urdf", "", ""),)), {"launch": 0}),
-        (replace(LAUNCH, moved="/prefix/share/walker/a.urdf"), {"launch": 0}),
-        (replace(LAUNCH, lacking=(Lacking("package", "walkr", "", ""),)), {"launch": 0}),
-        (
-            replace(
-                LAUNCH,
-                nodes=(ROBOT, OWN, replace(node("rviz2", "rviz2"), arguments=("-d", RVIZ))),
-                lacking=(Lacking("file", RVIZ, "", ""),),
-            ),
-            {"launch": 0.8},
-        ),
+        ({"problem": Obstacle("error", plain_text("it does not parse"))}, {"launch": 0}),
+        ({"problem": Obstacle("argument", plain_text("it needs one"))}, {"launch": 0}),
+        ({"nodes": (OWN,)}, {"launch": 0.6}),
+        ({"nodes": (OWN,), "includes": (Include("a", "b.launch.py", ()),)}, {}),
+        ({"nodes": (ROBOT,)}, {"launch": 0.6}),
+        ({"nodes": (replace(ROBOT, parameters=()), OWN)}, {"launch": 0.6}),
+        ({"nodes": (replace(ROBOT, parameters=(described(1),)), OWN)}, {"launch": 0.6}),
+        ({"nodes": (ROBOT, replace(OWN, package="other"))}, {"launch": 0.6}),
+        ({"nodes": (ROBOT, OWN, node("j", "joint_state_publisher_gui"))}, {"launch": 0.6}),
+        ({"moved": "/prefix/share/walker/a.urdf"}, {"launch": 0}),
+        (lacks("executable", "walker x"), {"launch": 0}),
+        (lacks("file", "/home/me/a.urdf"), {"launch": 0}),
+        (lacks("package", "walkr"), {"launch": 0}),
+        (lacks("file", RVIZ, WITH_RVIZ), {"launch": 0.8}),
     ],
 )
-def test_a_launch_file_starts_robot_and_node_and_finds_what_it_reads(launch, losses):
+def test_a_launch_file_starts_robot_and_node_and_finds_what_it_reads(changes, losses):
+    launch = replace(LAUNCH, **changes)
     trace = PackageTrace(SETUP, launches=(launch,), texts=(URDF, "urdf/walker.urdf"))
     assert lost(package=trace) == losses
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from grader.scenes.scene import Limits
 from grader.scenes.turtlesim.simulation import GRACE_TICKS, EndOfRun
 from turtlesim_py.world.turtle import TICK_S, Pose
@@ -30,44 +32,36 @@ def ends(poses, limits: Limits = LIMITS, gone_tick: int | None = None) -> tuple[
     raise AssertionError("it never ends")
 
 
-def test_what_never_moves_is_over_when_the_first_motion_is_due():
-    assert ends(lambda tick: at(1.0)) == (FIRST_MOTION, "no_motion")
+def pauses(tick: int) -> Pose:
+    """A rest that is too short counts for nothing."""
+    return at(tick if tick < 20 else max(20, tick - REST + 2))
 
 
-def test_what_moves_and_rests_is_over_after_the_rest():
-    assert ends(lambda tick: at(min(tick, 50))) == (50 + REST, "rest")
+def turns_then_drives(tick: int) -> Pose:
+    return at(1.0 + min(max(tick - 60, 0), 20), theta=min(tick, 30))
 
 
-def test_what_moves_in_the_last_moment_is_not_over():
-    assert ends(lambda tick: at(max(tick, 98))) == (TOTAL, "time_limit")
-    assert ends(lambda tick: at(1.0 + (tick > 98))) == (99 + REST, "rest")
-
-
-def test_a_rest_that_is_too_short_counts_for_nothing():
-    def pauses(tick: int) -> Pose:
-        return at(tick if tick < 20 else max(20, tick - REST + 2))
-
-    assert ends(pauses) == (TOTAL, "time_limit")
-
-
-def test_turning_on_the_spot_is_motion():
-    assert ends(lambda tick: at(1.0, theta=tick)) == (TOTAL, "time_limit")
-
-
-def test_who_turns_first_may_pause_before_driving():
-    def turns_then_drives(tick: int) -> Pose:
-        return at(1.0 + min(max(tick - 60, 0), 20), theta=min(tick, 30))
-
-    assert ends(turns_then_drives) == (80 + REST, "rest")
-    assert ends(lambda tick: at(1.0, theta=min(tick, 30))) == (30 + FIRST_MOTION, "rest")
-
-
-def test_a_published_speed_without_motion_is_none():
-    assert ends(lambda tick: at(1.0, speed=float(tick))) == (FIRST_MOTION, "no_motion")
-
-
-def test_what_moves_for_ever_is_over_with_the_time():
-    assert ends(lambda tick: at(tick)) == (TOTAL, "time_limit")
+@pytest.mark.parametrize(
+    ("poses", "end", "why"),
+    [
+        (lambda tick: at(1.0), FIRST_MOTION, "no_motion"),
+        (lambda tick: None, FIRST_MOTION, "no_motion"),  # there never was a turtle
+        (lambda tick: at(1.0, speed=float(tick)), FIRST_MOTION, "no_motion"),  # only published
+        (lambda tick: at(min(tick, 50)), 50 + REST, "rest"),
+        (lambda tick: at(1.0 + (tick > 98)), 99 + REST, "rest"),
+        (lambda tick: at(tick) if tick < 20 else None, 19 + REST, "rest"),  # it was killed
+        (turns_then_drives, 80 + REST, "rest"),
+        (lambda tick: at(1.0, theta=min(tick, 30)), 30 + FIRST_MOTION, "rest"),
+        (lambda tick: at(tick), TOTAL, "time_limit"),
+        (lambda tick: at(max(tick, 98)), TOTAL, "time_limit"),
+        (lambda tick: at(1.0, theta=tick), TOTAL, "time_limit"),
+        (pauses, TOTAL, "time_limit"),
+        # numbers of their own, as a turtle makes them: it is never where it was
+        (lambda tick: at(float("nan")), TOTAL, "time_limit"),
+    ],
+)
+def test_a_run_is_over_with_the_first_motion_due_the_rest_or_the_time(poses, end, why):
+    assert ends(poses) == (end, why)
 
 
 def test_the_time_limit_goes_before_everything_else():
@@ -75,25 +69,9 @@ def test_the_time_limit_goes_before_everything_else():
     assert ends(lambda tick: at(1.0), limits, gone_tick=0) == (1, "time_limit")
 
 
-def test_the_last_commands_of_a_submission_that_is_gone_may_still_arrive():
+def test_what_a_submission_that_is_gone_has_left_is_seen_to_its_end():
     assert ends(lambda tick: at(1.0), gone_tick=5) == (5 + GRACE_TICKS, "gone")
-
-
-def test_a_submission_that_is_gone_may_have_left_something_that_moves():
     assert ends(lambda tick: at(min(tick, 50)), gone_tick=0) == (50 + REST, "rest")
-
-
-def test_a_turtle_that_is_no_more_stands_still():
-    assert ends(lambda tick: at(tick) if tick < 20 else None) == (19 + REST, "rest")
-
-
-def test_a_turtle_at_not_a_number_is_never_where_it_was():
-    lost = (at(float("nan")) for _ in range(TOTAL))  # numbers of their own, as a turtle makes them
-    assert ends(lambda tick: next(lost)) == (TOTAL, "time_limit")
-
-
-def test_a_turtle_that_never_was_never_moved():
-    assert ends(lambda tick: None) == (FIRST_MOTION, "no_motion")
 
 
 def test_being_at_rest_needs_a_motion_before():
