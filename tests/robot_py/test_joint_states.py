@@ -108,10 +108,7 @@ def test_without_default_positions_there_are_names_only():
             robot('<joint name="a" type="revolute"><limit lower="1"/></joint>'),
             '"upper" limit must be specified for joint "a" of type "revolute"',
         ),
-        (
-            robot(joint("a", "x")),
-            '"lower" limit must be a float for joint "a" of type "revolute"',
-        ),
+        (robot(joint("a", "x")), '"lower" limit must be a float for joint "a" of type "revolute"'),
         (
             robot(joint("a", more='<mimic joint="b" multiplier="x"/>')),
             "could not convert string to float: 'x'",

@@ -8,14 +8,7 @@ from typing import Any
 
 import pytest
 
-from grader.cast.expressions import (
-    LONGEST_TEXT,
-    MOST_STEPS,
-    ExpressionError,
-    check,
-    filled,
-    parse,
-)
+from grader.cast.expressions import LONGEST_TEXT, MOST_STEPS, ExpressionError, check, filled, parse
 
 NAMES = {
     **{"n": 3, "text": "abc", "data": [1.5, 2.5], "pose": {"x": 1.0}, "zero": 0},

@@ -206,10 +206,7 @@ def test_what_is_no_plain_archive_of_files_is_refused(
             *("a.tar", tarred(other("a.py", comment="x" * 200_000)), LIMITS),
             "too many files, or too long names: one of its headers has more than 100 kB",
         ),
-        (
-            *("a.tar", tarred("a", "b", "c"), ArchiveLimits(headers=2)),
-            "it has more than 2 entries",
-        ),
+        (*("a.tar", tarred("a", "b", "c"), ArchiveLimits(headers=2)), "it has more than 2 entries"),
     ],
 )
 def test_what_exceeds_a_limit_is_stopped_while_it_is_read(

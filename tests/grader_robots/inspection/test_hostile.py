@@ -183,8 +183,7 @@ def open_descriptors() -> set[int]:
 
 
 @pytest.mark.parametrize(
-    "forged",
-    [b"[1]", b"{}", b'{"problem": {"x": 1}}', b'{"problem": 3}', b"\xff", b"[" * 100_000],
+    "forged", [b"[1]", b"{}", b'{"problem": {"x": 1}}', b'{"problem": 3}', b"\xff", b"[" * 100_000]
 )
 def test_an_answer_that_is_forged_is_none(forged):
     others = open_descriptors()  # which are the tests' own

@@ -9,13 +9,7 @@ import pytest
 
 from grader.batch.gradebook.feedback import Feedback
 from grader.batch.page.thumb import THUMB, Thumb, thumb
-from grader.inspection.trace import (
-    Description,
-    LaunchedNode,
-    LaunchFile,
-    PackageTrace,
-    Parameter,
-)
+from grader.inspection.trace import Description, LaunchedNode, LaunchFile, PackageTrace, Parameter
 from grader.message import plain_text
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.view import Tree, TreeNode

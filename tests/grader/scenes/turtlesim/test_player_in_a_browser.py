@@ -14,15 +14,7 @@ from grader.recording.subject import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.translations import ENGLISH, use
 from tests.barriers import barriers
-from tests.browser import (
-    WIDTHS,
-    clipped,
-    cut_off,
-    moving,
-    needs_browser,
-    obstacles,
-    open_browser,
-)
+from tests.browser import WIDTHS, clipped, cut_off, moving, needs_browser, obstacles, open_browser
 from tests.grader.driving import RED, Spiral, drive, pen, twist
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict

@@ -14,10 +14,7 @@ from turtlesim_py.world.turtle import SIZE_M
 starts = SCENE.starts
 
 #: As every release so far has placed them.
-FIRST_OF_2026 = [
-    Start(6.223, 5.555, 0.074),
-    Start(4.114, 4.468, -1.739),
-]
+FIRST_OF_2026 = [Start(6.223, 5.555, 0.074), Start(4.114, 4.468, -1.739)]
 
 
 def test_places_are_a_matter_of_the_seed_and_the_same_in_every_release():

@@ -55,10 +55,7 @@ def test_a_place_is_a_quarter_of_the_window():
     [
         (SetPen(tick=1, r=255, g=0, b=0, width=3, off=0), "red (255, 0, 0), 3 px"),
         (SetPen(tick=1, r=255, g=0, b=0, width=3, off=1), "the pen off"),
-        (
-            SetPen(tick=1, turtle="ada", r=0, g=0, b=0, width=1, off=0),
-            "ada: black (0, 0, 0), 1 px",
-        ),
+        (SetPen(tick=1, turtle="ada", r=0, g=0, b=0, width=1, off=0), "ada: black (0, 0, 0), 1 px"),
         (TeleportAbsolute(tick=1, x=1, y=2, theta=math.pi), "to (1.00, 2.00), heading 180°"),
         (TeleportRelative(tick=1, linear=1.5, angular=0), "a turn by 0°, then 1.5 m ahead"),
         (RotateAbsolute(tick=1, theta=math.pi / 2, id=0), "to heading 90°"),
