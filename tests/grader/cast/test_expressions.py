@@ -41,7 +41,7 @@ def why(template: Any, names: Any = NAMES) -> str:
         ("mean([each.data for each in heard['/data'][-5:]])", 6.0),
     ],
 )
-def test_what_is_allowed_is_computed_as_python_does(text: str, expected: Any) -> None:
+def test_what_is_allowed_is_computed_as_python_does(text, expected):
     assert value(text) == expected
 
 
@@ -55,18 +55,18 @@ def test_what_is_allowed_is_computed_as_python_does(text: str, expected: Any) ->
         "[x for x.y in [pose]]",
     ],
 )
-def test_everything_else_is_refused_when_it_is_read(text: str) -> None:
+def test_everything_else_is_refused_when_it_is_read(text):
     with pytest.raises(ExpressionError, match=r"is not allowed in .* Allowed are numbers, texts"):
         parse(text)
 
 
 @pytest.mark.parametrize("text", ["", "n +", "import os", "n = 2", "n\0", "(" * 300, "n n"])
-def test_what_is_no_expression_is_refused_with_the_reason(text: str) -> None:
+def test_what_is_no_expression_is_refused_with_the_reason(text):
     with pytest.raises(ExpressionError, match="is no expression: "):
         parse(text)
 
 
-def test_an_expression_is_not_longer_or_deeper_than_allowed() -> None:
+def test_an_expression_is_not_longer_or_deeper_than_allowed():
     with pytest.raises(ExpressionError, match="at most 500 characters"):
         parse("1" * (LONGEST_TEXT + 1))
     for deep in (
@@ -79,7 +79,7 @@ def test_an_expression_is_not_longer_or_deeper_than_allowed() -> None:
             parse(deep)
 
 
-def test_the_names_of_an_expression_are_those_that_it_needs_from_outside() -> None:
+def test_the_names_of_an_expression_are_those_that_it_needs_from_outside():
     assert parse("max(a, pi) + b.c[d]").names == {"a", "b", "d"}
     assert parse("[x + y for x in data]").names == {"y", "data"}
     # a function is no value, and a name of a list ends with it
@@ -88,7 +88,7 @@ def test_the_names_of_an_expression_are_those_that_it_needs_from_outside() -> No
 
 
 @pytest.mark.parametrize("text", ["len()", "sqrt(1, 2)", "atan2(1)", "range()", "sum([], [])"])
-def test_a_function_has_the_arguments_that_it_needs(text: str) -> None:
+def test_a_function_has_the_arguments_that_it_needs(text):
     with pytest.raises(ExpressionError, match="too many or too few arguments"):
         parse(text)
 
@@ -106,11 +106,11 @@ BOMBS = [
 
 
 @pytest.mark.parametrize("text", BOMBS)
-def test_a_bomb_is_refused_before_it_has_cost_much(text: str) -> None:
+def test_a_bomb_is_refused_before_it_has_cost_much(text):
     assert re.search("at most|more than|too long|too great", why(f"={text}"))
 
 
-def test_steps_are_counted_and_an_ordinary_expression_needs_few() -> None:
+def test_steps_are_counted_and_an_ordinary_expression_needs_few():
     assert value("mean([x * x for x in many[:1000]])") > 0
     assert f"more than {MOST_STEPS} steps" in why("=[[x for x in many] for y in many]")
 
@@ -130,11 +130,11 @@ def test_steps_are_counted_and_an_ordinary_expression_needs_few() -> None:
         *(("text < n", "not supported"), ("exp(1000)", "range")),
     ],
 )
-def test_what_the_values_make_impossible_is_told(text: str, expected: str) -> None:
+def test_what_the_values_make_impossible_is_told(text, expected):
     assert expected in why(f"={text}")
 
 
-def test_a_name_that_begins_with_a_line_is_no_way_out() -> None:
+def test_a_name_that_begins_with_a_line_is_no_way_out():
     for text in ("pose['__class__']", "[pose][0]['__init__']"):
         assert "__" in why(f"={text}")
     assert "there is no value __import__" in why("=__import__")
@@ -143,7 +143,7 @@ def test_a_name_that_begins_with_a_line_is_no_way_out() -> None:
 # Texts with holes -----------------------------------------------------------------------------
 
 
-def test_a_text_is_filled_with_values_in_forms() -> None:
+def test_a_text_is_filled_with_values_in_forms():
     assert (
         filled("Hello {text}: {n}, {pose.x:.2f} {n:03d} {n:x}", NAMES) == "Hello abc: 3, 1.00 003 3"
     )
@@ -151,48 +151,48 @@ def test_a_text_is_filled_with_values_in_forms() -> None:
 
 
 @pytest.mark.parametrize("form", [">999999999", "999999999", ".999999999f", "^9", "*>9", "!r"])
-def test_forms_that_make_long_texts_are_none(form: str) -> None:
+def test_forms_that_make_long_texts_are_none(form):
     with pytest.raises(ExpressionError):
         check(f"{{n:{form}}}")
 
 
 @pytest.mark.parametrize("hole", ["{data:d}", "{text:.2f}", "{big:c}", "{pose:x}", "{nan:d}"])
-def test_a_form_that_does_not_fit_the_value_is_told(hole: str) -> None:
+def test_a_form_that_does_not_fit_the_value_is_told(hole):
     assert "cannot be written" in why(hole)
 
 
-def test_a_text_that_grows_too_long_is_refused() -> None:
+def test_a_text_that_grows_too_long_is_refused():
     assert "too long" in why("{many}")
 
 
-def test_what_repeats_in_a_pattern_is_no_hole() -> None:
+def test_what_repeats_in_a_pattern_is_no_hole():
     assert filled("/[0-9]{2} x{1,3} y{,2} {n}/", NAMES) == "/[0-9]{2} x{1,3} y{,2} 3/"
 
 
-def test_a_value_within_a_pattern_stands_for_itself() -> None:
+def test_a_value_within_a_pattern_stands_for_itself():
     found = filled("/^{text}{2}$/", {"text": ".*("}, has_patterns=True)
     assert found.search(".*((")
     assert not found.search("anything")
 
 
-def test_what_an_expression_returns_is_no_pattern() -> None:
+def test_what_an_expression_returns_is_no_pattern():
     assert filled("=text", {"text": "/.*/"}, has_patterns=True) == "/.*/"
 
 
 @pytest.mark.parametrize("pattern", ["/(/", "/[/", "/a{2}{3}/", "/*/", "/x{99999999999}/"])
-def test_a_pattern_that_is_none_is_refused_when_it_is_read(pattern: str) -> None:
+def test_a_pattern_that_is_none_is_refused_when_it_is_read(pattern):
     check(pattern)  # a peer may send such a text
     with pytest.raises(ExpressionError, match="is no pattern"):
         check(pattern, has_patterns=True)
 
 
-def test_what_needs_no_value_is_computed_when_it_is_read() -> None:
+def test_what_needs_no_value_is_computed_when_it_is_read():
     for wrong in ("=1 / 0", "{1 / 0}", "=[1][2]", "{[1]:d}"):
         with pytest.raises(ExpressionError):
             check(wrong)
 
 
-def test_a_template_within_itself_or_with_very_many_values_is_refused() -> None:
+def test_a_template_within_itself_or_with_very_many_values_is_refused():
     endless: list[Any] = []
     endless.append(endless)
     many: Any = "x"

@@ -1,5 +1,4 @@
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 
@@ -15,7 +14,7 @@ print([each.node_name for each in node.get_publishers_info_by_topic("/rosout")])
 """
 
 
-def test_the_graph_shows_which_node_logs_and_not_what_is_recorded_of_it(tmp_path: Path) -> None:
+def test_the_graph_shows_which_node_logs_and_not_what_is_recorded_of_it(tmp_path):
     file = tmp_path / "asks.py"
     file.write_text(ASKS)
     assert grading.record(file, "talker").nominal.output == "['asks']\n"
@@ -34,7 +33,7 @@ rclpy.spin(node)
 
 
 @pytest.mark.parametrize("period_ms", [5, 41])
-def test_a_message_has_its_own_time_within_a_tick(tmp_path: Path, period_ms: int) -> None:
+def test_a_message_has_its_own_time_within_a_tick(tmp_path, period_ms):
     file = tmp_path / "sends.py"
     file.write_text(SENDS.format(period=period_ms / 1000))
     trace = grading.record(file, "talker").nominal.trace

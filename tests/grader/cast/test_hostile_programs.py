@@ -37,7 +37,7 @@ def said(result: Result, check: str) -> str:
     return next(str(each.rationale) for each in result.verdicts if each.check == check)
 
 
-def test_who_does_all_gets_all() -> None:
+def test_who_does_all_gets_all():
     assert graded("does_all").score == 100
 
 
@@ -49,26 +49,26 @@ def test_who_does_all_gets_all() -> None:
         *("poses_as_a_peer", "sends_odd_values", "floods_with_texts"),
     ),
 )
-def test_a_hostile_program_earns_only_what_it_does(name: str) -> None:
+def test_a_hostile_program_earns_only_what_it_does(name):
     result = graded(name)
     assert result.run.time == "virtual"
     assert {each.check for each in result.verdicts if each.score} <= EARNED[name]
     assert r"\u001b" not in json.dumps(result.to_json())
 
 
-def test_who_is_called_like_a_peer_hides_nothing() -> None:
+def test_who_is_called_like_a_peer_hides_nothing():
     result = graded("poses_as_a_peer")
     assert "there is no '/data' yet" in said(result, "out")
     assert "data was 'hidden', expected 'Hello 0'" in said(result, "chatter")
 
 
-def test_what_a_peer_cannot_use_is_a_finding() -> None:
+def test_what_a_peer_cannot_use_is_a_finding():
     result = graded("sends_odd_values")
     assert "b was 0, expected 3" in said(result, "served")
     assert "has no parameter p" in said(result, "asks")
 
 
-def test_what_lies_behind_a_flood_is_not_taken_for_right() -> None:
+def test_what_lies_behind_a_flood_is_not_taken_for_right():
     result = graded("floods_with_texts")
     assert any(FULL in str(flag) for flag in result.run.flags)
     assert "was recorded" in said(result, "chatter")

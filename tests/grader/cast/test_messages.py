@@ -73,19 +73,19 @@ def types() -> Types:
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_every_kind_of_field_comes_back_as_it_was(types: Types, name: str) -> None:
+def test_every_kind_of_field_comes_back_as_it_was(types, name):
     kind = types.find("own/msg/All")
     made = make(kind, {name: ALL[name]})
     assert plain(made)[name] == ALL[name]
     assert plain(deserialise(serialise(made), kind))[name] == ALL[name]
 
 
-def test_fields_that_are_not_named_have_their_defaults(types: Types) -> None:
+def test_fields_that_are_not_named_have_their_defaults(types):
     made = plain(make(types.find("own/msg/All"), {}))
     assert (made["great"], made["text"], made["two"][1]) == (0, "", {"x": 0.0, "names": []})
 
 
-def test_a_whole_number_is_a_number_and_a_value_alone_the_only_field() -> None:
+def test_a_whole_number_is_a_number_and_a_value_alone_the_only_field():
     types = Types({})
     assert plain(make(types.find("std_msgs/msg/Float64"), 3)) == {"data": 3.0}
     assert plain(make(types.find("std_msgs/msg/String"), "a")) == {"data": "a"}
@@ -94,7 +94,7 @@ def test_a_whole_number_is_a_number_and_a_value_alone_the_only_field() -> None:
     assert plain(make(types.find("std_msgs/msg/Empty"), {})) == {}
 
 
-def test_what_json_does_not_have_is_a_text() -> None:
+def test_what_json_does_not_have_is_a_text():
     kind = Types({}).find("std_msgs/msg/Float64MultiArray")
     made = plain(make(kind, {"data": [math.nan, math.inf, -math.inf]}))
     assert made["data"] == ["nan", "inf", "-inf"]
@@ -126,7 +126,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_a_value_that_does_not_fit_is_told_with_its_field(types: Types, what: str) -> None:
+def test_a_value_that_does_not_fit_is_told_with_its_field(types, what):
     values, words = WRONG[what]
     with pytest.raises(ValueError, match=r"\w") as caught:
         make(types.find("own/msg/All"), values)
@@ -143,12 +143,12 @@ def test_a_value_that_does_not_fit_is_told_with_its_field(types: Types, what: st
         "antigravity/msg/A",
     ],
 )
-def test_a_type_that_is_nowhere_is_none(types: Types, name: str) -> None:
+def test_a_type_that_is_nowhere_is_none(types, name):
     with pytest.raises(NoType, match="there is no"):
         types.find(name)
 
 
-def test_by_the_definitions_of_a_type_and_its_fields_its_messages_are_read(types: Types) -> None:
+def test_by_the_definitions_of_a_type_and_its_fields_its_messages_are_read(types):
     made = make(types.use("own/msg/All"), ALL)
     assert types.used.keys() == {"own/msg/All", "own/msg/Inner", "builtin_interfaces/msg/Time"}
     assert types.used["own/msg/Inner"] == "float64 x\nstring[] names\n"
@@ -159,14 +159,14 @@ def test_by_the_definitions_of_a_type_and_its_fields_its_messages_are_read(types
     assert plain_of_rosbags(theirs) == read
 
 
-def test_what_no_reader_of_bags_knows_is_no_type() -> None:
+def test_what_no_reader_of_bags_knows_is_no_type():
     types = Types({"own/msg/Odd": "wstring[] texts", "own/msg/Outer": "Odd odd"})
     with pytest.raises(NoType, match="lists of wstring"):
         types.use("own/msg/Outer")
     assert types.used == {}
 
 
-def test_an_empty_message_can_be_read() -> None:
+def test_an_empty_message_can_be_read():
     types = Types({})
     made = make(types.use("std_msgs/msg/Empty"), {})
     assert BagTypes(types.used).values(serialise(made), "std_msgs/msg/Empty") == {}

@@ -51,7 +51,7 @@ def heard() -> Heard:
     return Heard()
 
 
-def test_what_is_named_is_heard_and_nothing_else(heard: Heard) -> None:
+def test_what_is_named_is_heard_and_nothing_else(heard):
     other = TALKS._replace(channel="topic /other")
     served = TALKS._replace(channel="request /chatter", type="std_srvs/srv/Trigger")
     heard.recorder.meet([TALKS, other, served, TALKS._replace(writes=False)])
@@ -60,7 +60,7 @@ def test_what_is_named_is_heard_and_nothing_else(heard: Heard) -> None:
     assert len(heard.trace().of_kind("endpoint")) == 4
 
 
-def test_our_own_events_are_no_programs(heard: Heard) -> None:
+def test_our_own_events_are_no_programs(heard):
     heard.recorder.meet([TALKS._replace(channel="topic /cast/events")])
     assert heard.taps == []
 
@@ -73,9 +73,7 @@ def test_our_own_events_are_no_programs(heard: Heard) -> None:
         "std_srvs/srv/Trigger_Request",
     ],
 )
-def test_a_type_that_is_none_of_ros_is_neither_imported_nor_heard(
-    heard: Heard, kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_type_that_is_none_of_ros_is_neither_imported_nor_heard(heard, kind, monkeypatch):
     def refuse(*_: object) -> None:
         raise AssertionError("a browser was opened")
 
@@ -84,7 +82,7 @@ def test_a_type_that_is_none_of_ros_is_neither_imported_nor_heard(
     assert heard.taps == []
 
 
-def test_a_sender_is_known_where_only_one_node_can_be_it(heard: Heard) -> None:
+def test_a_sender_is_known_where_only_one_node_can_be_it(heard):
     heard.recorder.meet([TALKS])
     heard.hear("one")
     heard.recorder.meet([TALKS, TALKS._replace(node="/other")])
@@ -92,7 +90,7 @@ def test_a_sender_is_known_where_only_one_node_can_be_it(heard: Heard) -> None:
     assert [message.node for message in heard.trace().messages] == ["/node", ""]
 
 
-def test_of_several_programs_the_sender_is_known_by_its_link(heard: Heard) -> None:
+def test_of_several_programs_the_sender_is_known_by_its_link(heard):
     heard.recorder.meet([TALKS._replace(id=1), TALKS._replace(node="/other", id=2)])
     for program in (1, 2):
         heard.recorder.heard("/chatter", STRING, 0, serialise(String(data="said")), program)
@@ -101,7 +99,7 @@ def test_of_several_programs_the_sender_is_known_by_its_link(heard: Heard) -> No
     assert trace.programs == {"/node": "talker-1", "/other": "other-2"}
 
 
-def test_a_program_that_is_called_like_a_peer_is_none(heard: Heard) -> None:
+def test_a_program_that_is_called_like_a_peer_is_none(heard):
     heard.recorder.meet([TALKS._replace(node="/peer")])
     heard.hear("forged")
     heard.recorder.said("/chatter", STRING, "/peer", String(data="said"))
@@ -112,14 +110,14 @@ def test_a_program_that_is_called_like_a_peer_is_none(heard: Heard) -> None:
     ]
 
 
-def test_a_topic_has_the_type_of_its_first_message(heard: Heard) -> None:
+def test_a_topic_has_the_type_of_its_first_message(heard):
     heard.hear("one")
     heard.hear("2", kind="std_msgs/msg/Float64")
     heard.recorder.said("/chatter", "std_msgs/msg/Float64", "/peer", Float64(data=3.0))
     assert [message.type for message in heard.trace().messages] == [STRING]
 
 
-def test_what_is_no_message_is_not_recorded(heard: Heard) -> None:
+def test_what_is_no_message_is_not_recorded(heard):
     for data in (b"", b"\0\1\0\0", b"\0\1\0\0\xff\xff\xff\xff", b"\0\0\0\0\0\0\0\0"):
         heard.recorder.heard("/chatter", STRING, 0, data)
     assert heard.trace().messages == ()
@@ -128,9 +126,7 @@ def test_what_is_no_message_is_not_recorded(heard: Heard) -> None:
 # Bounds ---------------------------------------------------------------------------------------
 
 
-def test_messages_are_recorded_up_to_a_number(
-    heard: Heard, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_messages_are_recorded_up_to_a_number(heard, monkeypatch):
     monkeypatch.setattr(recorder, "MOST_MESSAGES", 3)
     for heard.now_ns in range(9):
         heard.hear("x")
@@ -143,9 +139,7 @@ def test_messages_are_recorded_up_to_a_number(
     ]
 
 
-def test_messages_are_recorded_up_to_so_many_bytes(
-    heard: Heard, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_messages_are_recorded_up_to_so_many_bytes(heard, monkeypatch):
     monkeypatch.setattr(recorder, "MOST_BYTES", 3_000)
     heard.hear("x" * 2_000)
     heard.hear("y" * 2_000)
@@ -154,14 +148,14 @@ def test_messages_are_recorded_up_to_so_many_bytes(
     assert heard.trace().of_kind("full")
 
 
-def test_what_events_hold_counts_as_well(heard: Heard, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_events_hold_counts_as_well(heard, monkeypatch):
     monkeypatch.setattr(recorder, "MOST_BYTES", 3_000)
     assert heard.recorder.plain(String(data="x" * 2_000)) == {"data": "x" * 2_000}
     assert heard.recorder.plain(String(data="x" * 2_000)) == {}
     assert heard.recorder.is_full
 
 
-def test_events_are_recorded_up_to_a_number(heard: Heard, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_events_are_recorded_up_to_a_number(heard, monkeypatch):
     monkeypatch.setattr(recorder, "MOST_EVENTS", 3)
     heard.recorder.meet([TALKS._replace(node=f"/n{n}") for n in range(9)])
     assert [event["kind"] for event in heard.trace().events] == ["endpoint"] * 3 + ["full"]
@@ -187,14 +181,14 @@ def written(trace: CastTrace, folder: Path) -> Path:
     return bag.write(trace, load_subject("graph"), folder / "recording")
 
 
-def test_a_trace_is_the_same_after_a_bag(trace: CastTrace, tmp_path: Path) -> None:
+def test_a_trace_is_the_same_after_a_bag(trace, tmp_path):
     again = bag.read(written(trace, tmp_path), load_subject("graph"), trace.duration_ns)
     assert again == trace
     assert isinstance(again, CastTrace)
     assert again.sha256() == trace.sha256()
 
 
-def test_a_bag_holds_the_real_topics(trace: CastTrace, tmp_path: Path) -> None:
+def test_a_bag_holds_the_real_topics(trace, tmp_path):
     mcap = written(trace, tmp_path)
     with Reader(mcap.parent) as reader:
         found = {each.topic: (each.msgtype, each.msgcount) for each in reader.connections}
@@ -208,13 +202,13 @@ def test_a_bag_holds_the_real_topics(trace: CastTrace, tmp_path: Path) -> None:
     assert [time_ns for time_ns, _ in said] == [0, 5_000_000, 5_000_000, 2_000_000_000]
 
 
-def test_an_empty_trace_is_the_same_after_a_bag(tmp_path: Path) -> None:
+def test_an_empty_trace_is_the_same_after_a_bag(tmp_path):
     trace = CastTrace(625, peers=("/peer",))
     again = bag.read(written(trace, tmp_path), load_subject("graph"), trace.duration_ns)
     assert again == trace
 
 
-def test_the_hash_is_of_what_was_exchanged(trace: CastTrace) -> None:
+def test_the_hash_is_of_what_was_exchanged(trace):
     first = trace.messages[0]
     others = [
         replace(trace, ticks=1),
@@ -229,7 +223,7 @@ def test_the_hash_is_of_what_was_exchanged(trace: CastTrace) -> None:
 
 
 @pytest.mark.parametrize("event", ["5", "[]", "{}", '{"kind": 5, "time_ns": 1}', "nan"])
-def test_what_is_no_event_makes_no_trace(event: str) -> None:
+def test_what_is_no_event_makes_no_trace(event):
     last = '{"definitions": {}, "topics": [], "nodes": [], "order": [], "peers": []}'
     data = [string(event), string(last)]
     ends = np.cumsum([len(each) for each in data])

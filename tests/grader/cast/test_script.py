@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -117,7 +116,7 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize(("keys", "words"), MISTAKES)
-def test_a_mistake_in_a_cast_names_its_place_and_what_is_allowed(keys: str, words: str) -> None:
+def test_a_mistake_in_a_cast_names_its_place_and_what_is_allowed(keys, words):
     with pytest.raises(Mistake) as caught:
         parsed(MISTAKES[keys, words])
     said = str(caught.value)
@@ -125,7 +124,7 @@ def test_a_mistake_in_a_cast_names_its_place_and_what_is_allowed(keys: str, word
     assert words in said
 
 
-def test_a_peer_may_have_nothing_and_names_are_its_topics() -> None:
+def test_a_peer_may_have_nothing_and_names_are_its_topics():
     assert parsed("a:") == {"a": script.Peer()}
     (entry,) = parsed(f"a: {{publishers: {{x: {{type: {STRING}, rate: 2}}}}}}")[
         "a"
@@ -137,14 +136,12 @@ def test_a_peer_may_have_nothing_and_names_are_its_topics() -> None:
     ("rate", "begin", "count", "times"),
     [(2, 0, 100, [0.5, 1.0, 1.5, 2.0]), (1, 0.25, 100, [0.25, 1.25]), (4, 1, 2, [1.0, 1.25])],
 )
-def test_a_publisher_begins_after_its_period_or_when_it_is_told(
-    rate: float, begin: float, count: int, times: list[float]
-) -> None:
+def test_a_publisher_begins_after_its_period_or_when_it_is_told(rate, begin, count, times):
     made = script.PeerPublisher(type=STRING, rate=rate, begin=begin, count=count)
     assert made.times(2.0) == times
 
 
-def test_a_publisher_may_be_told_when_and_says_nothing_after_the_end() -> None:
+def test_a_publisher_may_be_told_when_and_says_nothing_after_the_end():
     assert script.PeerPublisher(type=STRING, at=(3.0, 1.0, 9.0)).times(5.0) == [1.0, 3.0]
 
 
@@ -192,7 +189,7 @@ FILES = {
 
 
 @pytest.mark.parametrize("peer", UNFIT)
-def test_what_a_peer_says_has_to_fit_its_type_and_the_run(peer: str) -> None:
+def test_what_a_peer_says_has_to_fit_its_type_and_the_run(peer):
     with pytest.raises(Mistake) as caught:
         check_cast(parsed(f"a: {{{peer}}}"), KnownTypes({}), 20, ("cast",))
     assert UNFIT[peer] in str(caught.value)
@@ -203,8 +200,8 @@ def test_what_a_peer_says_has_to_fit_its_type_and_the_run(peer: str) -> None:
     [*((*file, "run") for file in FILES), (*next(iter(FILES)), "check-exercise")],
 )
 def test_a_mistake_in_a_file_is_told_with_its_line_and_ends_with_2(
-    cast: str, expects: str, verb: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+    cast, expects, verb, tmp_path, capsys
+):
     line, words = FILES[cast, expects]
     path = tmp_path / "small"
     path.mkdir()

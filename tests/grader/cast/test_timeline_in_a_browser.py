@@ -125,7 +125,7 @@ def go(page: Any, time_s: float) -> None:
     page.locator("#slider").fill(str(round(time_s / 0.016)))
 
 
-def test_a_hop_is_seen_once_the_cursor_has_come_to_it(replay: Any) -> None:
+def test_a_hop_is_seen_once_the_cursor_has_come_to_it(replay):
     replay.select_option("#about", "/chatter")
     go(replay, 0.5)
     assert columns(replay) == []
@@ -138,7 +138,7 @@ def test_a_hop_is_seen_once_the_cursor_has_come_to_it(replay: Any) -> None:
     assert cells(replay, CURRENT)[1:] == ["/node", "→ /peer", "/chatter", "Hello 2"]
 
 
-def test_the_list_follows_the_cursor_and_the_page_stays_where_it_is(replay: Any) -> None:
+def test_the_list_follows_the_cursor_and_the_page_stays_where_it_is(replay):
     replay.set_viewport_size({"width": 400, "height": 500})
     for time_s in (0.2, 1.0, 2.5, 4.9, 0.3):
         go(replay, time_s)
@@ -149,7 +149,7 @@ def test_the_list_follows_the_cursor_and_the_page_stays_where_it_is(replay: Any)
         assert row["y"] + row["height"] <= whole["y"] + whole["height"] + 1
 
 
-def test_it_is_played_by_keys_alone(replay: Any) -> None:
+def test_it_is_played_by_keys_alone(replay):
     replay.locator("#slider").focus()
     replay.keyboard.press("End")
     replay.keyboard.press(",")
@@ -161,7 +161,7 @@ def test_it_is_played_by_keys_alone(replay: Any) -> None:
     replay.wait_for_selector("#time:has-text('tick 313 of 313')")
 
 
-def test_hostile_names_and_texts_are_text_and_their_moment_is_found(replay: Any) -> None:
+def test_hostile_names_and_texts_are_text_and_their_moment_is_found(replay):
     replay.click("#checks button")
     assert "tick 250 of 625" in replay.inner_text("#time")
     who, whom, _, what = cells(replay, CURRENT)[1:]
@@ -169,7 +169,7 @@ def test_hostile_names_and_texts_are_text_and_their_moment_is_found(replay: Any)
     assert replay.locator("b, script:not([type]):not(:last-of-type)").count() == 0
 
 
-def test_ten_thousand_messages_can_be_used(folder: Path, replay: Any) -> None:
+def test_ten_thousand_messages_can_be_used(folder, replay):
     replay.click("#runs button >> nth=2")
     go(replay, 8.0)
     assert cells(replay, CURRENT)[-1] == "8000"
@@ -177,9 +177,7 @@ def test_ten_thousand_messages_can_be_used(folder: Path, replay: Any) -> None:
     assert (folder / "replay.html").stat().st_size < 2_500_000
 
 
-def test_another_recording_is_there_for_comparison(
-    tmp_path: Path, visit: Any, everything: Recordings
-) -> None:
+def test_another_recording_is_there_for_comparison(tmp_path, visit, everything):
     for name in ("one", "other"):
         saving.save_all(everything, tmp_path / name)
     words = ("view", tmp_path / "one", "--compare", tmp_path / "other", "--no-open", "--out")
@@ -192,7 +190,7 @@ def test_another_recording_is_there_for_comparison(
 
 
 @pytest.mark.parametrize("width", WIDTHS)
-def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: int) -> None:
+def test_nobody_is_kept_from_using_the_replay(folder, visit, width):
     page = visit((folder / "replay.html").as_uri(), width, reduced_motion="reduce")
     for button in page.locator("#runs button").all()[:2]:
         button.click()
@@ -203,9 +201,7 @@ def test_nobody_is_kept_from_using_the_replay(folder: Path, visit: Any, width: i
     assert clipped(page) == {}
 
 
-def test_nobody_is_kept_from_reading_it_in_the_report(
-    tmp_path: Path, visit: Any, everything: Recordings
-) -> None:
+def test_nobody_is_kept_from_reading_it_in_the_report(tmp_path, visit, everything):
     saving.save_all(everything, tmp_path / "recording")
     result = samples.result(samples.verdict("says"), artifacts={"recording": "recording"})
     (tmp_path / "result.json").write_text(json.dumps(result))
@@ -234,7 +230,7 @@ def news(end_s: float, since_s: float = 0.0) -> dict[str, Any]:
     return {"t": end_s, "lanes": timeline.lanes(HOSTILE_RUN), "labels": {}, "items": items}
 
 
-def test_who_looks_back_stays_there_while_it_grows(live: TimelinePage, visit: Any) -> None:
+def test_who_looks_back_stays_there_while_it_grows(live, visit):
     live.hear([news(2.0)])
     page = visit(live.address)
     page.wait_for_selector("html[data-time='2']")
@@ -263,7 +259,7 @@ def test_who_looks_back_stays_there_while_it_grows(live: TimelinePage, visit: An
 
 
 @pytest.mark.parametrize("width", [320, 1280])
-def test_nobody_is_kept_from_looking_on(live: TimelinePage, visit: Any, width: int) -> None:
+def test_nobody_is_kept_from_looking_on(live, visit, width):
     live.hear([news(10.0)])
     live.update(Grading("node.py, talker", "nominal run", "Score: 1 of 2", "Do this first."))
     page = visit(live.address, width, locale="en-GB")
@@ -273,7 +269,7 @@ def test_nobody_is_kept_from_looking_on(live: TimelinePage, visit: Any, width: i
     assert clipped(page) == {}
 
 
-def test_a_run_is_seen_to_its_end(tmp_path: Path, visit: Any) -> None:
+def test_a_run_is_seen_to_its_end(tmp_path, visit):
     words = (str(runs.path_of("hostile_casts/does_all")), "--live", "--speed", "free")
     exercise = str(Path(__file__).with_name("everything"))
     given = ("run", *words, "--exercise", exercise, "--out", "out", "--lang", "en")

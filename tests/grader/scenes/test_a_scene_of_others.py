@@ -182,7 +182,7 @@ def run(folder: Path, name: str, *more: str) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize("hook", subject.HOOKS)
-def test_what_a_hook_may_not_raise_is_told_as_the_scene_s(hook: str) -> None:
+def test_what_a_hook_may_not_raise_is_told_as_the_scene_s(hook):
     def fails(_: object, error: BaseException) -> None:
         raise error
 
@@ -200,7 +200,7 @@ def test_what_a_hook_may_not_raise_is_told_as_the_scene_s(hook: str) -> None:
     "name",
     others_are_more("a grading each; the hooks are called one by one, too", SENTENCES, "ticks"),
 )
-def test_a_mistake_of_a_scene_is_told_as_that_scene_s(folder: Path, name: str) -> None:
+def test_a_mistake_of_a_scene_is_told_as_that_scene_s(folder, name):
     code, told = run(folder, name)
     assert code == 3, told
     assert "The grader failed; this is not the submission's fault: " in told
@@ -208,7 +208,7 @@ def test_a_mistake_of_a_scene_is_told_as_that_scene_s(folder: Path, name: str) -
     assert not (folder / f"out_{name}" / "result.json").exists()
 
 
-def test_a_reason_that_there_is_not_is_told_as_the_scene_s() -> None:
+def test_a_reason_that_there_is_not_is_told_as_the_scene_s():
     for reason in (None, "enough"):
         with pytest.raises(SceneFailure, match=f"the scene other returned {reason!r}, expected"):
             expect_reason("other", reason)  # type: ignore[arg-type]
@@ -217,26 +217,26 @@ def test_a_reason_that_there_is_not_is_told_as_the_scene_s() -> None:
 
 @pytest.mark.more("in virtual time the same")
 @pytest.mark.parametrize("name", ["ticks", "nothing"])
-def test_a_mistake_of_a_scene_is_told_in_real_time_too(folder: Path, name: str) -> None:
+def test_a_mistake_of_a_scene_is_told_in_real_time_too(folder, name):
     code, told = run(folder, name, "--time", "real")
     assert code == 3, told
     assert SENTENCES[name] in told
 
 
 @pytest.mark.more("hostile programs end simulators in make test")
-def test_a_simulator_that_ends_without_a_word_may_have_been_ended(folder: Path) -> None:
+def test_a_simulator_that_ends_without_a_word_may_have_been_ended(folder):
     code, _ = run(folder, "ends_its_process")
     result = json.loads((folder / "out_ends_its_process" / "result.json").read_text())
     assert (code, result["score"], result["run"]["outcome"]) == (0, 0, "killed")
 
 
-def test_a_scene_has_the_name_of_its_entry_point(folder: Path) -> None:
+def test_a_scene_has_the_name_of_its_entry_point(folder):
     code, told = run(folder, "misnamed")
     assert code == 2, told
     assert "'misnamed' is of mistakes:misnamed of lamp, whose name is 'lamp'" in told
 
 
-def test_a_scene_may_have_more_than_it_must(folder: Path) -> None:
+def test_a_scene_may_have_more_than_it_must(folder):
     exercise = folder / "bright" / "exercise.yaml"
     varied = "varied_runs: {count: 1, seed: 1, nearest_m: 1, farthest_m: 2}\n"
     exercise.write_text(exercise.read_text() + varied)
@@ -258,7 +258,7 @@ def test_a_scene_may_have_more_than_it_must(folder: Path) -> None:
 
 
 @pytest.mark.more("pages of packages have neither picture nor path")
-def test_a_page_shows_no_picture_and_no_path_where_a_scene_has_none(folder: Path) -> None:
+def test_a_page_shows_no_picture_and_no_path_where_a_scene_has_none(folder):
     code, _ = run(folder, "lamp/blink")
     page = (folder / "out_blink" / "report.html").read_text()
     assert code == 0
@@ -267,7 +267,7 @@ def test_a_page_shows_no_picture_and_no_path_where_a_scene_has_none(folder: Path
     assert "Where the lamp went" not in page
 
 
-def test_a_sheet_leaves_out_what_a_scene_does_not_say(folder: Path) -> None:
+def test_a_sheet_leaves_out_what_a_scene_does_not_say(folder):
     python = str(folder / "venv" / "bin" / "python")
     words = ["-m", "grader", "new", "begin", "--exercise", "lamp/blink"]
     subprocess.run([python, *words], cwd=folder, check=True)

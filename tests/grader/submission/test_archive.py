@@ -65,7 +65,7 @@ def refused(folder: Path, name: str, data: bytes, limits: ArchiveLimits = LIMITS
     return str(error.value)
 
 
-def test_the_files_of_a_zip_are_written_with_their_folders(tmp_path: Path) -> None:
+def test_the_files_of_a_zip_are_written_with_their_folders(tmp_path):
     # backslashes are those of Windows
     data = zipped("a.py", "b/", "b/c/d.py", "e\\", "e\\f.py")
     assert unpacked(tmp_path, "a.zip", data) == {"a.py", "b/c/d.py", "e/f.py"}
@@ -74,9 +74,7 @@ def test_the_files_of_a_zip_are_written_with_their_folders(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("name", "mode"), [("a.tar", "w"), ("a.tar.gz", "w:gz"), ("A.TGZ", "w:gz")]
 )
-def test_the_files_of_a_tar_are_written_with_their_folders(
-    tmp_path: Path, name: str, mode: str
-) -> None:
+def test_the_files_of_a_tar_are_written_with_their_folders(tmp_path, name, mode):
     long = "b/" + 120 * "e" + ".py"
     data = tarred("./a.py", other("b", tarfile.DIRTYPE), "b/c/d.py", long, mode=mode)
     assert unpacked(tmp_path, name, data) == {"a.py", "b/c/d.py", long}
@@ -84,7 +82,7 @@ def test_the_files_of_a_tar_are_written_with_their_folders(
     assert {path.name for path in tmp_path.iterdir()} == {name, "unpacked"}
 
 
-def test_what_programs_filled_stays_out(tmp_path: Path) -> None:
+def test_what_programs_filled_stays_out(tmp_path):
     generated = [
         *("w/.git/config", "w/__pycache__/a.pyc", "__MACOSX/w/._a.py"),
         *("w/my_env/pyvenv.cfg", "w/my_env/lib/a.py"),
@@ -99,7 +97,7 @@ def test_what_programs_filled_stays_out(tmp_path: Path) -> None:
     assert unpacked(tmp_path / "tar", "a.tgz", data) == {"w/src/a.py"}
 
 
-def test_what_an_earlier_grading_has_left_stays_out(tmp_path: Path) -> None:
+def test_what_an_earlier_grading_has_left_stays_out(tmp_path):
     result = '{"schema": "turtlesim-grader/result/v1"}'
     buffer = io.BytesIO(zipped("w/graded/w/result.json", "w/b/result.json", data=result))
     with zipfile.ZipFile(buffer, "a") as packed:
@@ -113,7 +111,7 @@ def test_what_an_earlier_grading_has_left_stays_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "member", ["../a.py", "a/../../b.py", "/etc/a.py", "C:\\a.py", "..\\a.py", ".git/../../a.py"]
 )
-def test_a_member_that_leaves_the_folder_is_refused(tmp_path: Path, member: str) -> None:
+def test_a_member_that_leaves_the_folder_is_refused(tmp_path, member):
     words = f"holds {member}, which would be written outside of its own folder"
     assert f"a.zip {words}" in refused(tmp_path, "a.zip", zipped(member))
     if "\\" not in member and ".git" not in member:
@@ -171,9 +169,7 @@ CUT = tarred("a.py", data=bytes(range(256)) * 16, mode="w:gz")
         ("a.tar", tarred("a.py", data=b"x" * 5000)[:2000], NO_TAR),
     ],
 )
-def test_what_is_no_plain_archive_of_files_is_refused(
-    tmp_path: Path, name: str, data: bytes, words: str
-) -> None:
+def test_what_is_no_plain_archive_of_files_is_refused(tmp_path, name, data, words):
     assert words in refused(tmp_path, name, data)
 
 
@@ -209,14 +205,12 @@ def test_what_is_no_plain_archive_of_files_is_refused(
         (*("a.tar", tarred("a", "b", "c"), ArchiveLimits(headers=2)), "it has more than 2 entries"),
     ],
 )
-def test_what_exceeds_a_limit_is_stopped_while_it_is_read(
-    tmp_path: Path, name: str, data: bytes, limits: ArchiveLimits, words: str
-) -> None:
+def test_what_exceeds_a_limit_is_stopped_while_it_is_read(tmp_path, name, data, limits, words):
     assert len(data) < 300_000
     assert words in refused(tmp_path, name, data, limits)
 
 
-def test_several_archives_of_a_submission_have_one_limit(tmp_path: Path) -> None:
+def test_several_archives_of_a_submission_have_one_limit(tmp_path):
     budget = Budget(ArchiveLimits(1_000_000))
     for name in ("a.zip", "b.zip"):
         (tmp_path / name).write_bytes(zipped("a", data="0" * 600_000))

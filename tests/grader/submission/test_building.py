@@ -59,7 +59,7 @@ def changed(name: str, old: str, new: str) -> dict[str, str | None]:
     return {name: PACKAGE[name].replace(old, new)}
 
 
-def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
+def test_a_file_alone_and_loose_files_are_no_package(tmp_path):
     lay(tmp_path, {"node.py": NODE, "README.md": ""})
     assert notes(tmp_path / "node.py") == notes(tmp_path)
     (note,) = notes(tmp_path)
@@ -152,9 +152,7 @@ USES_ANOTHER["spiral/node.py"] = f"from spiral.utils import walls\n{NODE}"
         ({"setup.py": None, "setup.cfg": None}, f"{NOT_BUILT}no setup.py"),
     ],
 )
-def test_each_shortcoming_is_a_note(
-    tmp_path: Path, change: dict[str, str | None], note: str
-) -> None:
+def test_each_shortcoming_is_a_note(tmp_path, change, note):
     files = PACKAGE | change
     lay(tmp_path, {name: text for name, text in files.items() if text is not None})
     assert notes(tmp_path)[0] == note
@@ -173,11 +171,11 @@ def test_each_shortcoming_is_a_note(
         {"CMakeLists.txt": "", **changed("package.xml", "ament_python", "ament_cmake")},
     ],
 )
-def test_what_is_no_shortcoming_is_not_told(tmp_path: Path, change: dict[str, str]) -> None:
+def test_what_is_no_shortcoming_is_not_told(tmp_path, change):
     assert notes(lay(tmp_path, PACKAGE | change)) == ()
 
 
-def test_a_set_up_that_cannot_be_evaluated_is_a_note_with_its_line(tmp_path: Path) -> None:
+def test_a_set_up_that_cannot_be_evaluated_is_a_note_with_its_line(tmp_path):
     change = changed("setup.py", "packages=[package_name]", "packages=more()")
     with open_submission(lay(tmp_path, PACKAGE | change)) as submission:
         assert submission.start == EntryPoint("spiral.node", "main")
@@ -187,20 +185,20 @@ def test_a_set_up_that_cannot_be_evaluated_is_a_note_with_its_line(tmp_path: Pat
         )
 
 
-def test_a_package_inside_is_named_with_its_folder(tmp_path: Path) -> None:
+def test_a_package_inside_is_named_with_its_folder(tmp_path):
     files = {name: text for name, text in PACKAGE.items() if name != "setup.cfg"}
     lay(tmp_path, {"README.md": "", **below("src/spiral", files)})
     (note,) = notes(tmp_path)
     assert "no setup.cfg in src/spiral with install_scripts" in note
 
 
-def test_other_console_scripts_are_told_as_not_started(tmp_path: Path) -> None:
+def test_other_console_scripts_are_told_as_not_started(tmp_path):
     scripts = "'again = spiral.node:main', 'pen_node = spiral.pens:main', 'turtle_controller"
     change = changed("setup.py", "'turtle_controller", scripts)
     lay(tmp_path, PACKAGE | change | {"spiral/pens.py": NODE})
     assert notes(tmp_path) == ("another console script was not started: pen_node",)
 
 
-def test_other_programs_of_a_folder_are_told_as_not_started(tmp_path: Path) -> None:
+def test_other_programs_of_a_folder_are_told_as_not_started(tmp_path):
     lay(tmp_path, {"turtle_controller.py": NODE, "a.py": NODE, "b.py": NODE, "helper.py": ""})
     assert notes(tmp_path)[-1] == "other programs were not started: a.py, b.py"

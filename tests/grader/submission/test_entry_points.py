@@ -1,7 +1,5 @@
 """The right console script is chosen, and its module is taken from the submission alone."""
 
-from pathlib import Path
-
 import pytest
 
 from grader.run.opening import open_submission
@@ -40,7 +38,7 @@ def package(name: str, *entries: str, module: str = "turtle_controller") -> dict
 # packages and workspaces
 
 
-def test_a_package_starts_by_its_console_script(tmp_path: Path) -> None:
+def test_a_package_starts_by_its_console_script(tmp_path):
     lay(tmp_path / "spiral", package("spiral"))
     found = found_in(tmp_path / "spiral")
     assert (found.name, found.root) == ("spiral", tmp_path / "spiral")
@@ -48,9 +46,7 @@ def test_a_package_starts_by_its_console_script(tmp_path: Path) -> None:
     assert str(found.found) == "console script turtle_controller in setup.py"
 
 
-def test_turtle_controller_is_preferred_and_the_only_script_needs_no_particular_name(
-    tmp_path: Path,
-) -> None:
+def test_turtle_controller_is_preferred_and_the_only_script_needs_no_particular_name(tmp_path):
     lay(tmp_path / "two", package("spiral", f"a = {TARGET}", f"turtle_controller = {TARGET}"))
     said = "console script {} in setup.py"
     assert str(found_in(tmp_path / "two").found) == said.format("turtle_controller")
@@ -89,20 +85,20 @@ OTHERS = "class Node: ...\ndef Main(): ...\n"
     ],
 )
 def test_what_names_no_program_of_the_package_is_refused_with_what_there_is(
-    tmp_path: Path, files: dict[str, str], executable: str | None, words: str
-) -> None:
+    tmp_path, files, executable, words
+):
     assert words in refused(lay(tmp_path, files), executable)
 
 
 @pytest.mark.parametrize("script", ["turtle_controller", "draw"])
-def test_the_same_script_in_two_packages_is_refused(tmp_path: Path, script: str) -> None:
+def test_the_same_script_in_two_packages_is_refused(tmp_path, script):
     for name in ("a", "b"):
         entry = f"{script} = {name}.turtle_controller:main"
         lay(tmp_path, below(f"src/{name}", package(name, entry)))
     assert f"{script} more than once: src/a/setup.py, src/b/setup.py" in refused(tmp_path)
 
 
-def test_the_package_is_found_in_a_workspace(tmp_path: Path) -> None:
+def test_the_package_is_found_in_a_workspace(tmp_path):
     lay(tmp_path, below("src/spiral", package("spiral")))
     lay(tmp_path, below("install/spiral", package("spiral")))
     lay(tmp_path, {"src/msgs/package.xml": "", "src/msgs/CMakeLists.txt": ""})
@@ -111,26 +107,26 @@ def test_the_package_is_found_in_a_workspace(tmp_path: Path) -> None:
     assert str(submission.found) == "console script turtle_controller in src/spiral/setup.py"
 
 
-def test_of_several_packages_the_one_with_the_script_is_taken(tmp_path: Path) -> None:
+def test_of_several_packages_the_one_with_the_script_is_taken(tmp_path):
     lay(tmp_path, below("src/a", package("a", "helper = a.turtle_controller:main")))
     lay(tmp_path, below("src/b", package("b")))
     assert found_in(tmp_path).root == tmp_path / "src/b"
     assert found_in(tmp_path, "helper").root == tmp_path / "src/a"
 
 
-def test_a_package_may_be_called_test(tmp_path: Path) -> None:
+def test_a_package_may_be_called_test(tmp_path):
     lay(tmp_path, below("src/test", package("test")))
     lay(tmp_path, {"src/README.md": ""})
     assert found_in(tmp_path).start == EntryPoint("test.turtle_controller", "main")
 
 
-def test_a_broken_set_up_file_does_not_matter_beside_a_good_one(tmp_path: Path) -> None:
+def test_a_broken_set_up_file_does_not_matter_beside_a_good_one(tmp_path):
     lay(tmp_path, {"src/bad/setup.py": "setup(\n"} | below("src/good", package("good")))
     assert found_in(tmp_path).root == tmp_path / "src/good"
     assert "no console script other; it has: turtle_controller" in refused(tmp_path, "other")
 
 
-def test_a_set_up_file_may_compute_its_scripts(tmp_path: Path) -> None:
+def test_a_set_up_file_may_compute_its_scripts(tmp_path):
     entries = "*(f'{name} = spiral.{name}:main' for name in ['turtle_controller'])"
     files = package("spiral") | {"setup.py": SETUP.format(package="spiral", entries=entries)}
     submission = found_in(lay(tmp_path, files))
@@ -148,8 +144,8 @@ def test_a_set_up_file_may_compute_its_scripts(tmp_path: Path) -> None:
     ],
 )
 def test_where_setup_py_cannot_be_evaluated_the_program_is_found_as_without_scripts(
-    tmp_path: Path, setup: str, why: str
-) -> None:
+    tmp_path, setup, why
+):
     submission = found_in(lay(tmp_path, package("spiral") | {"setup.py": setup}))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
     assert str(submission.notes[0]).startswith("colcon would not build this: setup.py ")
@@ -158,9 +154,7 @@ def test_where_setup_py_cannot_be_evaluated_the_program_is_found_as_without_scri
     assert refused(lay(tmp_path / "several", files)).endswith(f"{why}.")
 
 
-def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_told(
-    tmp_path: Path,
-) -> None:
+def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_told(tmp_path):
     files = package("spiral") | {"setup.py": SETUP.format(package="spiral", entries="")}
     submission = found_in(lay(tmp_path, files))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
@@ -173,21 +167,21 @@ def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_t
 # the module of a console script
 
 
-def test_a_module_of_another_submission_is_out_of_reach(tmp_path: Path) -> None:
+def test_a_module_of_another_submission_is_out_of_reach(tmp_path):
     setup = SETUP.format(package="alice", entries="'turtle_controller = bob.node:main'")
     setup = setup.replace("name=", "package_dir={'': '../'}, name=")
     lay(tmp_path, {"alice/setup.py": setup, "bob/node.py": NODE})
     assert "no file bob/node.py" in refused(tmp_path / "alice")
 
 
-def test_a_source_layout_is_imported_from_its_folder(tmp_path: Path) -> None:
+def test_a_source_layout_is_imported_from_its_folder(tmp_path):
     setup = SETUP.format(package="s", entries="'turtle_controller = s.node:main'")
     setup = setup.replace("exclude=", "where='src', exclude=")
     lay(tmp_path, {"setup.py": setup, "src/s/__init__.py": "", "src/s/node.py": NODE})
     assert found_in(tmp_path).root == tmp_path / "src"
 
 
-def test_a_module_may_lie_beside_setup_py(tmp_path: Path) -> None:
+def test_a_module_may_lie_beside_setup_py(tmp_path):
     setup = "from setuptools import setup\n"
     setup += "setup(py_modules=['n'], entry_points={'console_scripts': ['x = n:main']})\n"
     assert found_in(lay(tmp_path, {"setup.py": setup, "n.py": NODE})).start == EntryPoint(
@@ -195,7 +189,7 @@ def test_a_module_may_lie_beside_setup_py(tmp_path: Path) -> None:
     )
 
 
-def test_a_missing_init_file_is_added_to_a_copy(tmp_path: Path) -> None:
+def test_a_missing_init_file_is_added_to_a_copy(tmp_path):
     files = package("turtlesim_challenge")
     del files["turtlesim_challenge/__init__.py"]
     with open_submission(lay(tmp_path, files)) as submission:
@@ -208,6 +202,6 @@ def test_a_missing_init_file_is_added_to_a_copy(tmp_path: Path) -> None:
     assert not (tmp_path / "turtlesim_challenge/__init__.py").exists()
 
 
-def test_a_module_that_does_not_parse_is_left_to_the_interpreter(tmp_path: Path) -> None:
+def test_a_module_that_does_not_parse_is_left_to_the_interpreter(tmp_path):
     lay(tmp_path, package("s") | {"s/turtle_controller.py": "def main(:\n"})
     assert found_in(tmp_path).start == EntryPoint("s.turtle_controller", "main")

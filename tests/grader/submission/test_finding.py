@@ -28,17 +28,13 @@ def refused(path: Path, scratch: Path) -> str:
     return str(error.value)
 
 
-def test_an_unreadable_file_is_named(
-    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_unreadable_file_is_named(tmp_path, scratch, monkeypatch):
     handed_in = lay(tmp_path / "in", {"node.py": NODE})
     forbid(monkeypatch, handed_in / "node.py")
     assert refused(handed_in, scratch).startswith("node.py cannot be read: Permission denied.")
 
 
-def test_an_unreadable_file_of_a_package_is_named(
-    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_unreadable_file_of_a_package_is_named(tmp_path, scratch, monkeypatch):
     handed_in = lay(tmp_path / "in", PACKAGE)
     with pytest.raises(NotInspected) as asked:
         find(handed_in, None, scratch)
@@ -62,9 +58,7 @@ def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
     monkeypatch.setattr(Path, "open", open_or_not)
 
 
-def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(
-    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(tmp_path, scratch, monkeypatch):
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
@@ -74,9 +68,7 @@ def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(
         find(tmp_path / "a.zip", None, scratch)
 
 
-def test_a_folder_with_too_many_files_is_refused(
-    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_folder_with_too_many_files_is_refused(tmp_path, scratch, monkeypatch):
     monkeypatch.setattr("grader.submission.folder.MAX_ENTRIES", 2)
     assert "more than 2 files" in refused(
         lay(tmp_path / "in", dict.fromkeys(("a", "b", "c"), "")), scratch

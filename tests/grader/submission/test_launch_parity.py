@@ -83,7 +83,7 @@ SAID = {
 
 
 @pytest.mark.parametrize("file", STARTS)
-def test_what_is_started_is_what_ros2_launch_starts_and_the_rest_is_said(file: str) -> None:
+def test_what_is_started_is_what_ros2_launch_starts_and_the_rest_is_said(file):
     submission = opened(FOLDER, launch=LaunchAsked(file))
     skipped = LEFT_OUT + (OF_COMPOSED if "composed" in file else ())
     real = [each for each in STARTS[file] if not each[0].startswith(skipped)]

@@ -83,21 +83,19 @@ EVENT = "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))"
         ),
     ],
 )
-def test_what_a_launch_file_does_besides_is_followed_or_named(
-    tmp_path: Path, more: str, third: str, note: str
-) -> None:
+def test_what_a_launch_file_does_besides_is_followed_or_named(tmp_path, more, third, note):
     submission = launched(tmp_path, f"{DRIVE}, {PENS}, {more}")
     assert names(submission) == ["turtle_controller-1", "pen_node-2", *([third] if third else [])]
     assert any(each.startswith(note) for each in notes(submission)) or not note
 
 
-def test_what_is_started_again_is_said_once(tmp_path: Path) -> None:
+def test_what_is_started_again_is_said_once(tmp_path):
     submission = launched(tmp_path, f"{DRIVE}, {THIRD.format(', respawn=True')}")
     assert names(submission) == ["turtle_controller-1", *["pen_node-2"] * 4]
     assert str(submission.found) == "launch/a.launch.py, which starts turtle_controller, pen_node"
 
 
-def test_a_launch_file_that_starts_a_program_in_cpp_cannot_be_graded(tmp_path: Path) -> None:
+def test_a_launch_file_that_starts_a_program_in_cpp_cannot_be_graded(tmp_path):
     both = LIST.format(f"{DRIVE}, Node(package='arm', executable='move')")
     files = {f"spiral/{name}": text for name, text in TWO.items()}
     files |= {"spiral/launch/a.launch.py": both, "arm/CMakeLists.txt": "project(arm)\n"}
@@ -113,14 +111,14 @@ INCLUDES = HEAD + (
 )
 
 
-def test_a_launch_file_that_another_includes_is_none_to_choose(tmp_path: Path) -> None:
+def test_a_launch_file_that_another_includes_is_none_to_choose(tmp_path):
     part = LIST.format(f"{PENS}, {PENS}")
     files = {"launch/all.launch.py": INCLUDES, "launch/part.launch.py": part}
     submission = opened(lay(tmp_path, TWO | files))
     assert names(submission) == ["pen_node-1", "pen_node-2", "turtle_controller-3"]
 
 
-def test_several_nodes_of_a_launch_file_are_started(tmp_path: Path) -> None:
+def test_several_nodes_of_a_launch_file_are_started(tmp_path):
     submission = launched(tmp_path, f"{DRIVE}, {PENS}", "both.launch.py")
     root = submission.root
     assert submission.start == Launch(
@@ -139,7 +137,7 @@ def test_several_nodes_of_a_launch_file_are_started(tmp_path: Path) -> None:
     assert "rclpy" in submission.imports.surely
 
 
-def test_it_settles_what_to_start_where_no_script_has_the_usual_name(tmp_path: Path) -> None:
+def test_it_settles_what_to_start_where_no_script_has_the_usual_name(tmp_path):
     files = {
         name: text.replace("turtle_controller", "drive")
         for name, text in (TWO | {"launch/both.launch.py": BOTH}).items()
@@ -147,7 +145,7 @@ def test_it_settles_what_to_start_where_no_script_has_the_usual_name(tmp_path: P
     assert names(opened(lay(tmp_path, files))) == ["drive-1", "pen_node-2"]
 
 
-def test_who_asks_for_one_program_gets_that_alone(tmp_path: Path) -> None:
+def test_who_asks_for_one_program_gets_that_alone(tmp_path):
     submission = launched(tmp_path, f"{DRIVE}, {PENS}", "both.launch.py", executable="pen_node")
     assert submission.start == EntryPoint("spiral.pens", "main")
     assert str(submission.remarks[-1]) == (
@@ -156,7 +154,7 @@ def test_who_asks_for_one_program_gets_that_alone(tmp_path: Path) -> None:
     )
 
 
-def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path: Path) -> None:
+def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path):
     simulator = "Node(package='turtlesim', executable='turtlesim_node')"
     other = "Node(package='rqt_graph', executable='rqt_graph')"
     submission = launched(tmp_path, f"{simulator}, {DRIVE}, {other}, {PENS}", "all_launch.py")
@@ -183,15 +181,13 @@ def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path: Pa
         (DRIVE.replace(")", ", name='me')"), "another console script"),
     ],
 )
-def test_a_launch_file_that_is_not_run_is_told_where_it_matters(
-    tmp_path: Path, actions: str, note: str
-) -> None:
+def test_a_launch_file_that_is_not_run_is_told_where_it_matters(tmp_path, actions, note):
     submission = launched(tmp_path, actions)
     assert submission.start == EntryPoint("spiral.node", "main")
     assert any(str(remark).startswith(note) for remark in submission.remarks)
 
 
-def test_what_ros2_launch_would_not_find_is_told(tmp_path: Path) -> None:
+def test_what_ros2_launch_would_not_find_is_told(tmp_path):
     other = DRIVE.replace("turtle_controller", "turtle_controller.py")
     remarks = launched(tmp_path, other).remarks
     assert any("would not find launch/a.launch.py" in str(remark) for remark in remarks)
@@ -201,7 +197,7 @@ def test_what_ros2_launch_would_not_find_is_told(tmp_path: Path) -> None:
 OTHER = LIST.format(f"{PENS}, {DRIVE}")
 
 
-def test_of_two_launch_files_one_has_to_be_chosen(tmp_path: Path) -> None:
+def test_of_two_launch_files_one_has_to_be_chosen(tmp_path):
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER})
     with pytest.raises(SubmissionError) as caught:
         opened(tmp_path)
@@ -212,9 +208,7 @@ def test_of_two_launch_files_one_has_to_be_chosen(tmp_path: Path) -> None:
         assert names(chosen) == ["pen_node-1", "turtle_controller-2"]
 
 
-def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_arguments(
-    tmp_path: Path,
-) -> None:
+def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_arguments(tmp_path):
     node = "Node(package='spiral', executable=LaunchConfiguration('which'), name='n')"
     asked = LaunchAsked("a.launch.py", {"which": "pen_node"})
     found = launched(tmp_path, f"DeclareLaunchArgument('which'), {node}", launch=asked)
@@ -224,7 +218,7 @@ def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_argument
         opened(tmp_path, launch=LaunchAsked("a.launch.py"))
 
 
-def test_an_argument_that_is_not_declared_is_told(tmp_path: Path) -> None:
+def test_an_argument_that_is_not_declared_is_told(tmp_path):
     declares = "DeclareLaunchArgument('speed', default_value='1')"
     asked = LaunchAsked("a.launch.py", {"sped": "2"})
     found = launched(tmp_path, f"{declares}, {DRIVE}, {PENS}", launch=asked)
@@ -232,9 +226,7 @@ def test_an_argument_that_is_not_declared_is_told(tmp_path: Path) -> None:
     assert names(found) == ["turtle_controller-1", "pen_node-2"]
 
 
-def test_of_two_launch_files_none_is_needed_where_the_exercise_names_the_programs(
-    tmp_path: Path,
-) -> None:
+def test_of_two_launch_files_none_is_needed_where_the_exercise_names_the_programs(tmp_path):
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER})
     found = opened(tmp_path, programs=("pen_node", "turtle_controller"))
     assert names(found) == ["pen_node-1", "turtle_controller-2"]
@@ -243,7 +235,7 @@ def test_of_two_launch_files_none_is_needed_where_the_exercise_names_the_program
     )
 
 
-def test_a_launch_file_that_fails_half_way_starts_nothing_and_is_told(tmp_path: Path) -> None:
+def test_a_launch_file_that_fails_half_way_starts_nothing_and_is_told(tmp_path):
     fails = f"{DRIVE}, OpaqueFunction(function=lambda _: 1 / 0), {PENS}"
     found = launched(tmp_path, fails, programs=("pen_node", "turtle_controller"))
     assert names(found) == ["pen_node-1", "turtle_controller-2"]
@@ -251,14 +243,14 @@ def test_a_launch_file_that_fails_half_way_starts_nothing_and_is_told(tmp_path: 
     assert f"{said} (launch/a.launch.py, line 11)" in notes(found)
 
 
-def test_a_file_of_parameters_that_is_not_there_is_only_told(tmp_path: Path) -> None:
+def test_a_file_of_parameters_that_is_not_there_is_only_told(tmp_path):
     node = DRIVE.replace(")", ", parameters=['/nowhere/all.yaml'])")
     found = launched(tmp_path, f"{node}, {PENS}")
     assert names(found) == ["turtle_controller-1", "pen_node-2"]
     assert any("was started without --params-file, /nowhere/all.y" in each for each in notes(found))
 
 
-def test_a_launch_file_that_is_asked_for_and_not_there_is_told(tmp_path: Path) -> None:
+def test_a_launch_file_that_is_asked_for_and_not_there_is_told(tmp_path):
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH})
     with pytest.raises(SubmissionError, match=r"no launch file c.launch.py; it has: launch/a"):
         opened(tmp_path, launch=LaunchAsked("c.launch.py"))
@@ -266,7 +258,7 @@ def test_a_launch_file_that_is_asked_for_and_not_there_is_told(tmp_path: Path) -
         opened(tmp_path / "spiral/node.py", launch=LaunchAsked("a.launch.py"))
 
 
-def test_the_programs_of_an_exercise_are_started_where_they_are_there(tmp_path: Path) -> None:
+def test_the_programs_of_an_exercise_are_started_where_they_are_there(tmp_path):
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH})
     assert names(opened(tmp_path, programs=("pen_node",))) == ["pen_node-1"]
     pair = ("pen_node", "turtle_controller")
@@ -279,7 +271,7 @@ def test_the_programs_of_an_exercise_are_started_where_they_are_there(tmp_path: 
     assert names(others) == ["turtle_controller-1", "pen_node-2"]  # as many
 
 
-def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path: Path) -> None:
+def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path):
     other = {
         name.replace("spiral", "pens"): text.replace("spiral", "pens")
         for name, text in PACKAGE.items()
@@ -297,7 +289,7 @@ def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path: Path)
     assert [each.root.name for each in submission.programs] == ["spiral", "pens"]
 
 
-def test_a_launch_file_from_somewhere_else_is_not_read(tmp_path: Path) -> None:
+def test_a_launch_file_from_somewhere_else_is_not_read(tmp_path):
     lay(tmp_path / "spiral", TWO | {"launch/README": ""})
     (tmp_path / "bob.launch.py").write_text(BOTH)
     (tmp_path / "spiral/launch/a.launch.py").symlink_to("../../bob.launch.py")

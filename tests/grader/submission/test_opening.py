@@ -69,9 +69,7 @@ CALLS_MAIN = NODE + "\nimport sys\nsys.exit(main())\n"
         *((name, NODE, "by its path") for name in ("controller.v2.py", "random.py")),
     ],
 )
-def test_a_file_is_run_as_a_script_or_imported_and_its_main_called(
-    tmp_path: Path, name: str, data: str | bytes, runs: str
-) -> None:
+def test_a_file_is_run_as_a_script_or_imported_and_its_main_called(tmp_path, name, data, runs):
     found = found_in(lay(tmp_path, {name: data}) / name)
     assert (found.name, found.root) == (name, tmp_path)
     said = f"file {name}" if runs == "script" else f"function main of {name}"
@@ -82,9 +80,7 @@ def test_a_file_is_run_as_a_script_or_imported_and_its_main_called(
         assert found.start == Script(tmp_path / name, "main" if runs == "by its path" else None)
 
 
-def test_the_root_is_absolute_where_the_path_is_not(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_root_is_absolute_where_the_path_is_not(tmp_path, monkeypatch):
     lay(tmp_path, PACKAGE)
     monkeypatch.chdir(tmp_path)
     assert found_in(Path("spiral/node.py")).root == tmp_path / "spiral"
@@ -95,7 +91,7 @@ def test_the_root_is_absolute_where_the_path_is_not(
 # folders without set-up files
 
 
-def test_nothing_of_a_submission_is_executed(tmp_path: Path) -> None:
+def test_nothing_of_a_submission_is_executed(tmp_path):
     files = dict(PACKAGE)
     trap = f"open({str(tmp_path / 'executed')!r}, 'w').close()\n"
     for name in ("setup.py", "spiral/__init__.py", "spiral/node.py"):
@@ -106,7 +102,7 @@ def test_nothing_of_a_submission_is_executed(tmp_path: Path) -> None:
     assert not (tmp_path / "executed").exists()
 
 
-def test_the_only_file_that_starts_itself_is_taken_from_a_folder(tmp_path: Path) -> None:
+def test_the_only_file_that_starts_itself_is_taken_from_a_folder(tmp_path):
     lay(tmp_path, {"scripts/spiral.py": GUARDED, "scripts/geometry.py": "PI = 3\n"})
     submission = found_in(tmp_path)
     assert submission.start == Script(tmp_path / "scripts/spiral.py")
@@ -114,7 +110,7 @@ def test_the_only_file_that_starts_itself_is_taken_from_a_folder(tmp_path: Path)
     assert str(submission.found) == "file scripts/spiral.py"
 
 
-def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path: Path) -> None:
+def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path):
     lay(tmp_path, {"a.py": GUARDED, "main.py": GUARDED})
     assert found_in(tmp_path).start == Script(tmp_path / "main.py")
     lay(tmp_path, {"turtle_controller.py": GUARDED})
@@ -122,23 +118,23 @@ def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path: P
     assert found_in(tmp_path, "a").start == Script(tmp_path / "a.py")
 
 
-def test_several_files_to_start_are_listed(tmp_path: Path) -> None:
+def test_several_files_to_start_are_listed(tmp_path):
     lay(tmp_path, {"a.py": GUARDED, "b.py": NODE, "helper.py": "X = 1\n"})
     assert "several Python files to start: a.py, b.py. " in refused(tmp_path)
     assert "no Python file c; it has: a.py, b.py" in refused(tmp_path, "c")
 
 
-def test_a_lone_file_needs_neither_guard_nor_main(tmp_path: Path) -> None:
+def test_a_lone_file_needs_neither_guard_nor_main(tmp_path):
     lay(tmp_path, {"node.py": "import rclpy\nrclpy.init()\n", "README.md": ""})
     assert found_in(tmp_path).start == Script(tmp_path / "node.py")
 
 
-def test_a_file_that_does_not_parse_still_counts_by_its_text(tmp_path: Path) -> None:
+def test_a_file_that_does_not_parse_still_counts_by_its_text(tmp_path):
     lay(tmp_path, {"node.py": "x = (\n" + GUARDED, "helper.py": "X = 1\n"})
     assert found_in(tmp_path).start == Script(tmp_path / "node.py")
 
 
-def test_what_is_not_the_students_node_is_passed_over(tmp_path: Path) -> None:
+def test_what_is_not_the_students_node_is_passed_over(tmp_path):
     others = [
         *(".git/a.py", ".venv/a.py", "__pycache__/a.py", "__MACOSX/a.py", "._node.py"),
         *("venv/a.py", "my_env/a.py", "build/a.py", "install/a.py", "log/a.py"),
@@ -151,7 +147,7 @@ def test_what_is_not_the_students_node_is_passed_over(tmp_path: Path) -> None:
 # zips
 
 
-def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path: Path) -> None:
+def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path):
     archive = pack(tmp_path / "alice.zip", below("hw1/ws/src/spiral", PACKAGE))
     with open_submission(archive) as submission:
         assert submission.name == "alice.zip"
@@ -160,7 +156,7 @@ def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path: Pat
     assert not submission.root.exists()
 
 
-def test_a_zip_goes_away_after_an_error_in_the_run(tmp_path: Path) -> None:
+def test_a_zip_goes_away_after_an_error_in_the_run(tmp_path):
     opened = open_submission(pack(tmp_path / "a.zip", {"node.py": NODE}))
     with pytest.raises(FileNotFoundError, match="of the run"), opened as submission:
         assert submission.start == EntryPoint("node", "main")
@@ -168,7 +164,7 @@ def test_a_zip_goes_away_after_an_error_in_the_run(tmp_path: Path) -> None:
     assert not submission.root.exists()
 
 
-def test_a_single_file_leaves_nothing_to_choose(tmp_path: Path) -> None:
+def test_a_single_file_leaves_nothing_to_choose(tmp_path):
     lay(tmp_path, {"node.py": NODE})
     for name in ("node", "node.py"):
         assert found_in(tmp_path / "node.py", name) == found_in(tmp_path / "node.py")
@@ -184,7 +180,7 @@ def nested(levels: int, data: bytes) -> bytes:
     return data
 
 
-def test_the_folder_of_a_courses_server_with_a_zip_in_it_is_looked_into(tmp_path: Path) -> None:
+def test_the_folder_of_a_courses_server_with_a_zip_in_it_is_looked_into(tmp_path):
     folder = tmp_path / "Alice Doe_123456_assignsubmission_file_"
     lay(folder, {"onlinetext.html": "<p>Hello</p>"})
     pack(folder / "spiral.zip", below("spiral", PACKAGE))
@@ -196,7 +192,7 @@ def test_the_folder_of_a_courses_server_with_a_zip_in_it_is_looked_into(tmp_path
         assert submission.with_original_paths(str(submission.root)).startswith(str(folder))
 
 
-def test_a_zip_in_a_zip_is_unpacked_and_so_is_a_tar(tmp_path: Path) -> None:
+def test_a_zip_in_a_zip_is_unpacked_and_so_is_a_tar(tmp_path):
     (tmp_path / "a.zip").write_bytes(nested(1, packed({"node.py": NODE})))
     assert str(found_in(tmp_path / "a.zip").found) == "function main of node.py, in level0.zip"
     lay(tmp_path / "a", PACKAGE)
@@ -207,7 +203,7 @@ def test_a_zip_in_a_zip_is_unpacked_and_so_is_a_tar(tmp_path: Path) -> None:
         assert (submission.root / "spiral/node.py").read_text() == GUARDED
 
 
-def test_archives_are_unpacked_three_levels_deep_and_no_further(tmp_path: Path) -> None:
+def test_archives_are_unpacked_three_levels_deep_and_no_further(tmp_path):
     inside = packed({"node.py": NODE})
     (tmp_path / "a.zip").write_bytes(nested(2, inside))
     assert found_in(tmp_path / "a.zip").start == EntryPoint("node", "main")
@@ -217,7 +213,7 @@ def test_archives_are_unpacked_three_levels_deep_and_no_further(tmp_path: Path) 
     )
 
 
-def test_a_bomb_in_a_zip_is_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bomb_in_a_zip_is_stopped(tmp_path, monkeypatch):
     small = Budget(ArchiveLimits(1_000_000))
     monkeypatch.setattr(safe_members, "Budget", lambda: small)
     for size, said in ((100_000, "no Python file"), (1_100_000, "b.zip unpacks to more than 1 MB")):
@@ -227,7 +223,7 @@ def test_a_bomb_in_a_zip_is_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         assert said in refused(tmp_path / "a.zip")
 
 
-def test_several_archives_are_listed_and_none_beside_a_program_is_opened(tmp_path: Path) -> None:
+def test_several_archives_are_listed_and_none_beside_a_program_is_opened(tmp_path):
     for name in ("a.zip", "b.zip"):
         pack(tmp_path / name, {"node.py": NODE})
     assert "several archives, and no Python file beside them: a.zip, b.zip." in refused(tmp_path)
@@ -235,7 +231,7 @@ def test_several_archives_are_listed_and_none_beside_a_program_is_opened(tmp_pat
     assert str(found_in(tmp_path).found) == "function main of node.py"
 
 
-def test_an_archive_that_is_a_link_to_somewhere_else_is_not_opened(tmp_path: Path) -> None:
+def test_an_archive_that_is_a_link_to_somewhere_else_is_not_opened(tmp_path):
     pack(tmp_path / "bob.zip", {"node.py": NODE})
     lay(tmp_path / "alice", {"README.md": ""})
     (tmp_path / "alice/mine.zip").symlink_to("../bob.zip")
@@ -245,7 +241,7 @@ def test_an_archive_that_is_a_link_to_somewhere_else_is_not_opened(tmp_path: Pat
 # refusals
 
 
-def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path: Path) -> None:
+def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path):
     lay(tmp_path, {"turtle_controller.py": NODE, "notes.txt": ""})
     with pytest.raises(UsageError, match=r"exist\. Did you mean turtle_controller\.py") as error:
         found_in(tmp_path / "turtle_controler.py")
@@ -254,17 +250,17 @@ def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path: Path) -> None
     assert "there is no folder" in refused(tmp_path / "no" / "a.py")
 
 
-def test_an_empty_folder_says_what_to_hand_in(tmp_path: Path) -> None:
+def test_an_empty_folder_says_what_to_hand_in(tmp_path):
     lay(tmp_path, {".git/config": ""})
     assert refused(tmp_path).endswith(f"is an empty folder. {HAND_IN!s}")
 
 
-def test_a_folder_without_python_lists_what_it_holds(tmp_path: Path) -> None:
+def test_a_folder_without_python_lists_what_it_holds(tmp_path):
     text = refused(lay(tmp_path, {"report.pdf": "", "old.rar": "", "test/a.py": ""}))
     assert "no Python file that could be the node (it holds: old.rar, report.pdf)" in text
 
 
-def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path: Path) -> None:
+def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path):
     files = {"package.xml": "", "CMakeLists.txt": "", "src/node.cpp": "", "launch/a.launch.py": ""}
     assert "Only Python can be graded" in refused(lay(tmp_path, files))
     assert "Only Python can be graded" in refused(tmp_path / "src/node.cpp")
@@ -277,17 +273,17 @@ def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path: Path) -> Non
         *(("a.PY", "call it a.py"), ("a.txt", HAND_IN), ("README", HAND_IN)),
     ],
 )
-def test_another_kind_of_file_says_what_to_hand_in(tmp_path: Path, name: str, advice: str) -> None:
+def test_another_kind_of_file_says_what_to_hand_in(tmp_path, name, advice):
     text = refused(lay(tmp_path, {name: "x"}) / name)
     assert text.startswith(f"{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz.")
     assert str(advice) in text
 
 
-def test_a_pipe_called_like_a_python_file_is_not_waited_for(tmp_path: Path) -> None:
+def test_a_pipe_called_like_a_python_file_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "a.py")
     assert "not an ordinary file" in refused(tmp_path / "a.py")
 
 
-def test_a_message_has_no_control_characters(tmp_path: Path) -> None:
+def test_a_message_has_no_control_characters(tmp_path):
     text = refused(lay(tmp_path, {"\x1b[31mred.txt": ""}))
     assert "?[31mred.txt" in text

@@ -46,7 +46,7 @@ def flags(submission: Submission) -> tuple[str, ...]:
     return tuple(map(str, flags))
 
 
-def test_a_single_file_comes_alone(home: Path) -> None:
+def test_a_single_file_comes_alone(home):
     lay(home, {"alice.py": NODE, "bob.py": NODE, "turtlesim.py": "", "data.json": "{}"})
     with open_submission(home / "alice.py") as submission:
         assert held(submission) == ["alice.py"]
@@ -57,7 +57,7 @@ def test_a_single_file_comes_alone(home: Path) -> None:
     assert not submission.root.exists()
 
 
-def test_a_module_beside_a_single_file_is_missed_by_its_name(home: Path) -> None:
+def test_a_module_beside_a_single_file_is_missed_by_its_name(home):
     imports = "import helper, json, os\nfrom shapes.round import Spiral\n"
     imports += "try:\n    import perhaps\nexcept ImportError: pass\n"
     imports += "import numpy, rclpy, gone, data\n"
@@ -75,7 +75,7 @@ def test_a_module_beside_a_single_file_is_missed_by_its_name(home: Path) -> None
         )
 
 
-def test_a_package_comes_with_all_that_lies_in_it(home: Path) -> None:
+def test_a_package_comes_with_all_that_lies_in_it(home):
     files = {
         **PACKAGE,
         **dict.fromkeys(("resource/spiral", "config/x.yaml", "test/t.py", ".hidden", "log/l"), ""),
@@ -89,7 +89,7 @@ def test_a_package_comes_with_all_that_lies_in_it(home: Path) -> None:
         assert flags(submission) == tuple(map(str, submission.notes))
 
 
-def test_what_an_earlier_grading_has_left_is_not_handed_in_again(home: Path) -> None:
+def test_what_an_earlier_grading_has_left_is_not_handed_in_again(home):
     """`grader run .` writes into the package itself."""
     result = '{\n  "schema": "turtlesim-grader/result/v1",\n}'
     left = {"graded/home/result.json": result, "graded/home/recording/output.txt": "x"}
@@ -100,7 +100,7 @@ def test_what_an_earlier_grading_has_left_is_not_handed_in_again(home: Path) -> 
         assert held(submission) == sorted(names)
 
 
-def test_the_copy_is_for_reading_only_and_what_was_executable_is(home: Path) -> None:
+def test_the_copy_is_for_reading_only_and_what_was_executable_is(home):
     lay(home, PACKAGE | {"run.sh": "#!/bin/sh\n"})
     (home / "run.sh").chmod(0o755)
     archive = home.parent / "alice.zip"
@@ -117,7 +117,7 @@ def test_the_copy_is_for_reading_only_and_what_was_executable_is(home: Path) -> 
     (home / "run.sh").chmod(0o644)
 
 
-def test_links_that_stay_inside_stay_and_others_are_left_out_and_told(home: Path) -> None:
+def test_links_that_stay_inside_stay_and_others_are_left_out_and_told(home):
     base = lay(home / "alice", PACKAGE)
     lay(home, {"bob/node.py": NODE})
     (base / "inner").symlink_to("spiral")
@@ -140,7 +140,7 @@ def test_links_that_stay_inside_stay_and_others_are_left_out_and_told(home: Path
         assert all(name in flag for name in ("out.py", "zero", "spiral/root"))
 
 
-def test_a_file_that_is_a_link_to_somewhere_else_is_refused(home: Path) -> None:
+def test_a_file_that_is_a_link_to_somewhere_else_is_refused(home):
     lay(home, {"alice/node.py": NODE, "bob/node.py": NODE})
     (home / "alice/link.py").symlink_to("../bob/node.py")
     (home / "alice/same.py").symlink_to("node.py")
@@ -150,7 +150,7 @@ def test_a_file_that_is_a_link_to_somewhere_else_is_refused(home: Path) -> None:
         assert (submission.root / "same.py").read_text() == NODE
 
 
-def test_what_is_no_file_is_left_out_and_not_waited_for(home: Path) -> None:
+def test_what_is_no_file_is_left_out_and_not_waited_for(home):
     lay(home, {"node.py": NODE})
     os.mkfifo(home / "pipe.py")
     with socket.socket(socket.AF_UNIX) as server:
@@ -159,7 +159,7 @@ def test_what_is_no_file_is_left_out_and_not_waited_for(home: Path) -> None:
             assert held(submission) == ["node.py"]
 
 
-def test_a_folder_300_levels_deep_is_copied_as_far_as_anybody_looks(home: Path) -> None:
+def test_a_folder_300_levels_deep_is_copied_as_far_as_anybody_looks(home):
     lay(home, {"node.py": NODE})
     deep = home.joinpath(*["d"] * 300)
     deep.mkdir(parents=True)
@@ -168,7 +168,7 @@ def test_a_folder_300_levels_deep_is_copied_as_far_as_anybody_looks(home: Path) 
         assert "cannot be copied" in flags(submission)[0]
 
 
-def test_names_of_all_kinds_are_copied(home: Path) -> None:
+def test_names_of_all_kinds_are_copied(home):
     names = ["[b]x[b].txt", "\x1b[31m.txt", "a\nb", os.fsdecode(b"\xff\xfe.txt"), "n" * 255]
     lay(home, {"node.py": NODE} | dict.fromkeys(names, ""))
     with open_submission(home) as submission:
@@ -176,9 +176,7 @@ def test_names_of_all_kinds_are_copied(home: Path) -> None:
 
 
 @pytest.mark.parametrize(("limit", "value"), [("MAX_ENTRIES", 3), ("MAX_BYTES", 100)])
-def test_too_much_is_refused_but_for_what_needs_not_come(
-    home: Path, monkeypatch: pytest.MonkeyPatch, limit: str, value: int
-) -> None:
+def test_too_much_is_refused_but_for_what_needs_not_come(home, monkeypatch, limit, value):
     monkeypatch.setattr(private_copy, limit, value)
     lay(home, {"node.py": NODE, **dict.fromkeys(("env/a", "env/b", "env/c"), "x" * 200)})
     with open_submission(home) as submission:
@@ -189,9 +187,7 @@ def test_too_much_is_refused_but_for_what_needs_not_come(
     assert "limit" in said or "too many" in said
 
 
-def test_a_file_of_a_terabyte_is_not_read_to_its_end(
-    home: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_of_a_terabyte_is_not_read_to_its_end(home, monkeypatch):
     monkeypatch.setattr(private_copy, "MAX_BYTES", 1_000_000)
     lay(home, {"node.py": NODE})
     with (home / "big").open("wb") as file:
@@ -199,9 +195,7 @@ def test_a_file_of_a_terabyte_is_not_read_to_its_end(
     assert "more than 1 MB" in refused(home)
 
 
-def test_what_is_wrong_with_the_machine_is_not_blamed_on_the_submission(
-    home: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_wrong_with_the_machine_is_not_blamed_on_the_submission(home, monkeypatch):
     really_open = os.open
 
     def full(path: Path | str, flags: int, *more: int, dir_fd: int | None = None) -> int:
@@ -215,7 +209,7 @@ def test_what_is_wrong_with_the_machine_is_not_blamed_on_the_submission(
         pass
 
 
-def test_paths_are_told_as_they_were_handed_in(home: Path) -> None:
+def test_paths_are_told_as_they_were_handed_in(home):
     lay(home, PACKAGE)
     for handed_in, shown in ((home, home), (home / "spiral/node.py", home / "spiral")):
         with open_submission(handed_in) as submission:
@@ -230,7 +224,7 @@ def test_paths_are_told_as_they_were_handed_in(home: Path) -> None:
         assert printed == f"{archive}/spiral/node.py"
 
 
-def test_a_package_that_lacks_its_init_file_is_told_by_its_own_path(home: Path) -> None:
+def test_a_package_that_lacks_its_init_file_is_told_by_its_own_path(home):
     lay(home, {"setup.py": SETUP, "spiral/node.py": NODE})
     with open_submission(home) as submission:
         printed = submission.with_original_paths(f"{submission.root}/spiral/node.py")
@@ -238,7 +232,7 @@ def test_a_package_that_lacks_its_init_file_is_told_by_its_own_path(home: Path) 
         assert (submission.root / "spiral/__init__.py").exists()
 
 
-def test_a_path_that_was_cut_through_tells_nothing_of_the_copy() -> None:
+def test_a_path_that_was_cut_through_tells_nothing_of_the_copy():
     prefix, shown = "/tmp/runs/run-0123456789ab/copy", "/home/ada"
     copy = PrivateCopy(Path(prefix) / "x", Path(shown) / "x", prefix, shown)
     note = "\n[... 7 bytes left out ...]\n"
@@ -253,7 +247,7 @@ def test_a_path_that_was_cut_through_tells_nothing_of_the_copy() -> None:
         assert copy.with_original_paths(f"cannot read {prefix[:at]}") == f"cannot read {begin}"
 
 
-def test_letters_beside_a_cut_that_are_no_path_stay_as_they_are() -> None:
+def test_letters_beside_a_cut_that_are_no_path_stay_as_they_are():
     copy = PrivateCopy(Path("/tmp/a/copy/x"), Path("/home/ada/x"), "/tmp/a/copy", "/home/ada")
     text = "it is /\n[... 7 bytes left out ...]\nyes, py"
     assert copy.with_original_paths(text) == text

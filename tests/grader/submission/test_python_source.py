@@ -22,24 +22,24 @@ def seen(tmp_path: Path, text: str) -> PythonSource:
         'try:\n    pass\nfinally:\n    if __name__ == "__main__": run()',
     ],
 )
-def test_a_guard_is_seen(tmp_path: Path, line: str) -> None:
+def test_a_guard_is_seen(tmp_path, line):
     assert seen(tmp_path, line).has_guard
 
 
 @pytest.mark.parametrize(
     "line", ["# if __name__ == '__main__':", "def f():\n    if __name__ == '__main__': pass"]
 )
-def test_what_only_looks_like_a_guard_is_none(tmp_path: Path, line: str) -> None:
+def test_what_only_looks_like_a_guard_is_none(tmp_path, line):
     assert not seen(tmp_path, line).has_guard
 
 
-def test_only_a_main_at_module_level_counts(tmp_path: Path) -> None:
+def test_only_a_main_at_module_level_counts(tmp_path):
     assert seen(tmp_path, "if True:\n    async def main(): ...").has_main
     assert not seen(tmp_path, "class Node:\n    def main(self): ...").has_main
 
 
 @pytest.mark.parametrize("line", ["main()", "sys.exit(main())", "Thread(target=main).start()"])
-def test_a_call_of_main_is_seen(tmp_path: Path, line: str) -> None:
+def test_a_call_of_main_is_seen(tmp_path, line):
     assert seen(tmp_path, line).calls_main
     assert not seen(tmp_path, f"def other():\n    {line}").calls_main
 
@@ -65,25 +65,25 @@ def test_a_call_of_main_is_seen(tmp_path: Path, line: str) -> None:
         "def main(:",
     ],
 )
-def test_a_name_that_may_be_there_is_not_surely_missing(tmp_path: Path, text: str) -> None:
+def test_a_name_that_may_be_there_is_not_surely_missing(tmp_path, text):
     assert not seen(tmp_path, text).surely_lacks("main")
 
 
 @pytest.mark.parametrize(
     "text", ["", "class A:\n    def main(self): ...", "def f():\n    main = 1", "import a.main"]
 )
-def test_a_name_that_cannot_be_there_is_surely_missing(tmp_path: Path, text: str) -> None:
+def test_a_name_that_cannot_be_there_is_surely_missing(tmp_path, text):
     assert seen(tmp_path, text).surely_lacks("main")
 
 
-def test_definitions_come_in_the_order_of_the_file(tmp_path: Path) -> None:
+def test_definitions_come_in_the_order_of_the_file(tmp_path):
     text = "import os\nB = 1\ndef c(): ...\nif B:\n    class A: ...\n"
     assert seen(tmp_path, text).defined == ("B", "c", "A")
 
 
-def test_a_warning_of_the_parser_is_left_to_the_run(tmp_path: Path) -> None:
+def test_a_warning_of_the_parser_is_left_to_the_run(tmp_path):
     assert seen(tmp_path, "x = '\\d'\n").parses
 
 
-def test_a_file_of_megabytes_is_not_looked_into(tmp_path: Path) -> None:
+def test_a_file_of_megabytes_is_not_looked_into(tmp_path):
     assert not seen(tmp_path, "#" * 1_000_001).parses

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -30,9 +29,7 @@ READ = {
 
 
 @pytest.mark.parametrize(("data", "is_read"), [(LATIN_1, False), (UTF_16, False), (DECLARED, True)])
-def test_a_file_is_read_or_refused_as_python_does(
-    tmp_path: Path, data: bytes, is_read: bool
-) -> None:
+def test_a_file_is_read_or_refused_as_python_does(tmp_path, data, is_read):
     file = tmp_path / "node.py"
     file.write_bytes(data.replace(b"import rclpy\n", b""))
     run = subprocess.run([sys.executable, file], capture_output=True, check=False)
@@ -40,9 +37,7 @@ def test_a_file_is_read_or_refused_as_python_does(
 
 
 @pytest.mark.parametrize("data", REFUSED.values(), ids=REFUSED.keys())
-def test_the_run_of_a_file_that_python_refuses_ends_with_its_line(
-    tmp_path: Path, data: bytes
-) -> None:
+def test_the_run_of_a_file_that_python_refuses_ends_with_its_line(tmp_path, data):
     file = tmp_path / "node.py"
     file.write_bytes(data)
     assert byte_fault(data)
@@ -56,14 +51,14 @@ def told_line(data: bytes) -> int:
 
 
 @pytest.mark.parametrize("data", READ.values(), ids=READ.keys())
-def test_what_python_reads_is_not_refused(tmp_path: Path, data: bytes) -> None:
+def test_what_python_reads_is_not_refused(tmp_path, data):
     file = tmp_path / "node.py"
     file.write_bytes(data)
     assert not byte_fault(data)
     loading.must_be_text(str(file))
 
 
-def test_a_lone_file_is_refused_as_python3_would_and_noted(tmp_path: Path) -> None:
+def test_a_lone_file_is_refused_as_python3_would_and_noted(tmp_path):
     file = tmp_path / "node.py"
     file.write_bytes(LATIN_1)
     with open_submission(file) as submission:
@@ -77,7 +72,7 @@ def test_a_lone_file_is_refused_as_python3_would_and_noted(tmp_path: Path) -> No
         )
 
 
-def test_a_module_that_only_an_import_passes_over_is_imported_and_noted(tmp_path: Path) -> None:
+def test_a_module_that_only_an_import_passes_over_is_imported_and_noted(tmp_path):
     """As `ros2 run` does it: an import of older Pythons does not look at comments."""
     setup = "from setuptools import setup\n"
     setup += "setup(entry_points={'console_scripts': ['turtle_controller = node:main']})\n"
@@ -89,6 +84,6 @@ def test_a_module_that_only_an_import_passes_over_is_imported_and_noted(tmp_path
         assert str(submission.notes[0]).startswith("helper.py has a byte (0xe9) in line 6")
 
 
-def test_an_absurd_declaration_is_left_to_python(tmp_path: Path) -> None:
+def test_an_absurd_declaration_is_left_to_python(tmp_path):
     for declaration in (b"# coding: klingon\n", b"# coding: hex\n", b"\xef\xbb\xbf# coding: ascii"):
         assert not byte_fault(declaration + os.linesep.encode())

@@ -75,7 +75,7 @@ def doubling(plus: str, times: int = 60) -> str:
 
 
 @pytest.mark.more("seconds; sums of sums stand for what takes memory")
-def test_a_table_with_keys_of_keys_of_keys_takes_the_memory_of_a_step_alone(tmp_path: Path) -> None:
+def test_a_table_with_keys_of_keys_of_keys_takes_the_memory_of_a_step_alone(tmp_path):
     lay(tmp_path, {"pyproject.toml": ".".join(["a"] * 20_000) + " = 1\n", "node.py": NODE})
     how, sentence = inspected(tmp_path)
     assert (how, sentence.partition(";")[0]) == ("found", "function main of node.py")
@@ -86,8 +86,8 @@ def test_a_table_with_keys_of_keys_of_keys_takes_the_memory_of_a_step_alone(tmp_
     [("cpu_s", "takes more than 1 s of a processor's time"), ("wall_s", "takes more than 1 s")],
 )
 def test_what_takes_too_long_is_refused_by_the_time_that_it_takes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str, words: str
-) -> None:
+    tmp_path, monkeypatch, limit, words
+):
     monkeypatch.setattr(reader, "LIMITS", replace(reader.LIMITS, **{limit: 1.0}))
     (tmp_path / "node.py").write_text("x = 1\n" * 150_000)
     how, sentence = inspected(tmp_path / "node.py")
@@ -121,7 +121,7 @@ ONE_PARSER = "the same parser, another way to trouble it"
 
 
 @pytest.mark.parametrize("name", others_are_more(ONE_PARSER, UNREADABLE, "parentheses", "a coding"))
-def test_a_set_up_file_that_no_parser_takes_is_named_in_one_line(tmp_path: Path, name: str) -> None:
+def test_a_set_up_file_that_no_parser_takes_is_named_in_one_line(tmp_path, name):
     how, sentence = inspected(package(tmp_path, UNREADABLE[name]))
     assert how == "found"
     said = "function main of pkg/node.py; colcon would not build this: setup.py"
@@ -131,9 +131,7 @@ def test_a_set_up_file_that_no_parser_takes_is_named_in_one_line(tmp_path: Path,
 
 
 @pytest.mark.parametrize("name", others_are_more(ONE_PARSER, GROWING, "sums of sums"))
-def test_values_that_grow_without_end_take_the_memory_of_a_step_alone(
-    tmp_path: Path, name: str
-) -> None:
+def test_values_that_grow_without_end_take_the_memory_of_a_step_alone(tmp_path, name):
     setup, words = GROWING[name]
     how, sentence = inspected(package(tmp_path, setup))
     assert how == "found"
@@ -141,18 +139,14 @@ def test_values_that_grow_without_end_take_the_memory_of_a_step_alone(
 
 
 @pytest.mark.parametrize("name", others_are_more(ONE_PARSER, HARD, "a chain of comparisons"))
-def test_a_node_that_is_hard_to_read_is_found_or_refused_and_takes_nothing_of_ours(
-    tmp_path: Path, name: str
-) -> None:
+def test_a_node_that_is_hard_to_read_is_found_or_refused_and_takes_nothing_of_ours(tmp_path, name):
     (tmp_path / "node.py").write_text(NODE + HARD[name])
     how, sentence = opened(tmp_path / "node.py")
     assert "node.py" in sentence
     assert how == "found" or "node.py cannot be read: that takes more than" in sentence
 
 
-def test_whether_a_file_that_does_not_parse_starts_itself_is_guessed_in_one_go(
-    tmp_path: Path,
-) -> None:
+def test_whether_a_file_that_does_not_parse_starts_itself_is_guessed_in_one_go(tmp_path):
     (tmp_path / "a.py").write_text("if " + "__name__ '__main' " * 50_000 + "\n(")
     code = """
 from pathlib import Path
@@ -163,7 +157,7 @@ print(read_source(Path(sys.argv[1])).has_guard)
     assert printed_by(code, tmp_path / "a.py") == "False\n"
 
 
-def test_600_000_members_are_refused_before_any_is_looked_at(tmp_path: Path) -> None:
+def test_600_000_members_are_refused_before_any_is_looked_at(tmp_path):
     archive = tmp_path / "a.zip"
     name = b"a/"
     entry = b"PK\x01\x02" + bytes(24) + len(name).to_bytes(2, "little") + bytes(16) + name
@@ -177,7 +171,7 @@ def test_600_000_members_are_refused_before_any_is_looked_at(tmp_path: Path) -> 
     )
 
 
-def test_a_member_below_32_000_folders_is_refused(tmp_path: Path) -> None:
+def test_a_member_below_32_000_folders_is_refused(tmp_path):
     archive = tmp_path / "a.zip"
     with zipfile.ZipFile(archive, "w") as packed:
         for number in range(50):
@@ -187,7 +181,7 @@ def test_a_member_below_32_000_folders_is_refused(tmp_path: Path) -> None:
     assert len(sentence) < 600
 
 
-def test_a_name_that_is_near_thousands_of_others_is_compared_with_some(tmp_path: Path) -> None:
+def test_a_name_that_is_near_thousands_of_others_is_compared_with_some(tmp_path):
     package(tmp_path, SETUP.format("1").replace("pkg.node", "ab" * 45))
     for number in range(1_000):
         bits = "".join("ab"[number >> bit & 1] for bit in range(12))
@@ -197,7 +191,7 @@ def test_a_name_that_is_near_thousands_of_others_is_compared_with_some(tmp_path:
     assert "but there is no file " in sentence
 
 
-def test_what_is_no_file_is_passed_over(tmp_path: Path) -> None:
+def test_what_is_no_file_is_passed_over(tmp_path):
     package(tmp_path, SETUP.format("1"))
     os.mkfifo(tmp_path / "setup.cfg")
     os.mkfifo(tmp_path / "pkg" / "pipe.py")
@@ -216,7 +210,7 @@ def test_what_is_no_file_is_passed_over(tmp_path: Path) -> None:
     assert sentence.startswith("console script turtle_controller in setup.py")
 
 
-def test_a_package_without_init_is_mended_in_a_copy_that_leaves_pipes_out(tmp_path: Path) -> None:
+def test_a_package_without_init_is_mended_in_a_copy_that_leaves_pipes_out(tmp_path):
     lay(tmp_path, {"setup.py": SETUP.format("1"), "pkg/node.py": NODE})
     os.mkfifo(tmp_path / "pkg" / "pipe")
     (tmp_path / "pkg" / "zero").symlink_to("/dev/zero")
@@ -224,7 +218,7 @@ def test_a_package_without_init_is_mended_in_a_copy_that_leaves_pipes_out(tmp_pa
     assert (how, "with the missing pkg/__init__.py added" in sentence) == ("found", True)
 
 
-def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path: Path) -> None:
+def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path):
     here = os.open(tmp_path, os.O_RDONLY)
     for _ in range(300):
         os.mkdir("d" * 250, dir_fd=here)
@@ -248,7 +242,7 @@ def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path: Path) 
 @pytest.mark.parametrize(
     "name", ["{}.py", pytest.param(".{}", marks=pytest.mark.more("of other names"))]
 )
-def test_a_hundred_thousand_files_are_not_listed(tmp_path: Path, name: str) -> None:
+def test_a_hundred_thousand_files_are_not_listed(tmp_path, name):
     for number in range(11_000):
         (tmp_path / name.format(number)).touch()
     (tmp_path / "node.py").touch()
@@ -258,7 +252,7 @@ def test_a_hundred_thousand_files_are_not_listed(tmp_path: Path, name: str) -> N
 
 
 @pytest.mark.parametrize("name", ["setup.py", "setup.cfg", "pkg/node.py"])
-def test_a_link_to_a_place_outside_is_not_read(tmp_path: Path, name: str) -> None:
+def test_a_link_to_a_place_outside_is_not_read(tmp_path, name):
     secret = tmp_path / "secret"
     secret.write_text("password = hunter2\n")
     handed_in = package(tmp_path / "in", SETUP.format("1"))
@@ -274,7 +268,7 @@ HOSTILE = ["[/b]", "\x1b[31m", "\n::error::boo", os.fsdecode(b"\xff"), "\u202e",
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_a_name_is_shown_in_one_line_without_controls(tmp_path: Path, name: str) -> None:
+def test_a_name_is_shown_in_one_line_without_controls(tmp_path, name):
     lay(tmp_path, {f"{name}1/a.txt".replace("/b", "b"): "", "b.txt": ""})
     (tmp_path / f"{name[:200].replace('/', '')}.md").touch()
     how, sentence = inspected(tmp_path)
@@ -282,7 +276,7 @@ def test_a_name_is_shown_in_one_line_without_controls(tmp_path: Path, name: str)
     assert sentence.isprintable()
 
 
-def test_a_console_script_s_name_is_shown_in_one_line(tmp_path: Path) -> None:
+def test_a_console_script_s_name_is_shown_in_one_line(tmp_path):
     entries = "['a\\n::error::x\\x1b[31m = pkg.node:main', 'b = pkg.node:main']"
     head = "from setuptools import setup\n"
     package(tmp_path, f"{head}setup(entry_points={{'console_scripts': {entries}}})")
@@ -291,15 +285,13 @@ def test_a_console_script_s_name_is_shown_in_one_line(tmp_path: Path) -> None:
     assert "a?::error::x?[31m, b" in sentence
 
 
-def test_folders_that_cannot_be_are_no_fault_of_ours(tmp_path: Path) -> None:
+def test_folders_that_cannot_be_are_no_fault_of_ours(tmp_path):
     package(tmp_path, SETUP.format("1, package_dir={'': '\\0', 'pkg': 'loop/pkg'}"))
     (tmp_path / "loop").symlink_to("loop")
     assert inspected(tmp_path)[0] == "refused"
 
 
-def test_a_copy_that_dies_is_no_fault_of_the_submission_s(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_copy_that_dies_is_no_fault_of_the_submission_s(tmp_path, monkeypatch):
     (tmp_path / "node.py").write_text(NODE)
     monkeypatch.setattr(reader, "find", lambda *_: os._exit(7))
     with pytest.raises(GraderFailure, match="exit code 7"), open_submission(tmp_path / "node.py"):
@@ -309,7 +301,7 @@ def test_a_copy_that_dies_is_no_fault_of_the_submission_s(
         assert found.start == EntryPoint("node", "main")
 
 
-def test_its_imports_come_along(tmp_path: Path) -> None:
+def test_its_imports_come_along(tmp_path):
     (tmp_path / "node.py").write_text("import turtlesim.msg\ndef main():\n    import this\n")
     with open_submission(tmp_path / "node.py") as found:
         assert found.imports.surely == {"turtlesim": "node.py, line 1"}
@@ -329,6 +321,6 @@ def test_its_imports_come_along(tmp_path: Path) -> None:
         b"[" * 100_000 + b"\n",
     ],
 )
-def test_an_answer_that_makes_no_sense_is_the_grader_s_failure(answer: bytes) -> None:
+def test_an_answer_that_makes_no_sense_is_the_grader_s_failure(answer):
     with pytest.raises(GraderFailure):
         reader.decoded(answer).submission()

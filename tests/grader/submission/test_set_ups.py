@@ -27,9 +27,7 @@ def read(folder: Path, *scripts: str, package_folders: tuple[str, ...] = ()) -> 
         (" go  =  node : Node.main ", ("node", "Node.main")),
     ],
 )
-def test_a_console_script_is_a_name_with_a_module_and_a_function(
-    tmp_path: Path, line: str, target: tuple[str, str]
-) -> None:
+def test_a_console_script_is_a_name_with_a_module_and_a_function(tmp_path, line, target):
     (script,) = read(tmp_path, line).scripts
     assert (script.name, script.module, script.function) == ("go", *target)
 
@@ -44,9 +42,7 @@ def test_a_console_script_is_a_name_with_a_module_and_a_function(
         ("go = a:mainstop = b:main", "A comma seems to be missing"),
     ],
 )
-def test_an_entry_that_no_tool_could_install_is_refused(
-    tmp_path: Path, entry: str, words: str
-) -> None:
+def test_an_entry_that_no_tool_could_install_is_refused(tmp_path, entry, words):
     with pytest.raises(SubmissionError) as error:
         read(tmp_path, entry)
     assert words in str(error.value)
@@ -54,7 +50,7 @@ def test_an_entry_that_no_tool_could_install_is_refused(
 
 
 @pytest.mark.parametrize("named", ["setup.cfg", "pyproject.toml", "setup.py"])
-def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path: Path, named: str) -> None:
+def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path, named):
     lay(tmp_path, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
     (tmp_path / named).write_text("go: pkg.node:main")
     declared = SetUpFacts(scripts=("go = pkg.node:main",))
@@ -62,7 +58,7 @@ def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path: Path, named: s
     assert script.file == tmp_path / named
 
 
-def test_a_script_whose_name_no_file_has_is_of_setup_py(tmp_path: Path) -> None:
+def test_a_script_whose_name_no_file_has_is_of_setup_py(tmp_path):
     (script,) = read(tmp_path, "computed = pkg.node:main").scripts
     assert script.file == tmp_path / "setup.py"
 
@@ -79,8 +75,6 @@ def test_a_script_whose_name_no_file_has_is_of_setup_py(tmp_path: Path) -> None:
         (("=a\0b",), (".",)),
     ],
 )
-def test_the_folders_to_import_from_lie_in_the_package(
-    tmp_path: Path, folders: tuple[str, ...], roots: tuple[str, ...]
-) -> None:
+def test_the_folders_to_import_from_lie_in_the_package(tmp_path, folders, roots):
     package = read(tmp_path, package_folders=folders)
     assert package.roots("pkg.node") == [tmp_path / root for root in roots]

@@ -25,7 +25,7 @@ EXERCISES = [load_exercise(name) for name in ("description_package", "thymio_pac
 
 
 @pytest.mark.parametrize("kind", ["_written", "_resized", "_encoded", "_added", "_swapped"])
-def test_a_link_out_of_a_mangled_package_is_not_written_through(kind: str, tmp_path: Path) -> None:
+def test_a_link_out_of_a_mangled_package_is_not_written_through(kind, tmp_path):
     changes = [Change("_linked", number, 0, 2, "", "") for number in range(40)]
     changes += [Change(kind, number, 0, 3, "a", "") for number in range(40)]
     Mangled(0, tuple(changes)).lay_out(tmp_path)
@@ -36,7 +36,7 @@ def test_a_link_out_of_a_mangled_package_is_not_written_through(kind: str, tmp_p
 @pytest.mark.timeout(4 * CASES)
 @settings(max_examples=CASES)
 @given(package=packages())
-def test_a_mangled_package_is_looked_at_and_judged(package: Mangled) -> None:
+def test_a_mangled_package_is_looked_at_and_judged(package):
     with tempfile.TemporaryDirectory() as folder:
         trace = looked_at(package.lay_out(Path(folder)), cpu_s=3.0, wall_s=3.0)
         assert (Path(folder) / OUTSIDE).read_text(encoding="ascii") == SAYS
@@ -53,7 +53,7 @@ def test_a_mangled_package_is_looked_at_and_judged(package: Mangled) -> None:
 @pytest.mark.timeout(4 * CASES)
 @settings(max_examples=CASES // 10)
 @given(package=packages())
-def test_a_mangled_package_that_is_handed_in_is_no_failure_of_the_grader(package: Mangled) -> None:
+def test_a_mangled_package_that_is_handed_in_is_no_failure_of_the_grader(package):
     with tempfile.TemporaryDirectory() as folder:
         try:
             result = grader.grade(package.lay_out(Path(folder)), EXERCISES[0])
@@ -64,7 +64,7 @@ def test_a_mangled_package_that_is_handed_in_is_no_failure_of_the_grader(package
             assert 0 <= result.score <= result.max_score
 
 
-def test_a_failure_of_ours_at_a_file_is_a_finding_of_that_file() -> None:
+def test_a_failure_of_ours_at_a_file_is_a_finding_of_that_file():
     with pytest.raises(Ended) as ended:
         attempt(lambda: {}["a"], "CMakeLists.txt", 4)
     problem = ended.value.problem
