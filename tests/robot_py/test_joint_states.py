@@ -93,20 +93,20 @@ def test_without_default_positions_there_are_names_only():
     assert values == Values(["a"], [], [], [])
 
 
+OF_A = 'joint "a" of type "revolute"'
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        (
-            robot('<joint name="a" type="revolute"/>'),
-            'Limits must be specified for joint "a" of type "revolute"',
-        ),
+        (robot('<joint name="a" type="revolute"/>'), f"Limits must be specified for {OF_A}"),
         (
             robot('<joint name="a" type="prismatic"><limit upper="1"/></joint>'),
             '"lower" limit must be specified for joint "a" of type "prismatic"',
         ),
         (
             robot('<joint name="a" type="revolute"><limit lower="1"/></joint>'),
-            '"upper" limit must be specified for joint "a" of type "revolute"',
+            f'"upper" limit must be specified for {OF_A}',
         ),
         (robot(joint("a", "x")), '"lower" limit must be a float for joint "a" of type "revolute"'),
         (
@@ -155,11 +155,6 @@ def test_who_follows_moves_with_what_a_source_says():
     assert (values.velocities[-1], values.efforts[-1]) == (1.8, 3.0)
 
 
-def test_a_source_whose_arrays_are_too_short_ends_it():
-    with pytest.raises(NodeEnded):
-        states(WALKER).hear(Values(["tilt", "swivel"], [0.1]))
-
-
 def test_mimics_of_mimics_are_followed():
     text = robot(
         joint("c", more='<mimic joint="b" multiplier="2" offset="1"/>'),
@@ -174,21 +169,25 @@ def test_mimics_that_are_not_heeded_are_free_joints():
     assert positions(text, use_mimic_tags=False) == {"a": 3, "b": 0}
 
 
-def test_a_circle_of_mimics_ends_it_with_the_original_s_words():
-    text = robot(
-        joint("a", more='<mimic joint="b"/>'),
-        joint("b", more='<mimic joint="c"/>'),
-        joint("c", more='<mimic joint="b"/>'),
-    )
+CIRCLE = robot(
+    joint("a", more='<mimic joint="b"/>'),
+    joint("b", more='<mimic joint="c"/>'),
+    joint("c", more='<mimic joint="b"/>'),
+)
+GONE = robot(joint("a", more='<mimic joint="gone"/>'))
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (CIRCLE, "Found an infinite recursive mimic chain: ['a', 'b', 'c', 'b']"),
+        (GONE, 'joint "a" follows "gone", and no such joint moves'),
+    ],
+)
+def test_who_follows_itself_or_what_is_not_there_ends_it(text, why):
     with pytest.raises(NodeEnded) as caught:
         states(text).tick()
-    assert str(caught.value) == "Found an infinite recursive mimic chain: ['a', 'b', 'c', 'b']"
-
-
-def test_who_follows_a_joint_that_is_not_there_ends_it():
-    with pytest.raises(NodeEnded) as caught:
-        states(robot(joint("a", more='<mimic joint="gone"/>'))).tick()
-    assert str(caught.value) == 'joint "a" follows "gone", and no such joint moves'
+    assert str(caught.value) == why
 
 
 def test_delta_goes_to_and_fro_between_the_limits_and_round_where_there_are_none():
@@ -198,9 +197,11 @@ def test_delta_goes_to_and_fro_between_the_limits_and_round_where_there_are_none
     assert [one[1] for one in found[:5]] == [0.75, 1.5, 2.25, 3, -math.pi]
 
 
-def test_delta_without_positions_ends_it():
+def test_delta_without_positions_and_a_source_whose_arrays_are_too_short_end_it():
     with pytest.raises(NodeEnded):
         states(robot(joint("a")), delta=0.1, publish_default_positions=False).tick()
+    with pytest.raises(NodeEnded):
+        states(WALKER).hear(Values(["tilt", "swivel"], [0.1]))
 
 
 def test_dependences_are_read_by_joint():

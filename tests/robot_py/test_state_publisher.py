@@ -57,25 +57,21 @@ def test_description_and_fixed_frames_are_there_for_who_comes_late(graph, walkin
     assert static[0].transforms[1].transform.translation.y == 0.31
 
 
-def test_of_30_joint_states_a_second_15_go_on_to_tf(graph, walking):
+def test_of_two_joint_states_within_50_ms_one_goes_on_to_tf(graph, walking):
     """By their stamps: how fast the messages themselves come is all the same."""
     heard = graph.listen(TFMessage, "/tf")
     sender = heard_by_it(graph, heard)
     # in the past: what is ahead of the clock always passes
     start = graph.node.get_clock().now().nanoseconds - 10 * SECOND
-    sent = [start + number * SECOND // 30 for number in range(60)]
+    sent = [start, start + SECOND // 30, start + 2 * SECOND]
     for stamp in sent:
         sender.publish(joint_state(stamp, "tilt", "swivel"))
-        if stamp in sent[::2]:  # every other one comes through: none waits for the next
-            graph.until(lambda s=stamp: s in stamps_ns(heard), "its transforms")
-    # a last one, which passes whatever was before: so all before it has been looked at
-    sender.publish(joint_state(sent[-1] + SECOND, "tilt"))
-    graph.until(lambda: stamps_ns(heard[-1:]) == [sent[-1] + SECOND], "the last one")
+    graph.until(lambda: sent[-1] in stamps_ns(heard), "the last one's transforms")
     # what was sent to be heard at all may still come, and is of now
     between = [each for each in heard if stamps_ns([each])[0] <= sent[-1]]
-    assert stamps_ns(between) == sent[::2]
+    assert stamps_ns(between) == [sent[0], sent[2]]
     frames = [[one.child_frame_id for one in message.transforms] for message in between]
-    assert frames == [["head", "body"]] * 30
+    assert frames == [["head", "body"]] * 2
 
 
 def test_names_of_no_joint_make_an_empty_message(graph, walking):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,19 +13,14 @@ import pytest
 
 from grader.cast import timeline
 from grader.cast.pages import TimelinePage, render
-from grader.cli import main
 from grader.exercise.loading import load_exercise
-from grader.recording import saving
 from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
 from grader.recording.recording import Recordings
-from grader.reports import read as read_report
-from grader.reports.page import html
 from grader.scenes.live import Grading
 from tests import runs
 from tests.barriers import barriers
-from tests.browser import WIDTHS, clipped, cut_off, needs_browser, obstacles, open_browser
+from tests.browser import WIDTHS, clipped, cut_off, needs_browser, open_browser
 from tests.grader.exercise.expect.traces import endpoint, line, text, trace
-from tests.grader.reports import samples
 from tests.programs import DEADLINE_S, Program
 
 pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
@@ -149,18 +143,6 @@ def test_the_list_follows_the_cursor_and_the_page_stays_where_it_is(replay):
         assert row["y"] + row["height"] <= whole["y"] + whole["height"] + 1
 
 
-def test_it_is_played_by_keys_alone(replay):
-    replay.locator("#slider").focus()
-    replay.keyboard.press("End")
-    replay.keyboard.press(",")
-    assert "tick 312 of 313" in replay.inner_text("#time")
-    replay.select_option("#speed", "20")
-    replay.locator("#slider").focus()
-    replay.keyboard.press("Home")
-    replay.keyboard.press(" ")
-    replay.wait_for_selector("#time:has-text('tick 313 of 313')")
-
-
 def test_hostile_names_and_texts_are_text_and_their_moment_is_found(replay):
     replay.click("#checks button")
     assert "tick 250 of 625" in replay.inner_text("#time")
@@ -177,18 +159,6 @@ def test_ten_thousand_messages_can_be_used(folder, replay):
     assert (folder / "replay.html").stat().st_size < 2_500_000
 
 
-def test_another_recording_is_there_for_comparison(tmp_path, visit, everything):
-    for name in ("one", "other"):
-        saving.save_all(everything, tmp_path / name)
-    words = ("view", tmp_path / "one", "--compare", tmp_path / "other", "--no-open", "--out")
-    assert main([*map(str, words), str(tmp_path / "view.html")]) == 0
-    page = visit((tmp_path / "view.html").as_uri())
-    assert page.locator("#runs button").count() == 2
-    page.click("#runs button >> nth=1")
-    go(page, 3.5)
-    assert cells(page, CURRENT)[0] <= "3.50"
-
-
 @pytest.mark.parametrize("width", WIDTHS)
 def test_nobody_is_kept_from_using_the_replay(folder, visit, width):
     page = visit((folder / "replay.html").as_uri(), width, reduced_motion="reduce")
@@ -198,19 +168,6 @@ def test_nobody_is_kept_from_using_the_replay(folder, visit, width):
         assert cut_off(page) == []
         assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert barriers(page) == []
-    assert clipped(page) == {}
-
-
-def test_nobody_is_kept_from_reading_it_in_the_report(tmp_path, visit, everything):
-    saving.save_all(everything, tmp_path / "recording")
-    result = samples.result(samples.verdict("says"), artifacts={"recording": "recording"})
-    (tmp_path / "result.json").write_text(json.dumps(result))
-    content = html.render(read_report(tmp_path / "result.json"))
-    (tmp_path / "report.html").write_text(content, encoding="utf-8")
-    page = visit((tmp_path / "report.html").as_uri(), 1280)
-    assert "Hello 0" in page.locator("table", has_text="/chatter").first.inner_text()
-    assert page.locator(".pictures").is_hidden()  # there is nothing in it
-    assert obstacles(page) == []
     assert clipped(page) == {}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grader.inspection.trace import Include
-from tests.grader_robots.inspection.test_launches import launched
+from tests.grader_robots.inspection.test_launches import each_launched, launched
 
 MODEL = "walker.urdf.xacro"
 
@@ -58,16 +58,14 @@ def test_a_package_that_nobody_knows_is_used_and_not_lacking(tmp_path):
 
 
 def test_a_package_of_which_our_files_are_asked_for_is_a_wrong_name(tmp_path):
-    for number, asked in enumerate(
-        (
-            f"LogInfo(msg=Command(['xacro ', FindPackageShare('strider'), '/urdf/{MODEL}']))",
-            "Node(package='walker_descripton', executable='walk')",
-        )
-    ):
-        launch = launched(tmp_path / str(number), f"return LaunchDescription([{asked}])")
+    asked = (
+        f"LogInfo(msg=Command(['xacro ', FindPackageShare('strider'), '/urdf/{MODEL}']))",
+        "Node(package='walker_descripton', executable='walk')",
+    )
+    found = each_launched(tmp_path, [f"return LaunchDescription([{each}])" for each in asked])
+    for launch, name in zip(found, ("strider", "walker_descripton"), strict=True):
         assert launch.problem is None
-        assert [(each.kind) for each in launch.lacking] == ["package"]
-        assert launch.lacking[0].name in ("strider", "walker_descripton")
+        assert [(each.kind, each.name) for each in launch.lacking][:1] == [("package", name)]
 
 
 def test_what_a_running_system_would_answer_is_left_open(tmp_path):

@@ -22,6 +22,12 @@ from tests.tiers import others_are_more
 NEVER_ENDS = "while True:\n    pass\n"
 
 
+def graded(folder, code):
+    """The reference whose set-up does this first."""
+    text = (REFERENCE / "setup.py").read_text()
+    return grader.grade(written(folder, {"setup.py": f'"""Set up."""\n{code}\n{text}'}), EXERCISE)
+
+
 def shares(result):
     return {v.check: v.score / v.max_score for v in result.verdicts}
 
@@ -73,9 +79,7 @@ def test_what_holds_no_package_is_refused(tmp_path):
 
 
 def test_a_set_up_that_writes_wherever_it_can_spoils_its_own_answer_alone(tmp_path):
-    text = (REFERENCE / "setup.py").read_text()
-    path = written(tmp_path, {"setup.py": f'"""Forges."""\n{FORGES}\n{text}'})
-    result = grader.grade(path, EXERCISE)
+    result = graded(tmp_path, FORGES)
     # what it would install is not known, so neither is what ros2 launch would start
     lost = dict.fromkeys(("installed", "launch", "spawn"), 0.0)
     assert shares(result) == {**dict.fromkeys(EXERCISE.points, 1.0), **lost}
@@ -92,9 +96,7 @@ for _ in range(8):
             time.sleep(1000)
         os._exit(0)
 """
-    text = (REFERENCE / "setup.py").read_text()
-    result = grader.grade(written(tmp_path, {"setup.py": f"{daemons}\n{text}"}), EXERCISE)
-    assert result.score == 100
+    assert graded(tmp_path, daemons).score == 100
 
 
 def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
@@ -106,8 +108,7 @@ def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
 
 def test_a_set_up_that_deletes_the_package_is_told_what_is_missing(tmp_path):
     delete = "import os, shutil\nshutil.rmtree(os.getcwd(), ignore_errors=True)\n"
-    text = (REFERENCE / "setup.py").read_text()
-    result = grader.grade(written(tmp_path, {"setup.py": f"{delete}{text}"}), EXERCISE)
+    result = graded(tmp_path, delete)
     assert result.run.outcome == "finished"
     assert shares(result)["installed"] == 0
     assert "there is no such file" in str(result.diagnosis.cause)
@@ -115,7 +116,7 @@ def test_a_set_up_that_deletes_the_package_is_told_what_is_missing(tmp_path):
 
 def test_a_set_up_that_kills_who_looks_is_judged_and_gets_nothing(tmp_path):
     kill = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
-    result = grader.grade(written(tmp_path, {"setup.py": kill}), EXERCISE)
+    result = graded(tmp_path, kill)
     assert result.score == 0
     assert result.run.outcome == "killed"
     assert "killed by the signal SIGKILL" in str(result.diagnosis.cause)
@@ -124,7 +125,7 @@ def test_a_set_up_that_kills_who_looks_is_judged_and_gets_nothing(tmp_path):
 def test_a_set_up_that_stops_who_looks_is_judged_and_gets_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(inspecting, "EVERY_S", 0.05)
     stop = "import os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
-    result = grader.grade(written(tmp_path, {"setup.py": stop}), EXERCISE)
+    result = graded(tmp_path, stop)
     assert result.score == 0
     assert result.run.outcome == "time_limit"
     assert result.run.flags == (inspecting.STOPPED,)
@@ -165,8 +166,7 @@ def test_a_set_up_that_puts_a_file_where_it_is_looked_at_is_judged(what, tmp_pat
         f"    shutil.rmtree(each + '/{what}', ignore_errors=True)\n"
         f"    open(each.rstrip('/') + '/{what}'.rstrip('/'), 'w').close()\n"
     )
-    text = (REFERENCE / "setup.py").read_text()
-    result = grader.grade(written(tmp_path, {"setup.py": code + text}), EXERCISE)
+    result = graded(tmp_path, code)
     assert result.run.outcome == "finished"
     assert min(shares(result).values()) == 0
 
@@ -187,9 +187,7 @@ for folder in (tempfile.gettempdir(), os.path.expanduser("~"), "/tmp", os.getcwd
 
 @pytest.mark.parametrize("size", others_are_more("files: as bytes", [2**20, 0], 2**20))
 def test_a_set_up_that_leaves_no_room_is_judged(size, tmp_path):
-    text = (REFERENCE / "setup.py").read_text()
-    text = f"{FULL.replace('SIZE', str(size))}{text}"
-    result = grader.grade(written(tmp_path, {"setup.py": text}), EXERCISE)
+    result = graded(tmp_path, FULL.replace("SIZE", str(size)))
     assert result.run.outcome == "finished"
     assert shares(result)["launch"] == 0
     assert "No space left on device" in str(result.diagnosis.cause)

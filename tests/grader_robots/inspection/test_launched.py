@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from grader.inspection.launched import HEADINGS, tables
-from tests.grader_robots.inspection.test_launches import launched, looked_at, written
+from tests.grader_robots.inspection.test_launches import FILE, traced
 
 
 def rows(folder, body: str):
     """Of the first launch file: its cells as texts, and which are marked."""
-    launched(folder, body)
-    (table,) = tables(looked_at(folder))
+    (table,) = tables(traced(folder, {FILE: body}))
     assert table.headings == HEADINGS
     assert all(len(row) == len(HEADINGS) for row in table.rows)
     texts = [tuple(" | ".join(map(str, cell.lines)) for cell in row) for row in table.rows]
@@ -78,7 +77,5 @@ def test_a_launch_file_that_ends_with_an_error_says_which(tmp_path):
 
 def test_a_launch_file_in_xml_has_its_file_without_a_line(tmp_path):
     xml = '<launch><node pkg="rviz2" exec="rviz2"/></launch>'
-    files = dict.fromkeys(("launch/display.launch.py", "launch/spawn.launch.py"))
-    trace = looked_at(written(tmp_path, {**files, "launch/a.launch.xml": xml}))
-    (table,) = tables(trace)
+    (table,) = tables(traced(tmp_path, {"launch/a.launch.xml": xml}))
     assert table.rows[0][-1].lines == ("launch/a.launch.xml",)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Mapping
 
-from grader.inspection.trace import LaunchFile
+from grader.inspection.trace import LaunchFile, PackageTrace
 from tests.grader_robots.packages import looked_at, written
 
 FILE = "launch/display.launch.py"
@@ -20,23 +20,23 @@ from launch_ros.substitutions import *
 
 
 def launched(folder, body: str, file: str = FILE) -> LaunchFile:
-    return all_launched(folder, {file: body})[0]
+    return traced(folder, {file: body}).launches[0]
 
 
-def all_launched(folder, bodies: Mapping[str, str]) -> tuple[LaunchFile, ...]:
-    """The launch files of one package, which has no others, in the order of their names."""
+def traced(folder, bodies: Mapping[str, str]) -> PackageTrace:
+    """A package with these launch files and no others, which are told in the order of names."""
     files = dict.fromkeys((FILE, "launch/spawn.launch.py"))
     for file, body in bodies.items():
         if file.endswith(".py"):
             inner = textwrap.indent(textwrap.dedent(body).strip(), "    ")
             body = f"{HEAD}\ndef generate_launch_description():\n{inner}\n"
         files[file] = body
-    return looked_at(written(folder, files)).launches
+    return looked_at(written(folder, files))
 
 
 def each_launched(folder, bodies: Iterable[str], kind: str = "py") -> tuple[LaunchFile, ...]:
     names = (f"launch/a{number:02}.launch.{kind}" for number in range(40))
-    return all_launched(folder, dict(zip(names, bodies, strict=False)))
+    return traced(folder, dict(zip(names, bodies, strict=False))).launches
 
 
 REFUSED = [

@@ -13,12 +13,17 @@ from grader.recording.view import PenChange
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import PLANE, view
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
-from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.arena import TICK_NS, Arena
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 
 def nothing(*_) -> None:
     """A controller that does nothing."""
+
+
+def once(at_tick, act):
+    """A controller that does something in one tick."""
+    return lambda tick, _, arena: act(arena) if tick == at_tick else None
 
 
 def traced(controller, ticks: int = 4000) -> TurtleTrace:
@@ -97,13 +102,8 @@ def test_a_pen_belongs_to_its_turtle():
 
 
 def test_clearing_and_resetting_make_what_was_drawn_vanish():
-    def controller(tick, pose, arena):
-        if tick == 50:
-            arena.clear()
-        if tick == 70:
-            arena.reset()
-
-    assert view(traced(controller, ticks=100)).cleared == (50 * TICK_NS, 70 * TICK_NS)
+    for act in (Arena.clear, Arena.reset):
+        assert view(traced(once(50, act), ticks=100)).cleared == (50 * TICK_NS,)
 
 
 # The end --------------------------------------------------------------------------------------
@@ -170,12 +170,11 @@ def test_every_input_but_driving_is_a_call_and_a_pen_s_has_its_colour(spiral):
     assert {call.name for call in calls} == {"set_pen"}
     assert {call.color for call in calls} == {"#ffffff", "#ff0000", "#00ff00", "#0000ff"}
 
-    def controller(tick, pose, arena):
-        if tick == 3:
-            arena.clear()
-            twist(arena, 1.0)
+    def clears(arena):
+        arena.clear()
+        twist(arena, 1.0)
 
-    (cleared,) = view(traced(controller, ticks=9)).calls
+    (cleared,) = view(traced(once(3, clears), ticks=9)).calls
     assert (cleared.name, cleared.time_ns, cleared.color) == ("clear", 3 * TICK_NS, "")
 
 
@@ -187,11 +186,7 @@ def test_a_call_says_what_it_asked_for_and_where_the_turtle_was(spiral):
 
 
 def test_a_call_for_a_turtle_that_never_was_has_no_place():
-    def controller(tick, pose, arena):
-        if tick == 1:
-            arena.clear()
-
-    (cleared,) = view(traced(controller, ticks=2)).calls
+    (cleared,) = view(traced(once(1, lambda arena: arena.clear()), ticks=2)).calls
     assert (cleared.text, cleared.where) == (NOTHING, NOTHING)
 
 
@@ -210,17 +205,10 @@ def test_the_picture_is_told_in_words(spiral):
 # The background -------------------------------------------------------------------------------
 
 
-def test_the_background_is_what_lies_below_the_ink():
+def test_the_background_is_what_lies_below_the_ink_or_the_usual_one(spiral):
     assert view(traced(Spiral(), ticks=200)).background == "#4556ff"
-
-    def controller(tick, pose, arena):
-        if tick == 1:
-            arena.set_parameter("background_r", 255)
-
-    assert view(traced(controller, ticks=2)).background == "#ff56ff"
-
-
-def test_a_picture_painted_all_over_has_the_usual_background(spiral):
+    other = once(1, lambda arena: arena.set_parameter("background_r", 255))
+    assert view(traced(other, ticks=2)).background == "#ff56ff"
     painted = replace(spiral, canvas=np.full_like(spiral.canvas, 255))
     assert view(painted).background == "#4556ff"
 
