@@ -44,25 +44,14 @@ Inner[] inners
 Inner[2] two
 """,
 }
+WIDE = "é\U0001f600"
 ALL: dict[str, Any] = {
     **{"truth": True, "octet": 7, "letter": 65, "small": -128, "tiny": 255, "great": -(2**63)},
-    **{
-        "greatest": 2**64 - 1,
-        "single": 0.5,
-        "twice": 1e308,
-        "text": "é\U0001f600",
-        "brief": "abcde",
-    },
-    **{
-        "wide": "é\U0001f600",
-        "narrow": "b",
-        "octets": [1, 255],
-        "three": [1, 2, 3],
-        "many": [-1, 2],
-        "few": [0.5],
-    },
-    **{"truths": [True, False], "texts": ["", "a"], "stamp": {"sec": 1, "nanosec": 2}},
-    **{"inner": {"x": 1.0, "names": ["n"]}, "inners": [{"x": 2.0, "names": []}]},
+    **{"greatest": 2**64 - 1, "single": 0.5, "twice": 1e308, "text": WIDE, "brief": "abcde"},
+    **{"wide": WIDE, "narrow": "b", "octets": [1, 255], "three": [1, 2, 3], "many": [-1, 2]},
+    **{"few": [0.5], "truths": [True, False], "texts": ["", "a"]},
+    **{"stamp": {"sec": 1, "nanosec": 2}, "inner": {"x": 1.0, "names": ["n"]}},
+    "inners": [{"x": 2.0, "names": []}],
     "two": [{"x": 3.0, "names": []}, {"x": 4.0, "names": ["m"]}],
 }
 

@@ -98,13 +98,14 @@ def test_the_same_script_in_two_packages_is_refused(tmp_path, script):
     assert f"{script} more than once: src/a/setup.py, src/b/setup.py" in refused(tmp_path)
 
 
-def test_the_package_is_found_in_a_workspace(tmp_path):
-    lay(tmp_path, below("src/spiral", package("spiral")))
-    lay(tmp_path, below("install/spiral", package("spiral")))
+def test_the_package_is_found_in_a_workspace_and_may_be_called_test(tmp_path):
+    lay(tmp_path, below("src/test", package("test")))
+    lay(tmp_path, below("install/test", package("test")))
     lay(tmp_path, {"src/msgs/package.xml": "", "src/msgs/CMakeLists.txt": ""})
     submission = found_in(tmp_path)
-    assert submission.root == tmp_path / "src/spiral"
-    assert str(submission.found) == "console script turtle_controller in src/spiral/setup.py"
+    assert submission.root == tmp_path / "src/test"
+    assert submission.start == EntryPoint("test.turtle_controller", "main")
+    assert str(submission.found) == "console script turtle_controller in src/test/setup.py"
 
 
 def test_of_several_packages_the_one_with_the_script_is_taken(tmp_path):
@@ -114,24 +115,10 @@ def test_of_several_packages_the_one_with_the_script_is_taken(tmp_path):
     assert found_in(tmp_path, "helper").root == tmp_path / "src/a"
 
 
-def test_a_package_may_be_called_test(tmp_path):
-    lay(tmp_path, below("src/test", package("test")))
-    lay(tmp_path, {"src/README.md": ""})
-    assert found_in(tmp_path).start == EntryPoint("test.turtle_controller", "main")
-
-
 def test_a_broken_set_up_file_does_not_matter_beside_a_good_one(tmp_path):
     lay(tmp_path, {"src/bad/setup.py": "setup(\n"} | below("src/good", package("good")))
     assert found_in(tmp_path).root == tmp_path / "src/good"
     assert "no console script other; it has: turtle_controller" in refused(tmp_path, "other")
-
-
-def test_a_set_up_file_may_compute_its_scripts(tmp_path):
-    entries = "*(f'{name} = spiral.{name}:main' for name in ['turtle_controller'])"
-    files = package("spiral") | {"setup.py": SETUP.format(package="spiral", entries=entries)}
-    submission = found_in(lay(tmp_path, files))
-    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
-    assert str(submission.found) == "console script turtle_controller in setup.py"
 
 
 @pytest.mark.parametrize(
@@ -179,14 +166,6 @@ def test_a_source_layout_is_imported_from_its_folder(tmp_path):
     setup = setup.replace("exclude=", "where='src', exclude=")
     lay(tmp_path, {"setup.py": setup, "src/s/__init__.py": "", "src/s/node.py": NODE})
     assert found_in(tmp_path).root == tmp_path / "src"
-
-
-def test_a_module_may_lie_beside_setup_py(tmp_path):
-    setup = "from setuptools import setup\n"
-    setup += "setup(py_modules=['n'], entry_points={'console_scripts': ['x = n:main']})\n"
-    assert found_in(lay(tmp_path, {"setup.py": setup, "n.py": NODE})).start == EntryPoint(
-        "n", "main"
-    )
 
 
 def test_a_missing_init_file_is_added_to_a_copy(tmp_path):

@@ -88,58 +88,39 @@ def test_a_file_that_is_no_utf_8_is_refused_as_ros_does(tmp_path, data):
 
 FIND = "find_package(rosidl_default_generators REQUIRED)"
 GENERATE = 'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Num.msg")'
+OTHER = 'rosidl_generate_interfaces(other "msg/Num.msg"'
+NO_TARGET = "mine/CMakeLists.txt lacks ${PROJECT_NAME} in rosidl_generate_interfaces()"
+#: What CMakeLists.txt says -> words of the fault.
 IN_CMAKE = {
-    "a_loop_over_a_variable": (
-        f"{FIND}\nset(names Num)\nforeach(n ${{names}})\n  list(APPEND all msg/${{n}}.msg)\n"
-        "endforeach()\nrosidl_generate_interfaces(${PROJECT_NAME} ${all})",
-        "",
+    f"{FIND}\nset(names Num)\nforeach(n ${{names}})\n  list(APPEND all msg/${{n}}.msg)\n"
+    "endforeach()\nrosidl_generate_interfaces(${PROJECT_NAME} ${all})": "",
+    "set(all rosidl_default_generators)\nforeach(each ${all})\n  find_package(${each})\n"
+    f"endforeach()\n{GENERATE}": "",
+    f"ament_auto_find_build_dependencies()\n{GENERATE}": "",
+    f"{FIND}\nfind_package(std_msgs)\nfind_package(geometry_msgs)\n"
+    f"{GENERATE[:-1]} DEPENDENCIES std_msgs DEPENDENCIES geometry_msgs)": "",
+    f"{FIND}\n{OTHER} LIBRARY_NAME ${{PROJECT_NAME}})": "",
+    f"{FIND}\n{OTHER})": NO_TARGET,
+    f'{FIND}\nrosidl_generate_interfaces("msg/Num.msg")': NO_TARGET,
+    f"{FIND}\nfile(GLOB all msg/*.msg)\nrosidl_generate_interfaces(${{PROJECT_NAME}} ${{all}})": (
+        'lists the absolute path of msg/Num.msg: write "msg/Num.msg", or, in file(GLOB), RELATIVE'
     ),
-    "packages_in_a_loop": (
-        "set(all rosidl_default_generators)\nforeach(each ${all})\n  find_package(${each})\n"
-        f"endforeach()\n{GENERATE}",
-        "",
+    f"{FIND}\n{GENERATE.replace('msg/', '${CMAKE_CURRENT_SOURCE_DIR}/msg/')}": (
+        'lists the absolute path of msg/Num.msg: write "msg/Num.msg"'
     ),
-    "all_that_is_depended_upon": (f"ament_auto_find_build_dependencies()\n{GENERATE}", ""),
-    "dependencies_twice": (
-        f"{FIND}\nfind_package(std_msgs)\nfind_package(geometry_msgs)\n"
-        f"{GENERATE[:-1]} DEPENDENCIES std_msgs DEPENDENCIES geometry_msgs)",
-        "",
+    f"{FIND}\nament_package()\n{GENERATE}": (
+        "mine/CMakeLists.txt calls ament_package() before rosidl_generate_interfaces()"
     ),
-    "a_library_of_another_name": (
-        f'{FIND}\nrosidl_generate_interfaces(other "msg/Num.msg" LIBRARY_NAME ${{PROJECT_NAME}})',
-        "",
-    ),
-    "another_target": (
-        f'{FIND}\nrosidl_generate_interfaces(other "msg/Num.msg")',
-        "mine/CMakeLists.txt lacks ${PROJECT_NAME} in rosidl_generate_interfaces()",
-    ),
-    "no_target": (
-        f'{FIND}\nrosidl_generate_interfaces("msg/Num.msg")',
-        "mine/CMakeLists.txt lacks ${PROJECT_NAME} in rosidl_generate_interfaces()",
-    ),
-    "absolute_paths": (
-        f"{FIND}\nfile(GLOB all msg/*.msg)\nrosidl_generate_interfaces(${{PROJECT_NAME}} ${{all}})",
-        'lists the absolute path of msg/Num.msg: write "msg/Num.msg", or, in file(GLOB), RELATIVE',
-    ),
-    "an_absolute_path": (
-        f"{FIND}\n{GENERATE.replace('msg/', '${CMAKE_CURRENT_SOURCE_DIR}/msg/')}",
-        'lists the absolute path of msg/Num.msg: write "msg/Num.msg"',
-    ),
-    "the_end_before": (
-        f"{FIND}\nament_package()\n{GENERATE}",
-        "mine/CMakeLists.txt calls ament_package() before rosidl_generate_interfaces()",
-    ),
-    "a_name_that_is_nearly_right": (
-        f"{FIND}\n{GENERATE.replace('Num', 'num')}",
-        "mine/CMakeLists.txt lists msg/num.msg, and there is no such file, only Num.msg.",
+    f"{FIND}\n{GENERATE.replace('Num', 'num')}": (
+        "mine/CMakeLists.txt lists msg/num.msg, and there is no such file, only Num.msg."
     ),
 }
 
 
-@pytest.mark.parametrize("name", IN_CMAKE)
-def test_cmake_is_followed_as_far_as_colcon_would(tmp_path, name):
+@pytest.mark.parametrize("text", IN_CMAKE)
+def test_cmake_is_followed_as_far_as_colcon_would(tmp_path, text):
     package(tmp_path / "mine", {"Num": "int8 num\n"})
-    text, fault = IN_CMAKE[name]
+    fault = IN_CMAKE[text]
     (tmp_path / "mine" / "CMakeLists.txt").write_text(f"project(mine)\n{text}\n")
     found, _ = read(tmp_path)
     assert fault in str(found.faults.get("mine/msg/Num", ""))

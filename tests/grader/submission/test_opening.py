@@ -282,8 +282,3 @@ def test_another_kind_of_file_says_what_to_hand_in(tmp_path, name, advice):
 def test_a_pipe_called_like_a_python_file_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "a.py")
     assert "not an ordinary file" in refused(tmp_path / "a.py")
-
-
-def test_a_message_has_no_control_characters(tmp_path):
-    text = refused(lay(tmp_path, {"\x1b[31mred.txt": ""}))
-    assert "?[31mred.txt" in text

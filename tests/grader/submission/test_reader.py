@@ -301,13 +301,6 @@ def test_a_copy_that_dies_is_no_fault_of_the_submission_s(tmp_path, monkeypatch)
         assert found.start == EntryPoint("node", "main")
 
 
-def test_its_imports_come_along(tmp_path):
-    (tmp_path / "node.py").write_text("import turtlesim.msg\ndef main():\n    import this\n")
-    with open_submission(tmp_path / "node.py") as found:
-        assert found.imports.surely == {"turtlesim": "node.py, line 1"}
-        assert found.imports.perhaps == {"this": "node.py, line 3"}
-
-
 @pytest.mark.parametrize(
     "answer",
     [
