@@ -33,14 +33,12 @@ def trace_of(recordings: Recordings) -> RobotTrace:
 
 
 def test_a_loop_in_the_constructor_runs_in_virtual_time(recorded):
-    assert recorded.nominal.run.time == "virtual"
-    assert recorded.nominal.run.outcome == "finished"
+    run = recorded.nominal.run
+    assert (run.time, run.outcome) == ("virtual", "finished")
     assert recorded.nominal.package is None  # a single file is in none
-    assert len(trace_of(recorded).joint_states) == 600  # 30 a second for 20 s
-
-
-def test_what_comes_30_times_a_second_goes_out_15_times(recorded):
-    own = {t.message for t in trace_of(recorded).transforms if t.publisher == "scene"}
+    trace = trace_of(recorded)
+    assert len(trace.joint_states) == 600  # 30 a second for 20 s, of which half go on
+    own = {t.message for t in trace.transforms if t.publisher == "scene"}
     assert len(own) == pytest.approx(300, abs=3)
 
 

@@ -103,9 +103,7 @@ def test_a_package_that_lies_three_hundred_folders_deep_is_looked_at(tmp_path):
     folder = tmp_path / Path(*["d" * 7] * 300)
     folder.mkdir(parents=True)
     written(folder, {})
-    trace = looked_at(tmp_path)
-    assert decode(encode(trace)) == trace
-    assert [each.problem for each in trace.launches] == [None, None]
+    assert [each.problem for each in looked_at(tmp_path).launches] == [None, None]
 
 
 def test_a_package_xml_that_is_longer_than_any_is_taken_in_part(tmp_path):

@@ -65,8 +65,12 @@ def test_what_is_no_stl_is_nothing(data, tmp_path):
     assert len(read(tmp_path, data)) == 0
 
 
-def test_what_is_too_large_or_not_there_is_nothing(tmp_path, monkeypatch):
+def test_what_is_too_large_or_not_there_or_an_archive_is_nothing(tmp_path, monkeypatch):
     assert meshes.surface(str(tmp_path / "none.stl")) == ""
+    packed = io.BytesIO()
+    with ZipFile(packed, "w") as archive:
+        archive.writestr("a.stl", binary(ONE))
+    assert len(read(tmp_path, packed.getvalue(), "a.zip")) == 0
     monkeypatch.setattr(meshes, "_MOST_BYTES", 100)
     assert len(read(tmp_path, binary(ONE))) == 0
 
@@ -83,24 +87,15 @@ def test_a_fine_mesh_becomes_coarse_and_keeps_its_shape(tmp_path):
     assert np.abs(np.sqrt((made**2).sum(axis=2)) - 1).max() < 0.1
 
 
-def test_another_kind_is_read_where_trimesh_is(tmp_path):
-    obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-    assert read(tmp_path, obj, "a.obj").tolist() == ONE.tolist()
-
-
-def test_an_obj_is_read_without_the_files_that_it_names(tmp_path, monkeypatch):
+def test_another_kind_is_read_where_trimesh_is_without_the_files_that_it_names(
+    tmp_path, monkeypatch
+):
     asked = []
     monkeypatch.setattr(FilePathResolver, "get", lambda _, name: asked.append(name))
-    obj = b"mtllib /dev/zero\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-    assert read(tmp_path, obj, "a.obj").tolist() == ONE.tolist()
+    for names in (b"", b"mtllib /dev/zero\nusemtl a\n"):
+        obj = names + b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+        assert read(tmp_path, obj, "a.obj").tolist() == ONE.tolist()
     assert asked == []
-
-
-def test_an_archive_is_no_mesh(tmp_path):
-    packed = io.BytesIO()
-    with ZipFile(packed, "w") as archive:
-        archive.writestr("a.stl", binary(ONE))
-    assert len(read(tmp_path, packed.getvalue(), "a.zip")) == 0
 
 
 def test_of_a_mesh_in_words_no_more_is_read_than_may_be(tmp_path, monkeypatch):
