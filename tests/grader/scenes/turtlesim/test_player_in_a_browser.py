@@ -152,6 +152,8 @@ def test_all_runs_are_there_one_by_one_and_side_by_side(visit, runs):
     at(page, 120, 1)
     assert (pixels(page) == TurtleTrace.of(runs.varied[0].trace).window).all()
     page.get_by_role("button", name="Side by side").click()
+    at(page, 120, -1)
+    page.locator("#slider").fill(str(TICKS))
     at(page, TICKS, -1)
     for number, run in enumerate(runs, 1):
         shown = pixels(page, f"#beside figure:nth-child({number}) canvas")
