@@ -1,4 +1,4 @@
-"""Writes urdfdom.json: what urdfdom's own check_urdf says of urdf_cases.py.
+"""Writes into urdfdom.json what urdfdom's own check_urdf says of the texts that stand there.
 
     pip install cmeel-urdfdom==6.0.0 && python tests/robot_py/ask_urdfdom.py
 
@@ -14,8 +14,6 @@ import tempfile
 from itertools import groupby
 from pathlib import Path
 
-from urdf_cases import CASES
-
 CHECK_URDF = Path(sys.executable).with_name("check_urdf")
 AS_IN_4 = (
     (
@@ -28,9 +26,10 @@ AS_IN_4 = (
 
 
 def main() -> None:
-    answers = [ask(text) for text in CASES]
-    lines = ",\n".join(json.dumps(answer) for answer in answers)
-    Path(__file__).with_name("urdfdom.json").write_text(f"[\n{lines}\n]\n")
+    file = Path(__file__).with_name("urdfdom.json")
+    texts = [each["text"] for each in json.loads(file.read_text())]
+    lines = ",\n".join(json.dumps({"text": text, **ask(text)}) for text in texts)
+    file.write_text(f"[\n{lines}\n]\n")
 
 
 def ask(text: str) -> dict[str, object]:

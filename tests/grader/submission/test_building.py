@@ -6,6 +6,7 @@ What they really do with each of these packages was tried with colcon-ros 0.5.0.
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader.run.opening import open_submission
 from grader.submission.start import EntryPoint
@@ -66,96 +67,17 @@ def test_a_file_alone_and_loose_files_are_no_package(tmp_path):
     assert note.startswith("Nothing in node.py calls main(): the grader did")
 
 
-NOT_BUILT, NOT_FOUND = "colcon would not build this: ", "ros2 run would not find this: "
-NOT_STARTED, NO_PACKAGE = (
-    "ros2 run would not start this: ",
-    ", so that colcon takes it for no ROS package",
-)
-NOT_PARSED = f"{NOT_FOUND}package.xml does not parse"
-LICENSE, BUILD_TYPE = "<license>BSD</license>", "<build_type>ament_python</build_type>"
-MANIFEST_HAS = {
-    # what stands there instead -> the note
-    ("</license>", "</licence>"): f"{NOT_PARSED}: <license> of line 7 is not closed{NO_PACKAGE}",
-    ("A</maintainer>", "A<maintainer>"): (
-        f"{NOT_PARSED}: <maintainer> of line 6 is not closed{NO_PACKAGE}"
-    ),
-    (LICENSE, "<license>B&D</license>"): (
-        f"{NOT_PARSED}, line 7: not well-formed (invalid token){NO_PACKAGE}"
-    ),
-    (LICENSE, ""): f"{NOT_FOUND}package.xml has no <license>{NO_PACKAGE}",
-    ("0.1.0", "1.0"): (
-        f"{NOT_FOUND}package.xml has the version 1.0; expected three numbers, as 0.1.0{NO_PACKAGE}"
-    ),
-    (BUILD_TYPE, ""): (
-        f"{NOT_BUILT}package.xml names no build type; expected {BUILD_TYPE} in <export>"
-    ),
-    ("ament_python", "ament_cmake"): (
-        f"{NOT_BUILT}package.xml names the build type ament_cmake; expected {BUILD_TYPE} in "
-        "<export>"
-    ),
-    ("<name>spiral", "<name>circle"): (
-        f"{NOT_FOUND}package.xml calls the package circle, and setup.cfg and setup.py call it "
-        "spiral: expected <name>spiral</name>"
-    ),
-}
-LISTS, LIB = "packages=[package_name]", "install_scripts=$base/lib/spiral"
-USES_ANOTHER = {"spiral/utils/__init__.py": "", "spiral/utils/walls.py": ""}
-USES_ANOTHER["spiral/node.py"] = f"from spiral.utils import walls\n{NODE}"
+SHORTCOMINGS = yaml.safe_load(Path(__file__).with_name("building.yaml").read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize(
-    ("change", "note"),
-    [
-        *((changed("package.xml", *words), note) for words, note in MANIFEST_HAS.items()),
-        ({"package.xml": None}, f"{NOT_BUILT}no package.xml beside setup.py"),
-        (
-            {"package.xml": None, **changed("setup.py", "['package.xml']", "[]")},
-            f"{NOT_FOUND}no package.xml beside setup.py",
-        ),
-        (
-            changed("setup.cfg", LIB, "install_scripts=$base/lib/s"),
-            "ros2 run spiral would find nothing: setup.cfg installs programs in $base/lib/s, "
-            f"and package.xml calls the package spiral: expected {LIB}",
-        ),
-        (
-            USES_ANOTHER,
-            f"{NOT_STARTED}setup.py lists the packages spiral, and so does not install "
-            "spiral.utils",
-        ),
-        (
-            {"resource/spiral": None},
-            f"{NOT_BUILT}setup.py installs resource/spiral, and there is no such file",
-        ),
-        ({"setup.cfg": None}, f"{NOT_FOUND}no setup.cfg with {LIB} below [install]"),
-        (
-            changed("setup.cfg", "install_scripts", "script_dir"),
-            f"{NOT_FOUND}setup.cfg has no {LIB} below [install]",
-        ),
-        (
-            changed("setup.py", LISTS, "packages=['spirale']"),
-            f"{NOT_BUILT}setup.py lists the package spirale, and there is no such folder",
-        ),
-        (
-            changed("setup.py", LISTS, "packages=[]"),
-            f"{NOT_STARTED}setup.py lists no packages, and so does not install spiral",
-        ),
-        (
-            {"spiral/__init__.py": None, **changed("setup.py", LISTS, "packages=find_packages()")},
-            f"{NOT_STARTED}setup.py lists no packages, and so does not install spiral: there is no "
-            "spiral/__init__.py",
-        ),
-        (
-            changed("setup.py", "'console_scripts'", "'console_script'"),
-            "setup.py names no console script, so that `ros2 run` finds nothing to start. Expected "
-            "in its entry_points: 'console_scripts' instead of 'console_script'",
-        ),
-        ({"setup.py": None, "setup.cfg": None}, f"{NOT_BUILT}no setup.py"),
-    ],
-)
-def test_each_shortcoming_is_a_note(tmp_path, change, note):
-    files = PACKAGE | change
-    lay(tmp_path, {name: text for name, text in files.items() if text is not None})
-    assert notes(tmp_path)[0] == note
+@pytest.mark.parametrize("shortcoming", SHORTCOMINGS, ids=lambda each: each["note"])
+def test_each_shortcoming_is_a_note(tmp_path, shortcoming):
+    files = {
+        name: change if isinstance(change, str | None) else changed(name, *change)[name]
+        for name, change in shortcoming["change"].items()
+    }
+    lay(tmp_path, {name: text for name, text in (PACKAGE | files).items() if text is not None})
+    assert notes(tmp_path)[0] == shortcoming["note"]
 
 
 @pytest.mark.parametrize(

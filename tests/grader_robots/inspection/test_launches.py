@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import yaml
 
 from grader.inspection.trace import LaunchFile, PackageTrace
 from tests.grader_robots.packages import looked_at, written
 
 FILE = "launch/display.launch.py"
+CASES = yaml.safe_load(Path(__file__).with_name("launches.yaml").read_text(encoding="utf-8"))
 HEAD = """
 from launch import LaunchDescription
 from launch.actions import *
@@ -39,63 +43,21 @@ def each_launched(folder, bodies: Iterable[str], kind: str = "py") -> tuple[Laun
     return traced(folder, dict(zip(names, bodies, strict=False))).launches
 
 
-REFUSED = [
-    ("Node('rviz2', 'rviz2')", "takes 1 positional argument"),
-    ("Node(package='rviz2')", "missing 1 required keyword-only argument: 'executable'"),
-    ("Node(package='rviz2', executable='rviz2', node_name='a')", "unexpected keyword"),
-    ("Node(package='rviz2', executable='rviz2', parameters={})", "Expected 'parameters'"),
-    ("Node(package='rviz2', executable='rviz2', arguments='-d a')", "a list of arguments"),
-    ("Node(package='rviz2', executable='rviz2', remappings=['a'])", "two-tuples"),
-    ("Node(package='rviz2', executable='rviz2', parameters=[{'a': None}])", "Allowed value"),
-    ("Node(package=2, executable='rviz2')", "Failed to normalize"),
-    ("TimerAction(2.0, [])", "positional argument"),
-    ("IncludeLaunchDescription('a', arguments={})", "unexpected keyword"),
-    ("DeclareLaunchArgument('a', default='b')", "unexpected keyword"),
-    ("AppendEnvironmentVariable('A', 'a', prepend='at')", "Failed to convert 'at' to bool"),
-    ("DeclareLaunchArgument('a', default_value='b', choices=['c'])", "is not in provided"),
-    ("LogInfo(msg=LaunchConfiguration('none'))", "'none' does not exist"),
-    ("LogInfo(msg='a', condition=IfCondition('yes'))", "invalid condition expression 'yes'"),
-    ("LogInfo(msg=EnvironmentVariable('NOWHERE'))", "'NOWHERE' does not exist"),
-    ("'rviz2'", "expected an action"),
-    ("LogInfo(msg=Command('false'))", "executed command failed"),
-    ("LogInfo(msg=Command(['xacro', '/a']))", "file not found"),
-]
-
-
 def test_what_the_original_refuses_is_refused(tmp_path):
-    bodies = [f"return LaunchDescription([{action}])" for action, _ in REFUSED]
-    for launch, (action, says) in zip(each_launched(tmp_path, bodies), REFUSED, strict=True):
+    refused = CASES["refused"]
+    bodies = [f"return LaunchDescription([{action}])" for action in refused]
+    found = each_launched(tmp_path, bodies)
+    for launch, (action, says) in zip(found, refused.items(), strict=True):
         assert launch.problem is not None and launch.problem.kind == "error", action
         assert says in str(launch.problem.text)
 
 
-ENDS = [
-    ("import launch\nlaunch.Wonder", "unknown", "launch.Wonder"),
-    ("from launch.actions import Wonder", "unknown", "launch.actions.Wonder"),
-    ("import launch_ros.wonder", "unknown", "launch_ros.wonder"),
-    ("import launch_testing", "unknown", "launch_testing"),
-    ("import nav2_common.launch as n; n.Rewritten.made", "unknown", "nav2_common.launch.Rewri"),
-    ("import moveit_configs_utils as m; m.A('a').made()", "unknown", "moveit_configs_utils.A"),
-    ("return LaunchDescription([LogInfo(msg=Command('gzz p'))])", "unknown", "it runs gzz"),
-    ("import os; os.environ['ROBOT']", "unknown", "environment variable ROBOT"),
-    ("import numpyy", "error", "No module named 'numpyy'"),
-    ("import os; os._exit(3)", "limit", "ended the process that it ran in (exit code 3)"),
-    ("raise SystemExit", "error", "SystemExit"),
-    ("return None", "error", "returned NoneType; expected a LaunchDescription"),
-    (
-        "return LaunchDescription([DeclareLaunchArgument('a')])",
-        "argument",
-        'Required launch argument "a"',
-    ),
-]
-
-
 def test_how_a_launch_file_ends_is_told_apart(tmp_path):
-    found = each_launched(tmp_path, [body for body, *_ in ENDS])
-    for launch, (_, kind, says) in zip(found, ENDS, strict=True):
+    found = each_launched(tmp_path, [end["body"] for end in CASES["ends"]])
+    for launch, end in zip(found, CASES["ends"], strict=True):
         problem = launch.problem
         assert problem is not None
-        assert (problem.kind, says in str(problem.text)) == (kind, True), problem
+        assert (problem.kind, end["says"] in str(problem.text)) == (end["kind"], True), problem
 
 
 def test_conditions_groups_and_includes_are_followed(tmp_path):
@@ -179,22 +141,10 @@ def test_values_of_parameters_go_through_yaml_where_the_original_does_so(tmp_pat
     assert fragile.problem is not None and "as yaml" in str(fragile.problem.text)
 
 
-NO_XML = [
-    ("<node pkg='rviz2'/>", "Attribute 'exec' of Entity 'node' not found"),
-    ("<node package='rviz2' exec='rviz2'/>", "Attribute 'pkg'"),
-    ("<node pkg='rviz2' exec='rviz2' typ='a'/>", "Unexpected attribute(s)"),
-    ("<node pkg='rviz2' exec='$(find rviz2)'/>", "Unknown substitution: find"),
-    ("<node pkg='rviz2' exec='$(arg a)'/>", "Unknown substitution: arg"),
-    ("<param name='robot_description' value='a'/>", "Unrecognized entity of the type: param"),
-    ("<node", "ParseError"),
-    ("<arg name='a'/><let name='b'/>", "Attribute 'value'"),
-    ("<set_env name='a' value='b' prepend='true'/>", "Unexpected attribute(s)"),
-]
-
-
 def test_a_launch_file_in_xml_is_refused_where_the_original_does_so(tmp_path):
-    bodies = [f"<launch>{element}</launch>" for element, _ in NO_XML]
-    for launch, (_, says) in zip(each_launched(tmp_path, bodies, "xml"), NO_XML, strict=True):
+    bodies = [f"<launch>{element}</launch>" for element in CASES["xml"]]
+    found = each_launched(tmp_path, bodies, "xml")
+    for launch, says in zip(found, CASES["xml"].values(), strict=True):
         assert launch.problem is not None
         assert says in str(launch.problem.text)
 
@@ -257,18 +207,9 @@ def test_a_launch_file_in_yaml_starts_what_one_in_xml_does(tmp_path):
     assert launch.includes[0].arguments == ("pause:=true",)
 
 
-NO_YAML = [
-    ("- node: {}", "expected 'launch' as the one root, found list"),
-    ("launch: {node: {}}", "expected a list of entities"),
-    ("launch: [node]", "expected one entity in each entry"),
-    ("launch: [{node: {pkg: rviz2}}]", "Attribute 'exec' of Entity 'node' not found"),
-    ("launch: [", "ParserError"),
-]
-
-
 def test_a_launch_file_in_yaml_is_refused_where_it_is_none(tmp_path):
-    found = each_launched(tmp_path, [text for text, _ in NO_YAML], "yaml")
-    for launch, (_, says) in zip(found, NO_YAML, strict=True):
+    found = each_launched(tmp_path, CASES["yaml"], "yaml")
+    for launch, says in zip(found, CASES["yaml"].values(), strict=True):
         assert launch.problem is not None and launch.problem.kind == "error"
         assert says in str(launch.problem.text)
 
