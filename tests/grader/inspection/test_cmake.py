@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+import yaml
 
 from grader.inspection.examining import cmake
 
@@ -17,63 +20,14 @@ def read(folder, text: str) -> cmake.Read:
     return cmake.read(folder)
 
 
-@pytest.mark.parametrize(
-    ("text", "files"),
-    [
-        (
-            "install(DIRECTORY rviz DESTINATION share/a)",
-            ["share/a/rviz: rviz/a.rviz", "share/a/rviz: rviz/b.txt"],
-        ),
-        ("install(FILES rviz/a.rviz DESTINATION share/${PROJECT_NAME})", ["share/a: rviz/a.rviz"]),
-        (
-            "foreach(d launch urdf)\ninstall(DIRECTORY ${d}/ DESTINATION share/${d})\nendforeach()",
-            [
-                "share/launch: launch/a.py",
-                "share/urdf: urdf/a.urdf",
-                "share/urdf/more: urdf/more/b.urdf",
-            ],
-        ),
-        (
-            "set(all launch rviz)\nforeach(d IN LISTS all)\n"
-            "install(DIRECTORY ${d} DESTINATION share)\nendforeach(d)",
-            ["share/launch: launch/a.py", "share/rviz: rviz/a.rviz", "share/rviz: rviz/b.txt"],
-        ),
-        (
-            "file(GLOB found rviz/*.rviz)\ninstall(FILES ${found} DESTINATION share/a)",
-            ["share/a: rviz/a.rviz"],
-        ),
-        (
-            "file(GLOB_RECURSE found *.urdf)\n"
-            "install(FILES ${found} DESTINATION ${CMAKE_INSTALL_PREFIX}/share/a)",
-            ["share/a: urdf/a.urdf", "share/a: urdf/more/b.urdf"],
-        ),
-        (
-            "install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/launch DESTINATION share/a)",
-            ["share/a/launch: launch/a.py"],
-        ),
-        ("# install(DIRECTORY rviz DESTINATION share/a)", []),
-        (
-            "file(GLOB found RELATIVE ${CMAKE_CURRENT_LIST_DIR} rviz/*.rviz)\n"
-            "install(FILES ${found} DESTINATION share/a)",
-            ["share/a: rviz/a.rviz"],
-        ),
-        (
-            "file(GLOB_RECURSE found ./urdf/**.urdf)\ninstall(FILES ${found} DESTINATION share/a)",
-            ["share/a: urdf/a.urdf", "share/a: urdf/more/b.urdf"],
-        ),
-        ("file(GLOB found ./)\ninstall(FILES ${found} DESTINATION share/a)", []),
-        (
-            "if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/meshes)\n"
-            "  install(DIRECTORY meshes DESTINATION share/a)\nendif()\n"
-            "install(FILES rviz/a.rviz DESTINATION share/a)",
-            ["share/a: rviz/a.rviz"],
-        ),
-    ],
-)
-def test_what_is_installed_is_found(text, files, tmp_path):
-    made = read(tmp_path, text)
+INSTALLS = yaml.safe_load(Path(__file__).with_name("cmake.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("case", INSTALLS, ids=range(len(INSTALLS)))
+def test_what_is_installed_is_found(case, tmp_path):
+    made = read(tmp_path, case["text"])
     assert (made.project, made.absent, made.problems) == ("a", [], [])
-    assert [f"{where}: {name}" for where, name in made.files] == files
+    assert [f"{where}: {name}" for where, name in made.files] == case["installs"]
 
 
 @pytest.mark.parametrize(
