@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+import yaml
 
 from grader.errors import SubmissionError
 from grader.recording.recording import OwnInterfaces
@@ -87,44 +90,16 @@ def test_a_file_that_is_no_utf_8_is_refused_as_ros_does(tmp_path, data):
 
 
 FIND = "find_package(rosidl_default_generators REQUIRED)"
-GENERATE = 'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Num.msg")'
-OTHER = 'rosidl_generate_interfaces(other "msg/Num.msg"'
-NO_TARGET = "mine/CMakeLists.txt lacks ${PROJECT_NAME} in rosidl_generate_interfaces()"
-#: What CMakeLists.txt says -> words of the fault.
-IN_CMAKE = {
-    f"{FIND}\nset(names Num)\nforeach(n ${{names}})\n  list(APPEND all msg/${{n}}.msg)\n"
-    "endforeach()\nrosidl_generate_interfaces(${PROJECT_NAME} ${all})": "",
-    "set(all rosidl_default_generators)\nforeach(each ${all})\n  find_package(${each})\n"
-    f"endforeach()\n{GENERATE}": "",
-    f"ament_auto_find_build_dependencies()\n{GENERATE}": "",
-    f"{FIND}\nfind_package(std_msgs)\nfind_package(geometry_msgs)\n"
-    f"{GENERATE[:-1]} DEPENDENCIES std_msgs DEPENDENCIES geometry_msgs)": "",
-    f"{FIND}\n{OTHER} LIBRARY_NAME ${{PROJECT_NAME}})": "",
-    f"{FIND}\n{OTHER})": NO_TARGET,
-    f'{FIND}\nrosidl_generate_interfaces("msg/Num.msg")': NO_TARGET,
-    f"{FIND}\nfile(GLOB all msg/*.msg)\nrosidl_generate_interfaces(${{PROJECT_NAME}} ${{all}})": (
-        'lists the absolute path of msg/Num.msg: write "msg/Num.msg", or, in file(GLOB), RELATIVE'
-    ),
-    f"{FIND}\n{GENERATE.replace('msg/', '${CMAKE_CURRENT_SOURCE_DIR}/msg/')}": (
-        'lists the absolute path of msg/Num.msg: write "msg/Num.msg"'
-    ),
-    f"{FIND}\nament_package()\n{GENERATE}": (
-        "mine/CMakeLists.txt calls ament_package() before rosidl_generate_interfaces()"
-    ),
-    f"{FIND}\n{GENERATE.replace('Num', 'num')}": (
-        "mine/CMakeLists.txt lists msg/num.msg, and there is no such file, only Num.msg."
-    ),
-}
+IN_CMAKE = yaml.safe_load(Path(__file__).with_name("interfaces.yaml").read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("text", IN_CMAKE)
-def test_cmake_is_followed_as_far_as_colcon_would(tmp_path, text):
+@pytest.mark.parametrize("case", IN_CMAKE, ids=range(len(IN_CMAKE)))
+def test_cmake_is_followed_as_far_as_colcon_would(tmp_path, case):
     package(tmp_path / "mine", {"Num": "int8 num\n"})
-    fault = IN_CMAKE[text]
-    (tmp_path / "mine" / "CMakeLists.txt").write_text(f"project(mine)\n{text}\n")
+    (tmp_path / "mine" / "CMakeLists.txt").write_text(f"project(mine)\n{case['text']}\n")
     found, _ = read(tmp_path)
-    assert fault in str(found.faults.get("mine/msg/Num", ""))
-    assert ("mine/msg/Num" in found.texts) == (fault == "")
+    assert case["fault"] in str(found.faults.get("mine/msg/Num", ""))
+    assert ("mine/msg/Num" in found.texts) == (case["fault"] == "")
 
 
 def test_what_lies_elsewhere_is_not_told_to_who_lists_it(tmp_path):
