@@ -4,7 +4,6 @@ LINKS = '<link name="a"/><link name="b"/>'
 PARENT_AND_CHILD = '<parent link="a"/><child link="b"/>'
 LIMIT = '<limit effort="1" velocity="1"/>'
 BOX = '<geometry><box size="1 1 1"/></geometry>'
-MOMENTS = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
 RED = '<color rgba="1 0 0 1"/>'
 
 
@@ -22,10 +21,6 @@ def visual(content: str) -> str:
 
 def shape(content: str) -> str:
     return visual(f"<geometry>{content}</geometry>")
-
-
-def inertial(content: str) -> str:
-    return link(f"<inertial>{content}</inertial><visual>{BOX}</visual>")
 
 
 def joint(body: str, attributes: str = 'name="j" type="fixed"') -> str:

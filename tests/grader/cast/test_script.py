@@ -12,7 +12,7 @@ from grader.cli import main
 from grader.exercise.known_types import KnownTypes, check_cast
 from grader.yaml_file import Mistake
 
-STRING, ADD = "std_msgs/msg/String", "example_interfaces/srv/AddTwoInts"
+STRING = "std_msgs/msg/String"
 EXERCISE = """exercise: small
 title: A small one
 scene: graph

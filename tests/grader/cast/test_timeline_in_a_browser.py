@@ -23,7 +23,7 @@ from tests.browser import WIDTHS, clipped, cut_off, needs_browser, open_browser
 from tests.grader.exercise.expect.traces import endpoint, line, text, trace
 from tests.programs import DEADLINE_S, Program
 
-pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
+pytestmark = needs_browser
 
 #: What the lanes show, RGBA in base64, and their width.
 PIXELS = """

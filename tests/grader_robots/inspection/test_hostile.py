@@ -29,7 +29,7 @@ from grader.strict_json import from_json
 from grader_robots.inspection import meshes
 from tests.grader_robots.packages import INSPECTORS, REFERENCE, looked_at, written
 
-DISPLAY, SPAWN = "launch/display.launch.py", "launch/spawn.launch.py"
+DISPLAY = "launch/display.launch.py"
 SETUP = (REFERENCE / "setup.py").read_text(encoding="utf-8")
 LISTS = "data_files=["
 ANSWER = {

@@ -17,7 +17,7 @@ from tests.grader_robots.reports.test_parts import package_trace, page_of
 from tests.grader_robots.scene.robots import walks
 from tests.grader_robots.scene.test_view import URDF
 
-pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
+pytestmark = needs_browser
 
 READER = Path(__file__).with_name("reader.js").read_text(encoding="utf-8")
 

@@ -19,7 +19,7 @@ from tests.grader.driving import RED, Spiral, drive, pen, twist
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
 
-pytestmark = [needs_browser, pytest.mark.more("a browser; what it is given is tested as data")]
+pytestmark = needs_browser
 
 TICKS = 300
 #: What the canvas shows, RGBA in base64.
