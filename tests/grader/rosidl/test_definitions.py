@@ -3,9 +3,11 @@ from __future__ import annotations
 import importlib
 import sys
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.type_support import NoTypeSupportImportedException
 
@@ -65,57 +67,13 @@ def test_services_and_actions_have_parts():
     assert len(parts(parse("mine/action/Fib", "---\n---\n"))) == 10
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("int32 a\n\nint33 b", "Num.msg, line 3: `int33 b` is not understood: 'int33' is an inv"),
-        ("int32", "line 1: found `int32`, expected a type and a name: int32 count."),
-        (" int8 a", "line 1: found ` int8 a`, expected a type and a name"),
-        (
-            "int32 Speed",
-            "`Speed` is no name here. A name is written as max",
-        ),
-        ("int32 a__b", "`a__b` is no name here"),
-        ("int32 class", "`class` is a word of Python, C++ or ROS itself"),
-        ("float64 long", "`long` is a word of Python, C++ or ROS itself"),
-        ("int32 check_fields", "`check_fields` is a word of Python, C++ or ROS itself"),
-        ("int32 fields_and_field_types", "is a word of Python, C++ or ROS itself"),
-        ("int64 a = 5", "`int64 a = 5` has a = between name and default: write int64 a 5."),
-        ("double a", "`double` is no type. Write float64."),
-        ("int[] a", "`int[]` is no type. Write int32 or int64."),
-        ("\ufeffint8 a", "line 1: it begins with a mark that nobody sees (BOM)"),
-        (
-            "int32 speed=5",
-            "`int32 speed=5` has a = between name and default",
-        ),
-        ("Num A=5", "the constant type 'Num' must be a primitive type"),
-        ("int32 a\nfloat32 a", "line 2: `a` is there twice"),
-        ("int8 a 128", "value '128' can not be converted to type 'int8': must be a valid integer"),
-        ("bool b yes", "must be either 'true' / '1' or 'false' / '0'"),
-        ("float32 f nan", "expected a number"),
-        ("int8[2] a [1]", "array must have exactly 2 elements, not 1"),
-        ("int8[<=2] a [1,2,3]", "array must have not more than 2 elements, not 3"),
-        ("int8[] a 1", "array value must start with '[' and end with ']'"),
-        ('string<=3 s "four"', "string must not exceed the maximum length of 3 characters"),
-        ("string s 'it's'", "string inner quotes not properly escaped"),
-        ("string s a\\", "is not understood"),
-        ("geometry_msgs/Point p 1", "'geometry_msgs/Point' is not supported"),
-        ("geometry_msgs/msg/Point p", "is not understood: geometry_msgs/msg/Point"),
-        ("time t", "write builtin_interfaces/Time"),
-        ("int32[0] a", "the size of array type"),
-        ("int32[-1] a", "the size of array type"),
-        ("string<=0 a", "must be a valid integer value > 0"),
-        ("int32[][] a", "is not understood"),
-        ("int32] a", "is not understood"),
-        ("int32 a\n---\nint32 b", "found 1 lines that are ---, expected 0"),
-        # what would keep the adapter's expressions and its lists busy for ever
-        ("int8 " + "A" * 90 + "_=1", "is no name here"),
-        ("int32 a " + "9" * 1900, "is not understood"),
-    ],
-)
-def test_a_mistake_is_told_with_its_line_and_what_to_do(text, said):
-    found = mistake(text)
-    assert found.startswith("Num.msg") and said in found
+MISTAKES = yaml.safe_load(Path(__file__).with_name("mistakes.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("case", MISTAKES, ids=lambda case: case["said"])
+def test_a_mistake_is_told_with_its_line_and_what_to_do(case):
+    found = mistake(case["text"])
+    assert found.startswith("Num.msg") and case["said"] in found
 
 
 @pytest.mark.parametrize(
