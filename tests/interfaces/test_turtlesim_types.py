@@ -20,18 +20,11 @@ from type_description_interfaces.srv import GetTypeDescription
 
 from turtlesim_py.ros.interfaces import NAMES, Interfaces, installed
 
-# Measured on turtlesim 1.8.2; later ones of Jazzy have the same. Two programs talk only where these
-# are equal.
-TYPE_HASHES = {
-    "action/RotateAbsolute": "08ba6dd83d976f1cb548edd1f75f16cf30cca624ce1410b6ce77f44b8a3c2895",
-    "msg/Color": "74492579ec0d734707aede0e742ab76c55ac50d3ff917381e5163624cb657fe5",
-    "msg/Pose": "739beba26bcba6920404ba722b7b8321348512f92ea5be235c47251940dd8aa9",
-    "srv/Kill": "81c7c9131a0802f384e515fbd04867f8da57abaa83ee3a0ec76e39091e54bbc3",
-    "srv/SetPen": "45ca246c7258172a89a58856037d6b4489eb46a18f1d8ee1988c018ef46fcfce",
-    "srv/Spawn": "a71be24836f772debd6187dc8618cc47700d2602c7a3e2228bad67a8f5fd27b4",
-    "srv/TeleportAbsolute": "139aa0f215e25dc085067f070adb3ef65cf3c92d201f5cb750d51ca9322166b6",
-    "srv/TeleportRelative": "6e9e54cb05e1a789f982bf8c93d27fc899cee099746c4ea8c7cb64e8a90297d6",
-}
+#: By package and type. Those of turtlesim were measured on 1.8.2; later ones of Jazzy have the
+#: same. Two programs talk only where these are equal. Those of turtlesim_msgs are of the same
+#: definitions under their newer name, which is a part of the hash, by the same generator.
+HASHES = json.loads(Path(__file__).with_name("hashes.json").read_text(encoding="utf-8"))
+TYPE_HASHES = HASHES["turtlesim"]
 
 #: What `ros2 interface show` prints of the two that have comments.
 COMMENTED = {
@@ -54,20 +47,6 @@ string name # Optional.  A unique name will be created and returned if this is e
 string name
 """,
 }
-
-# Of the same definitions under their newer name, which is a part of the hash; the generator that
-# made these makes those above.
-NEWER_TYPE_HASHES = {
-    "action/RotateAbsolute": "18617e6b742158766b7a9a14938f06be93e499368904e91955b75e8bcc1b0fcf",
-    "msg/Color": "f5b5666da8f19d47420026187389c750b66998436878dd631ae83498059a59e2",
-    "msg/Pose": "37b07ace09a0ed2c5b774b1410dec972dfd1d292de5656ebc2b075ac646e09c8",
-    "srv/Kill": "8dd58248926d8137dc17c84b8203ea4fda6ff74b1ef4a407a6a32faaab4e7eb0",
-    "srv/SetPen": "9d5465611d8822f9ded80bfff0f697bb1046c2e2ca428502c38cb2bfff241325",
-    "srv/Spawn": "1538b7b668cce0074f0ca9fa992bdeb6979bda1f722fc7ea33ca47b408aa32e9",
-    "srv/TeleportAbsolute": "bd9ecb11b762865429dff079c4c296c97b751c4ec968f8d1893292c86d3d1b7c",
-    "srv/TeleportRelative": "8f51764645d3ceae8555544bd8207c8d714958d98e519a3c950a2f85c4431b43",
-}
-HASHES = {"turtlesim": TYPE_HASHES, "turtlesim_msgs": NEWER_TYPE_HASHES}
 
 #: A message, and requests with their responses: name of the type -> values of its fields.
 MESSAGES = {
