@@ -15,7 +15,7 @@ from grader.inspection.trace import FAILED
 from grader.run import inspecting
 from grader.run.processes import levels, network
 from tests import archive, runs
-from tests.grader.run.test_opening import FORGES
+from tests.grader.run.test_opening import TEXTS
 from tests.grader_robots.packages import EXERCISE, REFERENCE, looked_at, recorded, written
 from tests.tiers import others_are_more
 
@@ -79,7 +79,7 @@ def test_what_holds_no_package_is_refused(tmp_path):
 
 
 def test_a_set_up_that_writes_wherever_it_can_spoils_its_own_answer_alone(tmp_path):
-    result = graded(tmp_path, FORGES)
+    result = graded(tmp_path, TEXTS["forges"])
     # what it would install is not known, so neither is what ros2 launch would start
     lost = dict.fromkeys(("installed", "launch", "spawn"), 0.0)
     assert shares(result) == {**dict.fromkeys(EXERCISE.points, 1.0), **lost}
