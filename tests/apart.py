@@ -4,8 +4,6 @@ A session has a temporary folder, a worker a ROS domain and a place for log file
 session fails where a process, a file of that folder or a segment of shared memory is left.
 """
 
-from __future__ import annotations
-
 import fcntl
 import os
 import re

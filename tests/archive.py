@@ -7,8 +7,6 @@ exercise, make the archive anew:
     .venv/bin/python -m tests.archive
 """
 
-from __future__ import annotations
-
 import shutil
 import tarfile
 import tempfile

@@ -6,8 +6,6 @@ With `--root` it remains root, and the rest is the same. Where Python or these t
 of root's alone, the program is shown them there and nothing else of that folder.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import stat

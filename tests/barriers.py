@@ -3,8 +3,6 @@
 The tests that ask it are those that docs/accessibility.md points at.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from tests.browser import cut_off, moving, obstacles

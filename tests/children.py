@@ -1,7 +1,5 @@
 """Does something in a process of its own, which may be confined or killed by it."""
 
-from __future__ import annotations
-
 import json
 import os
 import traceback

@@ -7,8 +7,6 @@ has it; then, if that is LEVEL, what the program prints. With `refusing.py` and 
 it: at other levels, as another user.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

@@ -1,12 +1,9 @@
 """For all tests: checked message fields, and a simulator on a graph that nobody else is on."""
 
-from __future__ import annotations
-
 import gc
 import os
 import subprocess
 import zlib
-from collections.abc import Iterator
 from itertools import count
 from typing import Any
 
@@ -94,7 +91,7 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 @pytest.fixture(scope="session")
-def ros() -> Iterator[None]:
+def ros():
     """ROS is up in this process; whoever needs a node in it asks for this."""
     import rclpy
 
@@ -104,7 +101,7 @@ def ros() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def session_graph(ros: None) -> Iterator[Any]:
+def session_graph(ros):
     """The node behind `graph`."""
     from tests.graph import Graph
 
@@ -114,14 +111,14 @@ def session_graph(ros: None) -> Iterator[Any]:
 
 
 @pytest.fixture
-def graph(session_graph: Any) -> Iterator[Any]:
+def graph(session_graph):
     """A node of the tests' own, a `tests.graph.Graph`; empty again for each test."""
     yield session_graph
     session_graph.forget()
 
 
 @pytest.fixture(scope="session")
-def simulator(session_graph: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Program]:
+def simulator(session_graph, tmp_path_factory):
     """One turtlesim_node for the whole session, a process of its own, as `/turtlesim`."""
     folder = tmp_path_factory.mktemp("simulator")
     with Program("turtlesim_py.ros.node", cwd=folder) as program:
@@ -132,7 +129,7 @@ def simulator(session_graph: Any, tmp_path_factory: pytest.TempPathFactory) -> I
 
 
 @pytest.fixture
-def turtle(graph: Any, simulator: Program) -> Iterator[str]:
+def turtle(graph, simulator):
     """Its name: a turtle in the middle of `simulator` that only this test knows."""
     from turtlesim.srv import Kill, Spawn
 

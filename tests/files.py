@@ -1,7 +1,5 @@
 """Files that a test works on."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The recorded runs of the original, read from tests/golden."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

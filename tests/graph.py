@@ -1,7 +1,5 @@
 """The other side of a ROS graph: subscribers, publishers and clients for tests."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any, TypeVar

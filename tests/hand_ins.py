@@ -6,8 +6,6 @@ lays them out in a new folder, to look at or to grade by hand. `tests/submission
 how they are written.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 import sys

@@ -4,8 +4,6 @@ No test looks at a clock: what falls back into computing for minutes, or into ta
 killed, and the test fails by that.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -7,8 +7,6 @@ variable CI set that is a failure. As a program this prints the commands for wha
     .venv/bin/python -m tests.needs | sh -ex
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections import Counter

@@ -6,8 +6,6 @@ submission is run once for all workers of a `make test`, and for the tests that 
 adds; `pytest --cache-clear` and `make clean` forget it all.
 """
 
-from __future__ import annotations
-
 import fcntl
 import hashlib
 import os

@@ -6,8 +6,6 @@ WHAT is `namespaces` (as Docker's filter of system calls has it), `landlock`, or
 `CALLS`. Who is asked for it says no, to all that the program starts: nothing has to pretend.
 """
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import os

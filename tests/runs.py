@@ -4,8 +4,6 @@ They are saved and read back as `grader run` saves them, so what a test sees of 
 that, too. See `tests.once` for how long they serve.
 """
 
-from __future__ import annotations
-
 from functools import cache, lru_cache
 from pathlib import Path
 

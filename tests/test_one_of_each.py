@@ -1,7 +1,5 @@
 """A mechanism that there is once stays one: who needs it takes that."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -50,12 +48,12 @@ def found(pattern: str, *folders: str) -> set[str]:
 
 
 @pytest.mark.parametrize("what", ONE)
-def test_there_is_one(what: str) -> None:
+def test_there_is_one(what):
     pattern, where = ONE[what]
     assert found(pattern, ".") == ({where} if where else set())
 
 
 @pytest.mark.parametrize("what", ONE_IN_RUNS)
-def test_runs_have_one(what: str) -> None:
+def test_runs_have_one(what):
     pattern, where = ONE_IN_RUNS[what]
     assert found(pattern, "run", "submission") == where

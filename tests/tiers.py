@@ -1,7 +1,5 @@
 """What of a parametrized test is for `make test-all` only."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

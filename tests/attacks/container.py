@@ -9,8 +9,6 @@ inside ends. It reads a job (JSON) from standard input and writes what it saw (J
 output; see `observing`.
 """
 
-from __future__ import annotations
-
 import ctypes
 import fcntl
 import json

@@ -4,8 +4,6 @@ A function here makes a submission and returns what the grader is told to grade.
 attack's folder, which is `attacker` in the class's, its program, and what that may know.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import socket

@@ -5,8 +5,6 @@ worker of `grader batch` does: what an attack does to it, the next one suffers. 
 nothing is graded belongs to it; whatever else is there after a grading was left by that.
 """
 
-from __future__ import annotations
-
 import fcntl
 import json
 import os

@@ -5,8 +5,6 @@ makes a machine of each kind out of this one (`levels`), among canaries (`observ
 kind one after the other, by one grader.
 """
 
-from __future__ import annotations
-
 import compileall
 import os
 from collections.abc import Iterator
@@ -43,7 +41,7 @@ def gradings() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def compiled() -> None:
+def compiled():
     """Else whoever imports first would write into the copies."""
     for package in observing.PACKAGES:
         compileall.compile_dir(container.ROOT / package, quiet=2)

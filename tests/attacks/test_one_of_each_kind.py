@@ -4,14 +4,11 @@ All are tried in containers, at every level (test_attacks). These would hurt nob
 succeeded, and are found out by canaries: secrets in a home and in the environment, and listeners.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -43,7 +40,7 @@ SECRET = "CANARY-environment-0f3a"
 
 
 @pytest.fixture
-def listeners() -> Iterator[dict[str, socket.socket]]:
+def listeners():
     """Services of this machine, by the name that attacks know their address by."""
     name = f"\0service-{os.getpid()}"
     with ExitStack() as stack:

@@ -1,7 +1,5 @@
 """Tokens of CI systems never reach a submission's process by a course's grade.sh either."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.attacks.attacks import ATTACKS, MOVES

@@ -1,10 +1,7 @@
 """For all tests of the grader: its command line, called in this process, leaves no trace in it."""
 
-from __future__ import annotations
-
 import ctypes
 import signal
-from collections.abc import Iterator
 
 import pytest
 
@@ -14,7 +11,7 @@ PR_GET_CHILD_SUBREAPER, PR_SET_CHILD_SUBREAPER = 37, 36
 
 
 @pytest.fixture(autouse=True)
-def as_it_was_before() -> Iterator[None]:
+def as_it_was_before():
     """Restore the handlers of signals, and whether this process adopts orphans."""
     handlers = {number: signal.getsignal(number) for number in started_process.ENDING}
     libc, adopts = ctypes.CDLL(None), ctypes.c_int()

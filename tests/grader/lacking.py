@@ -8,8 +8,6 @@ be told: `-m module ...`, `-c code ...` or `script.py ...`. Really taken away is
 for; the rest of Python goes on as on Linux.
 """
 
-from __future__ import annotations
-
 import builtins
 import ctypes
 import os

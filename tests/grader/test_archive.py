@@ -1,7 +1,5 @@
 """A right and a wrong hand-in of every exercise, run for real, leave the runs of the archive."""
 
-from __future__ import annotations
-
 import pytest
 
 import grader

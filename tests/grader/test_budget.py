@@ -1,7 +1,5 @@
 """The processor time of a whole grading is bounded: what it has reached is judged, and no more."""
 
-from __future__ import annotations
-
 import math
 
 import grader

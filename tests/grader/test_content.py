@@ -1,7 +1,5 @@
 """The hash of a folder: of names and contents alone, and the one that sha256sum gives."""
 
-from __future__ import annotations
-
 import subprocess
 
 import pytest

@@ -1,7 +1,5 @@
 """Real submissions, run for real in virtual time, get exactly the verdicts they deserve."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Grading from a program: nothing of its process changes, and nothing is left behind."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import subprocess
@@ -69,7 +67,7 @@ print(len(result))
 
 
 @pytest.fixture
-def short(tmp_path: Path) -> Path:
+def short(tmp_path):
     """An exercise whose runs are short, with one run each."""
     path = tmp_path / "short.yaml"
     path.write_text(SHORT)
@@ -77,7 +75,7 @@ def short(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def drives(tmp_path: Path) -> Path:
+def drives(tmp_path):
     path = tmp_path / "drives.py"
     path.write_text(DRIVES)
     return path

@@ -1,7 +1,5 @@
 """Hand-ins with interfaces of their own: they work as in ROS, and what is wrong is said first."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Work in a copy of this process: what it breaks, it breaks there."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal

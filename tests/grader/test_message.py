@@ -1,7 +1,5 @@
 """A message is a key with values: English as a text, JSON between processes and in files."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from copy import deepcopy

@@ -43,24 +43,24 @@ class Elsewhere:
 @pytest.fixture(
     params=others_are_more("Windows lacks all that macOS does", ("macos", "windows"), "windows")
 )
-def system(request: pytest.FixtureRequest) -> str:
+def system(request):
     return str(request.param)
 
 
 @pytest.fixture
-def elsewhere(system: str, tmp_path: Path) -> Elsewhere:
+def elsewhere(system, tmp_path):
     return Elsewhere(system, tmp_path)
 
 
 @pytest.mark.parametrize("verb", ["run", "batch", "check-exercise"])
-def test_what_runs_submissions_says_that_it_needs_linux(elsewhere, verb, tmp_path) -> None:
+def test_what_runs_submissions_says_that_it_needs_linux(elsewhere, verb, tmp_path):
     done = elsewhere.run("-m", "grader", verb, "drives.py", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(f"grader {verb}: submissions are run on Linux with /proc")
     assert "Traceback" not in done.stderr
 
 
-def test_a_recording_is_judged_again_as_on_linux(elsewhere, tmp_path) -> None:
+def test_a_recording_is_judged_again_as_on_linux(elsewhere, tmp_path):
     shutil.copytree(archive.folder("talker", "wrong"), tmp_path / "recording")
     words = ["recording", "--exercise", "talker", "--json", "again.json"]
     done = elsewhere.run("-m", "grader", "check", *words, cwd=tmp_path)
@@ -80,12 +80,12 @@ print(len(names) > 20)
 """
 
 
-def test_the_simulator_and_what_judges_and_shows_recordings_can_be_imported(elsewhere) -> None:
+def test_the_simulator_and_what_judges_and_shows_recordings_can_be_imported(elsewhere):
     done = elsewhere.run("-c", IMPORTS_ALL)
     assert (done.stdout, done.returncode) == ("True\n", 0), done.stderr
 
 
-def test_the_teleop_says_what_is_missing(tmp_path: Path) -> None:
+def test_the_teleop_says_what_is_missing(tmp_path):
     # as the installed command does: what is run with -m is __main__, whose imports are Python's
     command = "import sys; from turtlesim_py.programs.teleop_key import main; sys.exit(main())"
     done = Elsewhere("windows", tmp_path).run("-c", command)

@@ -1,7 +1,5 @@
 """A package is graded alike at each level of isolation: it is evaluated there as well as run."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import pytest
@@ -24,7 +22,7 @@ NAMES = ("own_interfaces", "talker_listener", "description_package")
         f"own_interfaces at {LIMITS}",
     ),
 )
-def test_a_package_has_the_same_verdict_at_each_level(case: str, level: str, name: str) -> None:
+def test_a_package_has_the_same_verdict_at_each_level(case, level, name):
     levels.only(level)
     try:
         result = grader.grade(load_exercise(name).folder / "reference", name)

@@ -6,7 +6,6 @@ import socket
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -85,7 +84,7 @@ KINDS = [forbidden, deep, strange_names, specials, links_out, a_link, a_pipe, no
 
 
 @pytest.fixture
-def folder() -> Iterator[Path]:
+def folder():
     """An empty one, beside others, where any user may go; pytest's are for its own alone."""
     with tempfile.TemporaryDirectory() as place:
         base = Path(place).resolve()
@@ -102,15 +101,13 @@ def folder() -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("leave", KINDS)
-def test_whatever_was_left_is_removed_and_nothing_beside_it(
-    folder: Path, leave: Callable[[Path], None]
-) -> None:
+def test_whatever_was_left_is_removed_and_nothing_beside_it(folder, leave):
     leave(folder)
     assert remove(folder)
 
 
 @needs("root")
-def test_what_is_immutable_is_removed(folder: Path) -> None:
+def test_what_is_immutable_is_removed(folder):
     (folder / "in").mkdir()
     (folder / "in" / "file").touch()
     for path in (folder / "in" / "file", folder / "in"):
@@ -121,9 +118,7 @@ def test_what_is_immutable_is_removed(folder: Path) -> None:
 
 @needs("root")
 @pytest.mark.parametrize("leave", KINDS)
-def test_a_user_who_may_not_do_everything_removes_it_as_well(
-    folder: Path, leave: Callable[[Path], None]
-) -> None:
+def test_a_user_who_may_not_do_everything_removes_it_as_well(folder, leave):
     def leave_and_remove() -> bool:
         os.setresuid(NOBODYS_UID, NOBODYS_UID, NOBODYS_UID)
         folder.mkdir()
@@ -134,9 +129,7 @@ def test_a_user_who_may_not_do_everything_removes_it_as_well(
     assert in_child(leave_and_remove)
 
 
-def test_a_folder_that_is_still_being_filled_is_given_up_in_the_end(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_folder_that_is_still_being_filled_is_given_up_in_the_end(folder, monkeypatch):
     empty = removal._empty
 
     def too_late(top: int) -> None:
@@ -149,7 +142,7 @@ def test_a_folder_that_is_still_being_filled_is_given_up_in_the_end(
     assert remove(folder)
 
 
-def test_a_folder_far_deeper_than_open_files_are_allowed_is_removed(folder: Path) -> None:
+def test_a_folder_far_deeper_than_open_files_are_allowed_is_removed(folder):
     deep(folder)
     code = """
 import resource

@@ -1,7 +1,5 @@
 """What part of the grader needs is told in one line where it is missing."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader import requirements

@@ -18,7 +18,7 @@ from tests.needs import needs
 
 
 @pytest.fixture
-def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def place(tmp_path, monkeypatch):
     """Where the folder of this user's runs would be; nothing is there."""
     (tmp_path / "tmp").mkdir()
     (tmp_path / "runtime").mkdir(mode=0o700)
@@ -75,9 +75,7 @@ FOREIGN = [pipe, link, dangling_link, a_socket, forbidden_file, by_root(another_
 
 
 @pytest.mark.parametrize("lay", [*FOREIGN, folder])
-def test_what_lies_where_locks_are_looked_for_stops_nobody(
-    place: Path, lay: Callable[[Path], None]
-) -> None:
+def test_what_lies_where_locks_are_looked_for_stops_nobody(place, lay):
     home = scratch.home()
     names = [f"domain-{number}" for number in network.DOMAINS]
     names += [f"core-{number}" for number in cores.available()]
@@ -96,7 +94,7 @@ def test_what_lies_where_locks_are_looked_for_stops_nobody(
         assert path.read_text() == "precious"
 
 
-def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
+def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place):
     with network.reserve_domain() as number:
         found = (scratch.home() / f"domain-{number}.lock").lstat()
     assert stat.S_ISREG(found.st_mode)
@@ -104,9 +102,7 @@ def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
 
 
 @pytest.mark.parametrize("lay", [*FOREIGN, by_root(another_s_folder)])
-def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(
-    place: Path, lay: Callable[[Path], None]
-) -> None:
+def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(place, lay):
     lay(place)
     before = place.lstat()
     assert scratch.home() == Path(os.environ["XDG_RUNTIME_DIR"]) / "turtlesim-grader"
@@ -117,9 +113,7 @@ def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(
     assert not (place.parent.parent / "made by the grader").exists()
 
 
-def test_a_folder_of_ours_is_closed_to_others_and_a_link_to_one_is_not_followed(
-    place: Path, tmp_path: Path
-) -> None:
+def test_a_folder_of_ours_is_closed_to_others_and_a_link_to_one_is_not_followed(place, tmp_path):
     place.mkdir()
     place.chmod(0o777)
     assert scratch.home() == place
@@ -130,9 +124,7 @@ def test_a_folder_of_ours_is_closed_to_others_and_a_link_to_one_is_not_followed(
         assert list((tmp_path / "mine").iterdir()) == []
 
 
-def test_where_no_place_is_left_it_says_which_whose_and_what_to_do(
-    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_where_no_place_is_left_it_says_which_whose_and_what_to_do(place, tmp_path, monkeypatch):
     pipe(place)
     monkeypatch.delenv("XDG_RUNTIME_DIR")
     (tmp_path / "user").touch()
@@ -143,7 +135,7 @@ def test_where_no_place_is_left_it_says_which_whose_and_what_to_do(
     assert "set TMPDIR" in str(error.value)
 
 
-def test_what_a_run_that_was_killed_leaves_goes_with_the_next_whatever_it_is(place: Path) -> None:
+def test_what_a_run_that_was_killed_leaves_goes_with_the_next_whatever_it_is(place):
     outside = place.parent / "outside"
     outside.mkdir()
     home = scratch.home()
@@ -160,7 +152,7 @@ def test_what_a_run_that_was_killed_leaves_goes_with_the_next_whatever_it_is(pla
     assert outside.is_dir()
 
 
-def test_a_folder_of_ours_goes_and_nothing_that_is_in_use(place: Path) -> None:
+def test_a_folder_of_ours_goes_and_nothing_that_is_in_use(place):
     with scratch.make_folder() as made:
         (made / "a" / "b").mkdir(parents=True)
         (made / "a").chmod(0)
@@ -173,7 +165,7 @@ def test_a_folder_of_ours_goes_and_nothing_that_is_in_use(place: Path) -> None:
     assert list(scratch.home().iterdir()) == []
 
 
-def test_a_lock_has_one_holder_until_he_closes_it(tmp_path: Path) -> None:
+def test_a_lock_has_one_holder_until_he_closes_it(tmp_path):
     path = tmp_path / "lock"
     with path.open("w") as first:
         assert scratch.lock_file(first)
@@ -184,7 +176,7 @@ def test_a_lock_has_one_holder_until_he_closes_it(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def locked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def locked(monkeypatch):
     """The locks that were asked for: another one, who looks round just then, removes the first."""
     names: list[str] = []
     lock_file = scratch.lock_file
@@ -199,15 +191,13 @@ def locked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return names
 
 
-def test_a_lock_that_another_has_taken_for_a_leftover_is_not_used(
-    place: Path, locked: list[str]
-) -> None:
+def test_a_lock_that_another_has_taken_for_a_leftover_is_not_used(place, locked):
     with scratch.make_folder() as folder:
         assert folder.is_dir()
         assert Path(locked[1]).stem == folder.name
 
 
-def test_a_lock_that_is_always_moved_away_is_not_held(place: Path, locked: list[str]) -> None:
+def test_a_lock_that_is_always_moved_away_is_not_held(place, locked):
     locked.append("each")
     assert scratch.acquire_lock("core-0") is None
     with pytest.raises(GraderFailure, match="removes the locks"), scratch.make_folder():

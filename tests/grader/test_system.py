@@ -2,7 +2,6 @@
 
 import sys
 from importlib import metadata
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -11,14 +10,14 @@ from grader import linux, system
 from grader.run.processes import network
 
 
-def test_submissions_are_run_where_linux_shows_its_processes(monkeypatch, tmp_path: Path) -> None:
+def test_submissions_are_run_where_linux_shows_its_processes(monkeypatch, tmp_path):
     assert system.runs_submissions()
     monkeypatch.setattr(system, "PROC", tmp_path)
     assert not system.runs_submissions()
 
 
 @pytest.mark.parametrize("libc", [None, object()])
-def test_namespaces_that_libc_does_not_know_are_refused(monkeypatch, libc) -> None:
+def test_namespaces_that_libc_does_not_know_are_refused(monkeypatch, libc):
     monkeypatch.setattr(linux, "_libc", libc)
     monkeypatch.setattr(network, "_refused", set())
     with pytest.raises(OSError, match=r"unshare \(net\)"):

@@ -1,7 +1,5 @@
 """A message is rendered in a language: order, numbers and plurals are that language's."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

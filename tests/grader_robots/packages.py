@@ -1,7 +1,5 @@
 """Packages that describe robots, as students hand them in, and what is found of them."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Verbs refuse what the scenes of robots do not have."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.cli import main

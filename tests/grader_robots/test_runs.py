@@ -1,7 +1,5 @@
 """The tutorial's node in virtual time: as in real time, and the same every time."""
 
-from __future__ import annotations
-
 import shutil
 from dataclasses import replace
 
@@ -24,7 +22,7 @@ TWO_STAMPS = "odom_trans.header.stamp = now.to_msg()"
 
 
 @pytest.fixture(scope="module")
-def recorded() -> Recordings:
+def recorded():
     return runs.recordings(LOOP, EXERCISE)
 
 

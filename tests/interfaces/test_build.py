@@ -1,12 +1,9 @@
 """The build of the interface packages: one source, and nothing of another ROS is taken over."""
 
-from __future__ import annotations
-
 import os
 import re
 import sys
 import tomllib
-from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 
@@ -23,7 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarn
 
 
 @pytest.fixture
-def built(monkeypatch, tmp_path) -> Callable[[], list[str]]:
+def built(monkeypatch, tmp_path):
     """Says which packages were compiled, by a compiler that only touches files."""
     log = tmp_path / "compiled"
 

@@ -1,7 +1,5 @@
 """example_interfaces and action_tutorials_interfaces: the originals' types, which PyPI lacks."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import os

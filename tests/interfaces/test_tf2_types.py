@@ -20,7 +20,7 @@ TYPE_HASHES = {
 
 
 @pytest.mark.parametrize("name", TYPE_HASHES)
-def test_type_hash_is_that_of_the_original(name: str) -> None:
+def test_type_hash_is_that_of_the_original(name):
     file = Path(get_package_share_directory("tf2_msgs"), f"{name}.json")
     hashes = {
         entry["type_name"]: entry["hash_string"]
@@ -29,13 +29,13 @@ def test_type_hash_is_that_of_the_original(name: str) -> None:
     assert hashes[f"tf2_msgs/{name}"] == f"RIHS01_{TYPE_HASHES[name]}"
 
 
-def test_errors_have_the_originals_numbers() -> None:
+def test_errors_have_the_originals_numbers():
     names = ("NO", "LOOKUP", "CONNECTIVITY", "EXTRAPOLATION", "INVALID_ARGUMENT", "TIMEOUT")
     numbers = [getattr(TF2Error, f"{name}_ERROR") for name in (*names, "TRANSFORM")]
     assert numbers == [*range(7)]
 
 
-def test_the_index_lists_the_interfaces() -> None:
+def test_the_index_lists_the_interfaces():
     listed, _ = get_resource("rosidl_interfaces", "tf2_msgs")
     files = {"msg/TFMessage.msg", "msg/TF2Error.msg", "srv/FrameGraph.srv"}
     assert files <= set(listed.splitlines())

@@ -4,7 +4,6 @@ Where ROS is sourced this checks apt's package in the same way.
 """
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -91,14 +90,14 @@ class Peer:
 
 
 @pytest.fixture
-def peer() -> Iterator[Peer]:
+def peer():
     peer = Peer()
     yield peer
     peer.close()
 
 
 @pytest.fixture(params=installed())
-def interfaces(request: pytest.FixtureRequest) -> Interfaces:
+def interfaces(request):
     """Each of the packages that are here: beside a sourced ROS only its own."""
     return Interfaces.of(request.param)
 
@@ -111,7 +110,7 @@ def description(package: str, name: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", TYPE_HASHES)
-def test_type_hash_is_that_of_the_original(interfaces: Interfaces, name: str) -> None:
+def test_type_hash_is_that_of_the_original(interfaces, name):
     hashes = {
         entry["type_name"]: entry["hash_string"]
         for entry in description(interfaces.package, name)["type_hashes"]
@@ -121,20 +120,20 @@ def test_type_hash_is_that_of_the_original(interfaces: Interfaces, name: str) ->
 
 
 @pytest.mark.parametrize("name", COMMENTED)
-def test_definition_has_the_originals_comments(name: str) -> None:
+def test_definition_has_the_originals_comments(name):
     installed = Path(get_package_share_directory("turtlesim"), name).read_text()
     assert installed.splitlines() == COMMENTED[name].splitlines()
 
 
 @pytest.mark.applies(len(installed()) == 2, reason="beside a sourced ROS there is one package")
 @pytest.mark.parametrize("name", TYPE_HASHES)
-def test_both_packages_say_the_same_of_a_type(name: str) -> None:
+def test_both_packages_say_the_same_of_a_type(name):
     older, newer = (description(package, name)["type_description_msg"] for package in NAMES)
     assert json.loads(json.dumps(older).replace("turtlesim/", "turtlesim_msgs/")) == newer
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_message_arrives_as_it_was_sent(peer: Peer, interfaces: Interfaces, name: str) -> None:
+def test_message_arrives_as_it_was_sent(peer, interfaces, name):
     kind = getattr(interfaces.msg, name)
     message = kind(**MESSAGES[name])
     received: Future = Future()
@@ -149,7 +148,7 @@ def test_message_arrives_as_it_was_sent(peer: Peer, interfaces: Interfaces, name
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_service_is_called_and_answers(peer: Peer, interfaces: Interfaces, name: str) -> None:
+def test_service_is_called_and_answers(peer, interfaces, name):
     kind = getattr(interfaces.srv, name)
     asked, answered = CALLS[name]
     request_, response = kind.Request(**asked), kind.Response(**answered)
@@ -166,7 +165,7 @@ def test_service_is_called_and_answers(peer: Peer, interfaces: Interfaces, name:
     assert requests == [request_]
 
 
-def test_action_gives_feedback_and_a_result(peer: Peer, interfaces: Interfaces) -> None:
+def test_action_gives_feedback_and_a_result(peer, interfaces):
     kind = interfaces.action.RotateAbsolute
 
     def execute(goal: Any) -> Any:
@@ -188,7 +187,7 @@ def test_action_gives_feedback_and_a_result(peer: Peer, interfaces: Interfaces) 
     assert peer.wait_for(feedback) == kind.Feedback(remaining=1.5)
 
 
-def test_a_node_describes_the_type_to_others(peer: Peer, interfaces: Interfaces) -> None:
+def test_a_node_describes_the_type_to_others(peer, interfaces):
     package = interfaces.package
     peer.node.create_publisher(interfaces.msg.Pose, "described", 7)
     client = peer.node.create_client(GetTypeDescription, "/peer/get_type_description")

@@ -5,7 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -81,7 +81,7 @@ def copy_environment(folder: Path, *left_out: str) -> Path:
 
 
 @pytest.fixture
-def shell() -> Iterator[Environment]:
+def shell():
     """A user's environment: not that of this Python, and on no one else's ROS graph."""
     env = dict(os.environ)
     if env.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None):
@@ -91,7 +91,7 @@ def shell() -> Iterator[Environment]:
 
 
 @pytest.fixture
-def checkout(tmp_path: Path) -> Path:
+def checkout(tmp_path):
     """A copy of the sources: a build writes beside them."""
     copy = tmp_path / "checkout"
     copy.mkdir()
@@ -105,7 +105,7 @@ def checkout(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def ros2_run(monkeypatch: pytest.MonkeyPatch) -> FindProgram:
+def ros2_run(monkeypatch):
     """Find a program as `ros2 run PACKAGE PROGRAM` does, which is not on PyPI."""
 
     def find(package: str, program: str, env: Environment) -> Path:
@@ -119,7 +119,7 @@ def ros2_run(monkeypatch: pytest.MonkeyPatch) -> FindProgram:
 
 
 @pytest.fixture
-def run_until_started() -> RunNode:
+def run_until_started():
     """Start the simulator, stop it as Ctrl-C does once it is there, and return what it said.
 
     Another node is there when it has said its `sign`.

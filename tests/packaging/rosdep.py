@@ -1,7 +1,5 @@
 """What of the packages that are not ROS's rosdep brings, and a Python that has only those."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from .conftest import ROOT, Environment, FindProgram, RunNode
+from .conftest import ROOT, Environment
 from .rosdep import KEYS, hide_all_but
 
 pytestmark = pytest.mark.more("builds with colcon, in three ways")
@@ -29,9 +29,7 @@ class Workspace:
 
 
 @pytest.fixture(params=["", "--merge-install", "--symlink-install"], scope="module")
-def workspace(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Workspace:
+def workspace(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("workspace")
     colcon = shutil.which("colcon", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
     assert colcon, "colcon is one of the `test` requirements"
@@ -69,9 +67,7 @@ def sourced(script: Path) -> Environment:
     return dict(line.split("=", 1) for line in lines.stdout.split("\0") if line)
 
 
-def test_programs_run_from_the_workspace(
-    workspace: Workspace, ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
-) -> None:
+def test_programs_run_from_the_workspace(workspace, ros2_run, run_until_started, shell):
     env = workspace.env | {"ROS_DOMAIN_ID": shell["ROS_DOMAIN_ID"]}
     for package, program in (
         ("turtlesim_challenge", "turtle_controller"),
@@ -85,9 +81,7 @@ def test_programs_run_from_the_workspace(
     )
 
 
-def test_the_grader_starts_with_what_rosdep_gets_from_apt(
-    workspace: Workspace, ros2_run: FindProgram, tmp_path: Path
-) -> None:
+def test_the_grader_starts_with_what_rosdep_gets_from_apt(workspace, ros2_run, tmp_path):
     program = ros2_run("grader", "grader", workspace.env)
     apt = [name for name, key in KEYS.items() if not key.endswith("-pip")]
     hiding = str(hide_all_but(tmp_path / "hiding", apt))
@@ -101,7 +95,7 @@ def test_the_grader_starts_with_what_rosdep_gets_from_apt(
     assert (tmp_path / "my_solution" / "package.xml").exists()
 
 
-def test_python_imports_from_the_workspace(workspace: Workspace) -> None:
+def test_python_imports_from_the_workspace(workspace):
     code = "import turtlesim_py, turtlesim; print(turtlesim_py.__file__, turtlesim.__file__)"
     files = subprocess.run(
         [sys.executable, "-P", "-c", code], env=workspace.env, capture_output=True, text=True
@@ -111,7 +105,7 @@ def test_python_imports_from_the_workspace(workspace: Workspace) -> None:
     assert not interfaces.is_relative_to(workspace.install.parent)
 
 
-def test_the_tf2_of_ros_is_not_hidden(workspace: Workspace) -> None:
+def test_the_tf2_of_ros_is_not_hidden(workspace):
     """Neither by what is installed, nor by a checkout that stands on Python's path."""
     ours = {"tf2_py", "tf2_ros", "tf2_msgs"}
     assert [path for path in workspace.installed if not ours.isdisjoint(path.parts)] == []
@@ -123,14 +117,14 @@ def test_the_tf2_of_ros_is_not_hidden(workspace: Workspace) -> None:
     assert f"{ROOT}/tf2/" not in found.stdout
 
 
-def test_launch_file_is_where_ros2_launch_looks(workspace: Workspace) -> None:
+def test_launch_file_is_where_ros2_launch_looks(workspace):
     folders = {path.parent for path in workspace.installed if path.parent.name == "launch"}
     shared = [folder for folder in folders if folder.parents[1].name == "share"]
     names = [path.name for path in workspace.installed if path.parent in shared]
     assert sorted(names) == ["multisim.launch.py", "turtlesim_challenge.launch.py"]
 
 
-def test_nothing_of_ros_is_built_or_required(workspace: Workspace) -> None:
+def test_nothing_of_ros_is_built_or_required(workspace):
     assert [path for path in workspace.installed if path.suffix in (".so", ".pth")] == []
     requirements = [path for path in workspace.installed if path.name == "requires.txt"]
     # an --symlink-install leaves them in the build folder

@@ -1,7 +1,5 @@
 """What a recording setup() says is installed is what `colcon build` installs."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

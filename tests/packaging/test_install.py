@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from .conftest import ROOT, Environment, FindProgram, RunNode
+from .conftest import ROOT
 
 PROGRAMS = [
     ("turtlesim_py", "turtlesim_node"),
@@ -25,31 +25,25 @@ TUTORIALS = ["turtlesim_node", "turtle_teleop_key", "draw_square", "mimic"]
 
 
 @pytest.fixture
-def shell(shell: Environment) -> Environment:
+def shell(shell):
     others = shell.get("AMENT_PREFIX_PATH", "")
     return shell | {"AMENT_PREFIX_PATH": os.pathsep.join([sys.prefix, others])}
 
 
 @pytest.mark.parametrize(("package", "program"), PROGRAMS)
-def test_ros2_run_finds_each_program(
-    ros2_run: FindProgram, shell: Environment, package: str, program: str
-) -> None:
+def test_ros2_run_finds_each_program(ros2_run, shell, package, program):
     path = ros2_run(package, program, shell)
     assert path.is_relative_to(sys.prefix)
     assert os.access(Path(sys.prefix, "bin", program), os.X_OK)
 
 
-def test_ros2_run_starts_the_simulator(
-    ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
-) -> None:
+def test_ros2_run_starts_the_simulator(ros2_run, run_until_started, shell):
     path = ros2_run("turtlesim_py", "turtlesim_node", shell)
     assert "Starting turtlesim" in run_until_started(path, shell)
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own turtlesim")
-def test_ros2_run_turtlesim_finds_the_programs_of_the_tutorials(
-    ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
-) -> None:
+def test_ros2_run_turtlesim_finds_the_programs_of_the_tutorials(ros2_run, run_until_started, shell):
     found = {program: ros2_run("turtlesim", program, shell) for program in TUTORIALS}
     assert all(path.is_relative_to(sys.prefix) for path in found.values())
     assert "Starting turtlesim" in run_until_started(found["turtlesim_node"], shell)
@@ -57,8 +51,8 @@ def test_ros2_run_turtlesim_finds_the_programs_of_the_tutorials(
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own")
 def test_ros2_run_finds_the_nodes_of_robots_by_the_names_of_ros_s_packages(
-    ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
-) -> None:
+    ros2_run, run_until_started, shell
+):
     for name in ("robot_state_publisher", "joint_state_publisher"):
         assert ros2_run(name, name, shell).is_relative_to(sys.prefix)
     node = ros2_run("joint_state_publisher", "joint_state_publisher", shell)
@@ -66,7 +60,7 @@ def test_ros2_run_finds_the_nodes_of_robots_by_the_names_of_ros_s_packages(
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own turtlesim")
-def test_ros2_launch_turtlesim_finds_multisim() -> None:
+def test_ros2_launch_turtlesim_finds_multisim():
     """PyPI has no launch; what the file would start is tested in test_multisim."""
     ours, theirs = (
         Path(sys.prefix, "share", package, "launch", "multisim.launch.py")
@@ -75,7 +69,7 @@ def test_ros2_launch_turtlesim_finds_multisim() -> None:
     assert ours.read_bytes() == theirs.read_bytes()
 
 
-def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment) -> None:
+def test_programs_get_their_arguments(ros2_run, shell):
     path = ros2_run("grader", "grader", shell)
     help_ = subprocess.run([path, "run", "--help"], env=shell, capture_output=True, text=True)
     assert help_.returncode == 0, help_.stderr
@@ -85,14 +79,14 @@ def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment)
 @pytest.mark.parametrize(
     "package", ["turtlesim_py", "turtlesim_challenge", "grader", "grader_robots", "robot_py"]
 )
-def test_each_package_has_a_manifest_with_its_name_and_version(package: str) -> None:
+def test_each_package_has_a_manifest_with_its_name_and_version(package):
     manifest = Path(sys.prefix, "share", package, "package.xml").read_text()
     assert f"<name>{package}</name>" in manifest
     assert f"<version>{version('turtlesim_py')}</version>" in manifest
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own tf2")
-def test_a_tf2_is_installed_module_by_module() -> None:
+def test_a_tf2_is_installed_module_by_module():
     for package in ("tf2_py", "tf2_ros"):
         ours = {path.name for path in (ROOT / "tf2" / package).glob("*.py")}
         installed = Path(sysconfig.get_path("purelib"), package)
@@ -102,7 +96,7 @@ def test_a_tf2_is_installed_module_by_module() -> None:
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")
-def test_python_finds_installed_packages_without_any_setup(shell: Environment) -> None:
+def test_python_finds_installed_packages_without_any_setup(shell):
     code = "from ament_index_python import get_package_prefix as g; print(g('turtlesim'))"
     env = {name: value for name, value in shell.items() if name != "AMENT_PREFIX_PATH"}
     prefix = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
@@ -110,7 +104,7 @@ def test_python_finds_installed_packages_without_any_setup(shell: Environment) -
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")
-def test_a_sourced_workspace_goes_before_the_environment(shell: Environment) -> None:
+def test_a_sourced_workspace_goes_before_the_environment(shell):
     code = "import os; print(os.environ['AMENT_PREFIX_PATH'])"
     env = shell | {"AMENT_PREFIX_PATH": "/workspace/install"}
     path = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
@@ -158,9 +152,7 @@ print("looked at", len(files), "compiled", [
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="the packages of apt are apt's to compile")
-def test_a_confined_run_compiles_no_module_of_the_environment(
-    shell: Environment, tmp_path: Path
-) -> None:
+def test_a_confined_run_compiles_no_module_of_the_environment(shell, tmp_path):
     (tmp_path / "probe.py").write_text(PROBE)
     grader = Path(sys.prefix, "bin", "grader")
     env = {name: value for name, value in shell.items() if name != "PYTHONPATH"}

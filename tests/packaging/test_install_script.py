@@ -72,7 +72,7 @@ class Install:
 
 
 @pytest.fixture
-def install(checkout: Path) -> Install:
+def install(checkout):
     """Without uv, wherever the tests run."""
     install = Install(checkout)
     install.commands.add("uv", "exit 127")
@@ -89,16 +89,14 @@ def packages(calls: list[str]) -> list[str]:
     ]
 
 
-def test_the_project_goes_in_after_what_it_needs_and_then_byte_code_is_made(
-    install: Install,
-) -> None:
+def test_the_project_goes_in_after_what_it_needs_and_then_byte_code_is_made(install):
     calls = install.calls()
     assert packages(calls) == ["pip needs", ALL]
     assert all("--no-compile" in call for call in calls if " install " in call)
     assert calls[-1].startswith("-m compileall")
 
 
-def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install: Install) -> None:
+def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install):
     install.calls()
     (install.folder / "tf2" / "tf2_ros" / "buffer.py").touch()
     assert install.calls() == []
@@ -106,20 +104,20 @@ def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install: I
     assert packages(install.calls()) == [JAZZY]
 
 
-def test_another_release_of_ros_is_chosen_by_its_name(install: Install) -> None:
+def test_another_release_of_ros_is_chosen_by_its_name(install):
     (install.folder / ".venv").rename(install.folder / ".venv-kilted")
     install.env["ROS"] = "kilted"
     assert packages(install.calls()) == ["pip needs", "pip . ./interfaces/kilted"]
 
 
 @pytest.mark.parametrize("target", ["install", "tools"])
-def test_with_nothing_to_do_nothing_is_done(install: Install, target: str) -> None:
+def test_with_nothing_to_do_nothing_is_done(install, target):
     install.calls(target)
     assert install.calls(target) == []
 
 
 @pytest.mark.parametrize("change", ["changed", "added", "deleted", "renamed"])
-def test_a_file_that_is_not_as_it_was_is_noticed(install: Install, change: str) -> None:
+def test_a_file_that_is_not_as_it_was_is_noticed(install, change):
     install.calls()
     path = install.folder / "grader" / "errors.py"
     if change == "changed":
@@ -135,19 +133,19 @@ def test_a_file_that_is_not_as_it_was_is_noticed(install: Install, change: str) 
     assert packages(install.calls()) == ["pip ."]
 
 
-def test_what_failed_is_tried_again(install: Install) -> None:
+def test_what_failed_is_tried_again(install):
     install.complaint("ERROR: no space left")
     (install.folder / "says").unlink()
     assert packages(install.calls()) == ["pip needs", ALL]
 
 
-def test_only_tests_and_linters_get_what_they_need_besides(install: Install) -> None:
+def test_only_tests_and_linters_get_what_they_need_besides(install):
     install.calls()
     assert packages(install.calls("tools")) == ["pip needs"]
     assert install.calls("install") == []
 
 
-def test_what_the_tests_need_holds_all_that_the_project_needs() -> None:
+def test_what_the_tests_need_holds_all_that_the_project_needs():
     """So pip changes nothing of it for their sake."""
     few, all_ = (
         subprocess.run(
@@ -162,27 +160,25 @@ def test_what_the_tests_need_holds_all_that_the_project_needs() -> None:
     assert not [line for line in few if line.startswith(("pytest", "mypy", "ruff", "playwright"))]
 
 
-def test_uv_is_used_where_it_is(install: Install) -> None:
+def test_uv_is_used_where_it_is(install):
     install.commands.add("uv", UV)
     assert packages(install.calls()) == ["uv needs", ALL.replace("pip", "uv")]
 
 
-def test_who_wants_pip_beside_uv_gets_it(install: Install) -> None:
+def test_who_wants_pip_beside_uv_gets_it(install):
     install.commands.add("uv", UV)
     install.env["UV"] = ""
     assert packages(install.calls()) == ["pip needs", ALL]
 
 
-def test_beside_a_sourced_ros_uv_is_not_used(install: Install) -> None:
+def test_beside_a_sourced_ros_uv_is_not_used(install):
     install.commands.add("uv", UV)
     install.made_for("jazzy")
     install.env["ROS_DISTRO"] = "jazzy"
     assert packages(install.calls()) == ["pip needs", "pip ."]
 
 
-def test_without_a_compiler_definitions_are_installed_and_the_last_lines_say_so(
-    install: Install,
-) -> None:
+def test_without_a_compiler_definitions_are_installed_and_the_last_lines_say_so(install):
     (install.folder / "lacking").write_text("missing: cc (sudo apt install cc)\n")
     lines = [line for line in install.run().stdout.splitlines() if line.startswith("== ")]
     assert install.compiles() == ""
@@ -195,7 +191,7 @@ def test_without_a_compiler_definitions_are_installed_and_the_last_lines_say_so(
     assert install.calls() == []
 
 
-def test_without_need_nothing_is_compiled_and_nothing_that_was_is_lost(install: Install) -> None:
+def test_without_need_nothing_is_compiled_and_nothing_that_was_is_lost(install):
     asked = dict(install.env)
     install.env |= {"COMPILE": ""}
     assert COMPILER not in install.calls()
@@ -210,7 +206,7 @@ def test_without_need_nothing_is_compiled_and_nothing_that_was_is_lost(install: 
     assert install.compiles() == "yes"
 
 
-def test_what_a_build_refuses_is_said_in_one_line(install: Install) -> None:
+def test_what_a_build_refuses_is_said_in_one_line(install):
     said = "╰─> [1 lines of output]\n      Cannot install: ROS 2\nerror: subprocess-exited"
     assert install.complaint(said) == ["Cannot install: ROS 2"]
 
@@ -222,12 +218,12 @@ def test_what_a_build_refuses_is_said_in_one_line(install: Install) -> None:
         "ERROR: Could not install packages due to an OSError: ProxyError('Cannot connect')",
     ],
 )
-def test_a_network_that_fails_is_said_in_one_line(install: Install, said: str) -> None:
+def test_a_network_that_fails_is_said_in_one_line(install, said):
     (line,) = install.complaint(said)
     assert line.startswith("Cannot install: pip does not reach the package index")
 
 
-def test_where_uv_has_no_network_pip_may_know_a_way(install: Install) -> None:
+def test_where_uv_has_no_network_pip_may_know_a_way(install):
     install.commands.add("uv", UV)
     first, second = install.complaint(
         "error: Request failed after 3 retries in 5.5s\n"

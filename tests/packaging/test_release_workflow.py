@@ -1,7 +1,5 @@
 """.github/workflows/release.yml, as far as it can be seen without GitHub."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 
@@ -15,9 +13,7 @@ FILE = ROOT / ".github" / "workflows" / "release.yml"
 JOBS = yaml.safe_load(FILE.read_text(encoding="utf-8"))["jobs"]
 
 
-def test_only_the_job_that_publishes_gets_a_token_of_the_index_and_it_runs_nothing_of_ours() -> (
-    None
-):
+def test_only_the_job_that_publishes_gets_a_token_of_the_index_and_it_runs_nothing_of_ours():
     trusted = {name for name, job in JOBS.items() if "id-token" in job["permissions"]}
     assert trusted == {"publish"}
     assert [step["uses"].partition("@")[0] for step in JOBS["publish"]["steps"]] == [
@@ -30,14 +26,14 @@ def test_only_the_job_that_publishes_gets_a_token_of_the_index_and_it_runs_nothi
     assert "dist/pypi/ " in (ROOT / "scripts" / "release.sh").read_text(encoding="utf-8")
 
 
-def test_actions_are_pinned_to_commits() -> None:
+def test_actions_are_pinned_to_commits():
     used = [step["uses"] for job in JOBS.values() for step in job["steps"] if "uses" in step]
     assert used
     assert [each for each in used if not re.search(r"@[0-9a-f]{40}$", each)] == []
 
 
 @needs("shellcheck")
-def test_the_scripts_are_good_shell() -> None:
+def test_the_scripts_are_good_shell():
     scripts = sorted((ROOT / "scripts").glob("*.sh"))
     check = subprocess.run(["shellcheck", *scripts], capture_output=True, text=True)
     assert check.returncode == 0, check.stdout

@@ -83,7 +83,7 @@ class Shell:
 
 
 @pytest.fixture(scope="module")
-def shell(tmp_path_factory: pytest.TempPathFactory) -> Shell:
+def shell(tmp_path_factory):
     """What rosdep gets from apt."""
     folder = tmp_path_factory.mktemp("rosdep")
     names = [name for name, key in KEYS.items() if not key.startswith("lib")]
@@ -91,7 +91,7 @@ def shell(tmp_path_factory: pytest.TempPathFactory) -> Shell:
 
 
 @pytest.fixture(scope="module")
-def graded(shell: Shell) -> Path:
+def graded(shell):
     """The folder of a graded run of the reference controller."""
     controller = ROOT / "turtlesim_challenge" / "turtle_controller.py"
     (shell.folder / "one_run.yaml").write_text(ONE_RUN)

@@ -1,13 +1,10 @@
 """An environment in which nothing was compiled grades as one with compiled interfaces does."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +28,7 @@ REFERENCES = {
 
 
 @pytest.fixture(scope="module")
-def environment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+def environment(tmp_path_factory):
     """A copy of this one, but for what is compiled of ours."""
     folder = tmp_path_factory.mktemp("uncompiled")
     place = copy_environment(folder)
@@ -58,9 +55,7 @@ def run(prefix: Path, *words: str | Path, env: Environment) -> subprocess.Comple
 
 
 @pytest.mark.parametrize("exercise", REFERENCES)
-def test_a_grading_is_the_same(
-    environment: Path, shell: Environment, tmp_path: Path, exercise: str
-) -> None:
+def test_a_grading_is_the_same(environment, shell, tmp_path, exercise):
     def graded(prefix: Path) -> dict[str, Any]:
         out = tmp_path / prefix.name
         words = (REFERENCES[exercise], "--exercise", exercise, "--out", out)
@@ -79,9 +74,7 @@ def test_a_grading_is_the_same(
     assert made == compiled
 
 
-def test_what_needs_compiled_ones_says_so_in_one_line(
-    environment: Path, shell: Environment
-) -> None:
+def test_what_needs_compiled_ones_says_so_in_one_line(environment, shell):
     sentence = "turtlesim's interfaces are installed as definitions only"
     start = "import sys; from turtlesim_py import commands; sys.exit(commands.turtlesim_node())"
     node = subprocess.run(

@@ -73,12 +73,12 @@ def wheel_names(checkout: Path, env: Environment) -> list[str]:
 
 
 @pytest.fixture
-def ros_sourced(shell: Environment) -> Environment:
+def ros_sourced(shell):
     return shell | {"ROS_DISTRO": "jazzy"}
 
 
 @pytest.fixture
-def none_sourced(shell: Environment) -> Environment:
+def none_sourced(shell):
     return {name: value for name, value in shell.items() if name != "ROS_DISTRO"}
 
 
@@ -90,8 +90,8 @@ def none_sourced(shell: Environment) -> Environment:
     ],
 )
 def test_what_an_extra_brings_is_of_one_release_of_ros(
-    checkout: Path, none_sourced: Environment, ros: str, rclpy: str, generator: str
-) -> None:
+    checkout, none_sourced, ros, rclpy, generator
+):
     asked = requirements(checkout / "interfaces" / ros, none_sourced)
     assert rclpy in asked["run"]
     assert generator in asked["build"]
@@ -100,8 +100,8 @@ def test_what_an_extra_brings_is_of_one_release_of_ros(
 
 
 def test_the_project_asks_for_nothing_of_ros_and_for_the_same_everywhere(
-    checkout: Path, ros_sourced: Environment, none_sourced: Environment
-) -> None:
+    checkout, ros_sourced, none_sourced
+):
     asked = requirements(checkout, none_sourced)
     assert requirements(checkout, ros_sourced | {"ROS": "kilted"}) == asked
     assert asked["build"] == []
@@ -112,16 +112,14 @@ def test_the_project_asks_for_nothing_of_ros_and_for_the_same_everywhere(
         assert f'turtlesim-py-{release}=={version}; extra == "{release}"' in asked["run"]
 
 
-def test_where_ros_is_sourced_a_second_one_is_refused_in_one_line(
-    checkout: Path, ros_sourced: Environment
-) -> None:
+def test_where_ros_is_sourced_a_second_one_is_refused_in_one_line(checkout, ros_sourced):
     line = refusal(checkout / "interfaces" / "jazzy", ros_sourced)
     assert line.startswith("Cannot install: ROS 2 jazzy is sourced")
 
 
 def test_every_file_of_the_packages_is_in_the_wheel_and_nothing_that_ros_has(
-    checkout: Path, none_sourced: Environment
-) -> None:
+    checkout, none_sourced
+):
     packages = ("turtlesim_py", "turtlesim_challenge", "robot_py", "grader", "grader_robots")
     files = {
         path.relative_to(checkout).as_posix()
@@ -160,8 +158,8 @@ print([name for name in sys.argv[2:] if find_spec(name)], uncompiled.packages())
 
 
 def test_where_ros_is_sourced_nothing_of_ours_stands_for_a_package_of_ros(
-    checkout: Path, ros_sourced: Environment, tmp_path: Path
-) -> None:
+    checkout, ros_sourced, tmp_path
+):
     """As far as Python finds it: this environment's packages and ROS's are out of sight."""
     name = call_hook(checkout, ros_sourced, "build_wheel", checkout.parent)
     with zipfile.ZipFile(checkout.parent / name) as wheel:
@@ -183,9 +181,7 @@ def test_where_ros_is_sourced_nothing_of_ours_stands_for_a_package_of_ros(
     assert call.stdout == "[] []\n", call.stderr
 
 
-def test_a_deleted_module_is_not_in_the_next_wheel(
-    checkout: Path, ros_sourced: Environment
-) -> None:
+def test_a_deleted_module_is_not_in_the_next_wheel(checkout, ros_sourced):
     module = checkout / "grader" / "deleted_later.py"
     module.touch()
     assert "grader/deleted_later.py" in wheel_names(checkout, ros_sourced)
@@ -193,7 +189,7 @@ def test_a_deleted_module_is_not_in_the_next_wheel(
     assert "grader/deleted_later.py" not in wheel_names(checkout, ros_sourced)
 
 
-def test_every_program_is_where_ros2_run_looks(checkout: Path, ros_sourced: Environment) -> None:
+def test_every_program_is_where_ros2_run_looks(checkout, ros_sourced):
     scripts = PYPROJECT["project"]["scripts"]
     expected = {f"lib/{re.split('[.:]', function)[0]}/{name}" for name, function in scripts.items()}
     name = call_hook(checkout, ros_sourced, "build_wheel", checkout.parent)
@@ -208,7 +204,7 @@ def test_every_program_is_where_ros2_run_looks(checkout: Path, ros_sourced: Envi
     assert {entry.external_attr >> 16 & 0o777 for entry in found.values()} == {0o755}
 
 
-def test_all_packages_have_one_version() -> None:
+def test_all_packages_have_one_version():
     versions = {
         path: ElementTree.parse(ROOT / path).findtext("version")
         for path in (
@@ -226,18 +222,18 @@ def test_all_packages_have_one_version() -> None:
 
 
 @pytest.fixture
-def no_compiler(shell: Environment) -> Environment:
+def no_compiler(shell):
     """Nothing on the path, and the variables that name compilers lead nowhere."""
     shell.pop("ROS_DISTRO", None)
     return shell | {"PATH": "/nonexistent", "CC": "/nonexistent/gcc", "CXX": "/nonexistent/g++"}
 
 
-def test_the_project_needs_no_compiler(checkout: Path, no_compiler: Environment) -> None:
+def test_the_project_needs_no_compiler(checkout, no_compiler):
     assert call_hook(checkout, no_compiler, "build_wheel", checkout.parent).endswith("-any.whl")
 
 
 @pytest.fixture(params=["no_compiler", "none_wanted"])
-def uncompiled(request: pytest.FixtureRequest, shell: Environment) -> Environment:
+def uncompiled(request, shell):
     """An environment that compiles nothing."""
     if request.param == "no_compiler":
         return request.getfixturevalue("no_compiler")
@@ -245,9 +241,7 @@ def uncompiled(request: pytest.FixtureRequest, shell: Environment) -> Environmen
     return shell | {"COMPILE": ""}
 
 
-def test_interfaces_that_are_not_compiled_are_installed_as_their_definitions(
-    checkout: Path, uncompiled: Environment
-) -> None:
+def test_interfaces_that_are_not_compiled_are_installed_as_their_definitions(checkout, uncompiled):
     folder = checkout / "interfaces" / "jazzy"
     assert call_hook(folder, uncompiled, "get_requires_for_build_wheel") == []
     wheel = call_hook(folder, uncompiled, "build_wheel", checkout.parent)
@@ -266,7 +260,7 @@ def test_interfaces_that_are_not_compiled_are_installed_as_their_definitions(
     assert modules == {"tf2_py", "tf2_ros", "turtlesim_py_ament_prefix.pth"}
 
 
-def test_each_ros_has_a_build_folder_of_its_own(checkout: Path, none_sourced: Environment) -> None:
+def test_each_ros_has_a_build_folder_of_its_own(checkout, none_sourced):
     code = (
         "import runpy, setuptools; "
         "setuptools.setup = lambda options, **_: print(options['build']['build_base']); "

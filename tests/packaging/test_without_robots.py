@@ -3,19 +3,15 @@
 A copy of the checkout lacks the folder, a copy of the environment its entry points.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
-from .conftest import ROOT, Environment, copy_environment
+from .conftest import ROOT, copy_environment
 
 #: With EXAMPLES=1000, `make test-all`: everything; else what is soon over.
 IS_WHOLE = int(os.environ.get("EXAMPLES") or 0) >= 1000
@@ -31,7 +27,7 @@ LEFT_OUT = shutil.ignore_patterns(
 
 
 @pytest.fixture
-def environment(tmp_path: Path) -> Iterator[Path]:
+def environment(tmp_path):
     """This environment, but that nothing in it says that there is grader_robots."""
     place = copy_environment(tmp_path, "grader_robots", "__pycache__")
     (points,) = place.glob("lib/python*/site-packages/turtlesim_py-*.dist-info/entry_points.txt")
@@ -44,7 +40,7 @@ def environment(tmp_path: Path) -> Iterator[Path]:
 
 @pytest.mark.more("runs tests again, in a copy of the checkout")
 @pytest.mark.timeout(7200)
-def test_the_core_does_without_robots(environment: Path, tmp_path: Path, shell: Environment):
+def test_the_core_does_without_robots(environment, tmp_path, shell):
     checkout = tmp_path / "checkout"
     shutil.copytree(ROOT, checkout, ignore=LEFT_OUT, symlinks=True)
     tests = ["tests/test_imports.py", "tests/grader"] if IS_WHOLE else SOON_OVER

@@ -1,7 +1,5 @@
 """The two nodes over DDS, each test with its own: how they begin, meet, and end."""
 
-from __future__ import annotations
-
 import json
 import signal
 import subprocess
@@ -31,7 +29,7 @@ SECOND = 1_000_000_000
 
 
 @pytest.fixture
-def walker(tmp_path) -> list[str]:
+def walker(tmp_path):
     """The arguments that describe it to a node."""
     return described(tmp_path, WALKER)
 

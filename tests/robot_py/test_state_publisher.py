@@ -1,8 +1,5 @@
 """What a state publisher does while it runs: one for all tests, which leave it as it was."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -12,8 +9,6 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from tests.graph import Graph
-from tests.programs import Program
 from tests.robot_py.test_nodes import (
     LATCHED,
     SECOND,
@@ -31,7 +26,7 @@ BEST_EFFORT = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 @pytest.fixture(scope="module")
-def walking(session_graph: Graph, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Program]:
+def walking(session_graph, tmp_path_factory):
     """A state publisher of its, for tests that leave it as it was."""
     with state_publisher(*described(tmp_path_factory.mktemp("walking"), WALKER)) as program:
         session_graph.meet("robot_state_publisher")

@@ -1,7 +1,5 @@
 """Beginners' mistakes, made in right controllers, are named in the first line, at their line."""
 
-from __future__ import annotations
-
 import random
 import shutil
 import tempfile

@@ -1,7 +1,5 @@
 """A robot as the tutorials write one: sends transforms until it is stopped."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 
 import rclpy

@@ -1,7 +1,5 @@
 """What is between two samples, and along random trees: against formulas of another kind."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 They are those of geometry2 0.36, Jazzy's. Where ROS is sourced this looks at ROS's own tf2_py.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -29,7 +27,7 @@ LATEST = Time()
 
 
 @pytest.fixture
-def buffer() -> BufferCore:
+def buffer():
     return BufferCore()
 
 
@@ -241,7 +239,7 @@ def test_of_the_two_quaternions_of_a_rotation_one_is_given(buffer, given, found)
 
 
 @pytest.fixture
-def robot(buffer) -> BufferCore:
+def robot(buffer):
     """Map -> odom -> base -> laser (static), and a robot beside it in a tree of its own."""
     give(buffer, *(transform("map", "odom", t, (t, 0, 0)) for t in (1, 2, 3)))
     give(buffer, *(transform("odom", "base", t, (0, t, 0)) for t in (2, 3, 4)))

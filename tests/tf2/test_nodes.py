@@ -3,8 +3,6 @@
 Where ROS is sourced this looks at ROS's own.
 """
 
-from __future__ import annotations
-
 import asyncio
 import importlib
 import os
@@ -46,7 +44,7 @@ def node(ros):
 
 
 @pytest.fixture
-def buffer() -> Buffer:
+def buffer():
     return Buffer()
 
 

@@ -1,7 +1,5 @@
 """Transforms for tests: as messages, and as the 4x4 matrices that they stand for."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

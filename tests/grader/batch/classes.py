@@ -1,7 +1,5 @@
 """A class on the real command line, and what of its folder is the same each time."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os

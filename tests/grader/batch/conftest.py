@@ -1,7 +1,5 @@
 """A small class, and an exercise of its own to judge it by, for whatever grades whole classes."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from functools import partial
@@ -41,7 +39,7 @@ def _make(folder: Path) -> None:
 
 
 @pytest.fixture(scope="session")
-def small_class() -> Class:
+def small_class():
     """Five who have handed in something, and one who has not; nobody changes it."""
     folder = once.folder(_make, "a small class", HANDED_IN, QUICK)
     return Class(folder / "handed_in", folder / "own_square" / "quick.yaml")
@@ -55,7 +53,7 @@ def _grade(small_class: Class, folder: Path) -> None:
 
 
 @pytest.fixture(scope="session")
-def graded(small_class: Class) -> Path:
+def graded(small_class):
     """The same class, graded by a process on this machine; nobody changes it.
 
     `said.txt` beside it has what the call has printed.
@@ -64,13 +62,13 @@ def graded(small_class: Class) -> Path:
 
 
 @pytest.fixture
-def out(graded: Path, tmp_path: Path) -> Path:
+def out(graded, tmp_path):
     """The class, a test's own."""
     return Path(shutil.copytree(graded, tmp_path / "graded" / "class"))
 
 
 @pytest.fixture
-def in_process(monkeypatch: pytest.MonkeyPatch) -> None:
+def in_process(monkeypatch):
     work_here(monkeypatch)
 
 
@@ -88,7 +86,7 @@ def _make_named(small: Class, folder: Path) -> None:
 
 
 @pytest.fixture(scope="session")
-def named(small_class: Class) -> Path:
+def named(small_class):
     """A folder: `handed_in`; graded into `class`, and under pseudonyms into `hidden`, `named`.
 
     `said.txt` has what the calls have printed. Nobody changes it.

@@ -1,7 +1,5 @@
 """What a class hands in, as Moodle exports it: names of students in all places that have some."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from grader.reports.csv import table

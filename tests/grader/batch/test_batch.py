@@ -1,7 +1,5 @@
 """`grader batch` on a small class of real submissions: who is graded, and who is not once more."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -15,7 +13,7 @@ from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
 from grader.run.processes import levels
 from tests.files import lay
-from tests.grader.batch.classes import CONTROLLER, ENV, Class, batch, command, rows
+from tests.grader.batch.classes import CONTROLLER, ENV, batch, command, rows
 from tests.grader.batch.conftest import QUICK
 
 Call = Callable[..., tuple[int, str]]
@@ -41,13 +39,13 @@ def when(out: Path, *ids: str) -> list[int]:
 
 
 @pytest.fixture
-def later(small_class: Class, tmp_path: Path) -> Path:
+def later(small_class, tmp_path):
     """What the class hands in, a test's own."""
     return Path(shutil.copytree(small_class.handed_in, tmp_path / "handed_in"))
 
 
 @pytest.fixture
-def call(small_class: Class, out: Path) -> Call:
+def call(small_class, out):
     """`grader batch` into the graded class; its submissions, or others'."""
 
     def called(*words: str | Path, of: Path = small_class.handed_in) -> tuple[int, str]:

@@ -1,13 +1,10 @@
 """A class on a Dask cluster: what is asked of workers, and whoever dies, each is graded."""
 
-from __future__ import annotations
-
 import gc
 import json
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import ExitStack
 from dataclasses import replace
@@ -116,7 +113,7 @@ class Client:
 
 
 @pytest.fixture
-def terms(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Terms:
+def terms(tmp_path, monkeypatch):
     """Those of a class, for this process as a worker."""
     monkeypatch.setattr("distributed.get_worker", lambda: type("Worker", (), {"address": "box"}))
     monkeypatch.setattr(levels, "here", lambda level: levels.Level(level or "landlock"))
@@ -159,7 +156,7 @@ def test_a_class_has_the_best_level_that_all_workers_offer_or_the_worker_is_name
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Task]]:
+def asked(monkeypatch):
     """What the process of a worker is asked, and does at once, but for the task `broken`."""
     tasks: list[Task] = []
 

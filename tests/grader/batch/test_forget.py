@@ -1,7 +1,5 @@
 """`grader forget`: what only the student has goes, and others keep theirs."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Callable
@@ -22,7 +20,7 @@ Call = Callable[..., int]
 
 
 @pytest.fixture
-def out(named: Path, tmp_path: Path) -> Path:
+def out(named, tmp_path):
     """The class, with changes that a regrade has shown, and hand-ins that were set aside."""
     out = tmp_path / "class"
     shutil.copytree(named / "class", out)
@@ -33,7 +31,7 @@ def out(named: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def call(out: Path, small_class: Class) -> Call:
+def call(out, small_class):
     """Call `grader forget`."""
     common = ["--from", str(out), "--exercise", str(small_class.exercise)]
     return lambda student, *words: main(["forget", student, *common, *words])

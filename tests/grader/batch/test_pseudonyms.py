@@ -1,7 +1,5 @@
 """`grader batch --pseudonyms KEY`: where the grader would name a student stands a pseudonym."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import unicodedata

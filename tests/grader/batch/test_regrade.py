@@ -1,7 +1,5 @@
 """A changed rubric: who changes is told rightly, and nothing is lost when it is put into force."""
 
-from __future__ import annotations
-
 import csv
 import shutil
 from argparse import Namespace
@@ -31,12 +29,12 @@ JUDGED = ("crashes", "leaves", "right", "twin")
 
 
 @pytest.fixture
-def old(small_class) -> str:
+def old(small_class):
     return str(small_class.exercise)
 
 
 @pytest.fixture(scope="module")
-def new(small_class, tmp_path_factory) -> str:
+def new(small_class, tmp_path_factory):
     place = tmp_path_factory.mktemp("new") / "own_square"
     own = Path(shutil.copytree(small_class.exercise.parent, place))
     (own / "changed.yaml").write_text(CHANGED)
@@ -44,7 +42,7 @@ def new(small_class, tmp_path_factory) -> str:
 
 
 @pytest.fixture
-def out(out, in_process) -> Path:
+def out(out, in_process):
     """The class, graded by the old one; right and twin share a run."""
     return out
 

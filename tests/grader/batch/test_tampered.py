@@ -1,7 +1,5 @@
 """The folder of a class that somebody has changed between two calls: what is bad is made anew."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
@@ -88,7 +86,7 @@ NO_RESULT: dict[str, Callable[[dict[str, Any]], object]] = {
 
 
 @pytest.fixture
-def folder(graded: Path, tmp_path: Path) -> Path:
+def folder(graded, tmp_path):
     """A hand-in's folder of the class, a test's own."""
     copy = Path(shutil.copytree(Store(graded).student("right"), tmp_path / "right"))
     assert Entry.read(copy).state == "judged"

@@ -1,7 +1,5 @@
 """Expressions are a fixed part of Python's syntax, and cost no more than they may."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any

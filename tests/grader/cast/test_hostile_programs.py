@@ -1,7 +1,5 @@
 """A program that misuses a cast ends within the limits, earns what it does, and breaks nothing."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

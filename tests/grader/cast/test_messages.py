@@ -1,7 +1,5 @@
 """Messages are made of plain data and back, of every kind of field; what does not fit is told."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any
@@ -57,7 +55,7 @@ ALL: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def types() -> Types:
+def types():
     return Types(TEXTS)
 
 

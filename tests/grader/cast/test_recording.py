@@ -47,7 +47,7 @@ class Heard:
 
 
 @pytest.fixture
-def heard() -> Heard:
+def heard():
     return Heard()
 
 
@@ -158,7 +158,7 @@ def test_events_are_recorded_up_to_a_number(heard, monkeypatch):
 
 
 @pytest.fixture
-def trace(heard: Heard) -> CastTrace:
+def trace(heard):
     """A trace of messages of a program and a peer, some at the same time."""
     heard.recorder.meet([TALKS])
     for heard.now_ns in (0, 5_000_000, 5_000_000, 2_000_000_000):

@@ -1,7 +1,5 @@
 """Each mistake in a cast is told with its place and what is allowed there."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """What was exchanged, hop by hop, as data and in the text of the page that plays it."""
 
-from __future__ import annotations
-
 from grader.cast import timeline
 from grader.cast.trace import CastTrace
 from grader.recording.recording import Recording, Recordings

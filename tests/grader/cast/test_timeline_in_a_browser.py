@@ -1,10 +1,7 @@
 """The timeline in a browser: for everybody, of much, looked back on while a run goes on."""
 
-from __future__ import annotations
-
 import base64
 import re
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +12,6 @@ from grader.cast import timeline
 from grader.cast.pages import TimelinePage, render
 from grader.exercise.loading import load_exercise
 from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
-from grader.recording.recording import Recordings
 from grader.scenes.live import Grading
 from tests import runs
 from tests.barriers import barriers
@@ -50,14 +46,14 @@ HOSTILE_RUN = trace(
 
 
 @pytest.fixture(scope="module")
-def everything() -> Recordings:
+def everything():
     """A run with all that a cast has."""
     exercise = load_exercise(Path(__file__).parent / "everything")
     return runs.recordings("hostile_casts/does_all", exercise)
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory, everything: Recordings) -> Path:
+def folder(tmp_path_factory, everything):
     """The replay of that run, of the hostile one, and of one with much in it."""
     made = tmp_path_factory.mktemp("timeline")
     much = trace(*(text(n / 1000, "/chatter", str(n)) for n in range(10_000)))
@@ -71,13 +67,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory, everything: Recordings) -> 
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
+def browser():
     with open_browser() as opened:
         yield opened
 
 
 @pytest.fixture
-def visit(browser: Any) -> Iterator[Callable[..., Any]]:
+def visit(browser):
     """Opens pages; whatever fails in one, or is fetched from elsewhere, fails the test."""
     pages, errors = [], list[str]()
 
@@ -99,7 +95,7 @@ def visit(browser: Any) -> Iterator[Callable[..., Any]]:
 
 
 @pytest.fixture
-def replay(folder: Path, visit: Callable[..., Any]) -> Any:
+def replay(folder, visit):
     return visit((folder / "replay.html").as_uri())
 
 
@@ -175,7 +171,7 @@ def test_nobody_is_kept_from_using_the_replay(folder, visit, width):
 
 
 @pytest.fixture
-def live() -> Iterator[TimelinePage]:
+def live():
     served = TimelinePage.serve(0)
     yield served
     served.close()

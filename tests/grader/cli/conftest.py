@@ -1,7 +1,5 @@
 """For the verbs: something handed in, and runs that take no time."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """`grader check`: what was recorded is judged again, and keeps its name; its page is made anew."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from dataclasses import replace

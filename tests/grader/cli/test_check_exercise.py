@@ -1,7 +1,5 @@
 """`grader check-exercise`: an exercise in order, with real runs, one to mend, one of no use."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

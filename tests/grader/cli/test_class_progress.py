@@ -1,7 +1,5 @@
 """The progress of a class in a terminal: how much time is left."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`grader course new`: the repository of a course."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

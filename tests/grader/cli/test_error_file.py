@@ -1,7 +1,5 @@
 """`--error-json FILE`: what went wrong as data, and nothing where nothing did."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """What `grader run` does while runs still go: here with runs that take as long as a test says."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -1,7 +1,5 @@
 """What was handed in may lie in the folder for results, and be called anything; nothing follows."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

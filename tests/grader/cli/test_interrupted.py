@@ -1,7 +1,5 @@
 """Ctrl-C while the command is still being imported."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """A verb imports what it uses, and no other verb."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """`grader run --live`: what it asks, what it says, what it leaves as it was."""
 
-from __future__ import annotations
-
 import json
 import os
 import pty

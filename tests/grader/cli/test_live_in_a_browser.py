@@ -1,7 +1,5 @@
 """`grader run --live` in a real browser: a person sees the run, its end, and the verdicts."""
 
-from __future__ import annotations
-
 import json
 import re
 

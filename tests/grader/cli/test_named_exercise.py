@@ -1,7 +1,5 @@
 """The exercise that a hand-in names, whatever its files are called, and what is said of it."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

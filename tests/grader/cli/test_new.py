@@ -1,7 +1,5 @@
 """`grader new`: the starter of the challenge, or of another exercise."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -1,7 +1,5 @@
 """A course's secret gives each student varied runs of his own, and no result shows the seed."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

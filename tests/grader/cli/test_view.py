@@ -1,7 +1,5 @@
 """`grader view`: a page beside the result that plays it, or a line on why there is none."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """`grader run --watch` grades again after every save, and goes on after a mistake."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

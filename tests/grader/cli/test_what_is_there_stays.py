@@ -1,7 +1,5 @@
 """No option that names a file to write costs anybody what stands there."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

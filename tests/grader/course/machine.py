@@ -1,7 +1,5 @@
 """A machine that grades by what `grader course new` writes; a stub may stand for `grader run`."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

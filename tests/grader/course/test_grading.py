@@ -3,8 +3,6 @@
 Most tests use a stub in place of `grader run`.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 

@@ -1,7 +1,5 @@
 """The files of a course: what they say, and that they are what each system asks for."""
 
-from __future__ import annotations
-
 import compileall
 import csv
 import re

@@ -1,7 +1,5 @@
 """Recordings of runs that never were, for one rule each."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Which cause comes first, and what is said where no run shows one."""
 
-from __future__ import annotations
-
 from typing import Literal, get_args, get_origin, get_type_hints
 
 from hypothesis import given

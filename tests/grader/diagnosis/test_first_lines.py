@@ -1,7 +1,5 @@
 """Real submissions with a beginner's mistake: the first line of the report names the cause."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.diagnosis.diagnose import diagnose

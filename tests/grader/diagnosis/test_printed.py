@@ -1,7 +1,5 @@
 """What a node has printed may be made to be hard to read."""
 
-from __future__ import annotations
-
 from tests.limited import printed_by
 
 CODE = """

@@ -1,7 +1,5 @@
 """One recording a cause: a rule names it, with its place, and is silent where nothing is sure."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The first line for a hand-in of several programs: which of them it is, and where."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 
@@ -52,7 +50,7 @@ MISTAKES = {
         "launch/talk.launch.py starts what is not there",
     ),
 )
-def test_it_names_the_program_and_the_line(tmp_path: Path, said: str) -> None:
+def test_it_names_the_program_and_the_line(tmp_path, said):
     file, old, new = MISTAKES[said]
     result = graded(tmp_path, (file, old, new))
     assert result.diagnosis is not None
@@ -61,7 +59,7 @@ def test_it_names_the_program_and_the_line(tmp_path: Path, said: str) -> None:
     assert place is None or place.file == file
 
 
-def test_who_waits_while_others_go_on_has_not_stalled(tmp_path: Path) -> None:
+def test_who_waits_while_others_go_on_has_not_stalled(tmp_path):
     idle = "class MinimalPublisher(Node):\n    def __init__(self):\n"
     idle += '        super().__init__("minimal_publisher")\n'
     idle += '        self.create_subscription(String, "never", print, 10)\n\n\nclass Other(Node):'
@@ -69,7 +67,7 @@ def test_who_waits_while_others_go_on_has_not_stalled(tmp_path: Path) -> None:
     assert [each.outcome for each in result.run.programs] == ["finished"] * 2
 
 
-def test_who_ends_by_itself_is_told(tmp_path: Path) -> None:
+def test_who_ends_by_itself_is_told(tmp_path):
     code = "rclpy.spin_once(MinimalPublisher())"
     result = graded(tmp_path, (TALKER, "rclpy.spin(MinimalPublisher())", code))
     assert "talker-1 ended by itself at 0.5 s" in map(str, result.run.flags)

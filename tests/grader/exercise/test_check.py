@@ -1,7 +1,5 @@
 """How checks become verdicts."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal

@@ -1,7 +1,5 @@
 """Values are compared as numbers, texts, lists and fields."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any
@@ -30,7 +28,7 @@ def said(found: Any, expected: Any, tolerance: float | None = None) -> list[str]
         *(("ab12", re.compile("[0-9]+$")), ({"x": {"y": 1}}, {"x": {"y": 1}})),
     ],
 )
-def test_these_are_equal(values: tuple[Any, ...]) -> None:
+def test_these_are_equal(values):
     assert said(*values) == []
 
 
@@ -55,18 +53,18 @@ def test_these_are_equal(values: tuple[Any, ...]) -> None:
         ("what /[0-9]/ fits", ("ab", re.compile("[0-9]"))),
     ],
 )
-def test_these_differ(words: str, values: tuple[Any, ...]) -> None:
+def test_these_differ(words, values):
     (told,) = said(*values)
     assert words in told
 
 
-def test_a_pattern_fits_no_text_that_takes_long_to_search() -> None:
+def test_a_pattern_fits_no_text_that_takes_long_to_search():
     pattern = re.compile("a")
     assert said("a" * LONGEST_MATCHED, pattern) == []
     assert said("a" * (LONGEST_MATCHED + 1), pattern)
 
 
-def test_a_value_in_a_sentence_is_short_and_holds_nothing_that_a_terminal_obeys() -> None:
+def test_a_value_in_a_sentence_is_short_and_holds_nothing_that_a_terminal_obeys():
     assert len(shown("x" * 2_000_000)) == SHOWN
     assert shown("\x1b[2J\udc80") == "'\\x1b[2J\\udc80'"
     assert shown(1 / 3) == "0.333333"

@@ -1,7 +1,5 @@
 """What a driven path tells of ways that are laid out by hand, and of none at all."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

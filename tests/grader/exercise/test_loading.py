@@ -1,7 +1,5 @@
 """An instructor's edited copy of an exercise is read, and what is wrong in it is named."""
 
-from __future__ import annotations
-
 import pytest
 import yaml
 

@@ -1,7 +1,5 @@
 """Exercises outside the package: in a folder, in an installed package, and bad ones."""
 
-from __future__ import annotations
-
 import os
 import signal
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What exercise.yaml says of who sees what, of late hand-ins, and of each student's own starts."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime, timedelta, timezone
 
 import pytest

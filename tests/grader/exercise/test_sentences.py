@@ -1,7 +1,5 @@
 """The last error is found in what a node has printed."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

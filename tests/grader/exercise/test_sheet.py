@@ -1,7 +1,5 @@
 """The exercise sheet says all that is judged, with the numbers that are in force."""
 
-from __future__ import annotations
-
 import pytest
 import yaml
 

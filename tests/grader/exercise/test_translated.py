@@ -1,7 +1,5 @@
 """An exercise says title, task, checks and tolerances in other languages; slips are told."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

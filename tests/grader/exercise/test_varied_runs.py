@@ -1,7 +1,5 @@
 """How varied runs differ from the nominal one: what an exercise says, and what is drawn."""
 
-from __future__ import annotations
-
 import pytest
 import yaml
 

@@ -1,7 +1,5 @@
 """Every check of ours comes to an end, with a finding, whatever was recorded."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import fields, replace
 

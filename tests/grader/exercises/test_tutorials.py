@@ -1,7 +1,5 @@
 """The tutorials: right solutions in many styles keep every point, mistakes cost what they must."""
 
-from __future__ import annotations
-
 import pytest
 
 import grader

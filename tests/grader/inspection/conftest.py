@@ -1,7 +1,5 @@
 """Each test is a look of its own: what the children of others took is none of its account."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.inspection.examining import steps

@@ -1,7 +1,5 @@
 """What a CMakeLists.txt installs, as far as it can be read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

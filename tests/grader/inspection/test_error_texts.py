@@ -1,7 +1,5 @@
 """What a launch file's error is answered by."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.inspection.error_texts import advice

@@ -1,7 +1,5 @@
 """What a step leaves running is ended, and nothing else."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """A set-up is what setuptools makes of its three files, of which it runs and fetches nothing."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

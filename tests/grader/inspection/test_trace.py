@@ -1,7 +1,5 @@
 """What comes from the process that looks is taken only in the one form that it has."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

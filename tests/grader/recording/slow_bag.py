@@ -3,8 +3,6 @@
 And types and messages as it reads them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path

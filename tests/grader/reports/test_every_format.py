@@ -1,7 +1,5 @@
 """Whatever a submission prints and is called: every format stays readable, and the scores agree."""
 
-from __future__ import annotations
-
 import re
 from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path

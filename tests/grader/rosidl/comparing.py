@@ -1,7 +1,5 @@
 """Compares made classes with those that rosidl_generator_py has written and a compiler built."""
 
-from __future__ import annotations
-
 import array
 import random
 from collections import UserList, UserString

@@ -1,7 +1,5 @@
 """Draws definitions at random, with all that the language has."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Sequence
 from functools import partial

@@ -1,7 +1,5 @@
 """A bag's types have the hashes that ROS publishes, and the texts and messages of rosbags."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
@@ -25,7 +23,7 @@ TEXTS = {name: file.read_text(encoding="utf-8") for name, file in FILES.items()}
 INSTALLED = BagTypes(TEXTS)
 
 
-def test_the_hashes_are_those_that_are_published_with_the_installed_interfaces() -> None:
+def test_the_hashes_are_those_that_are_published_with_the_installed_interfaces():
     assert len(FILES) > 100
     for name, file in FILES.items():
         published = json.loads(file.with_suffix(".json").read_text(encoding="utf-8"))
@@ -35,7 +33,7 @@ def test_the_hashes_are_those_that_are_published_with_the_installed_interfaces()
         assert INSTALLED.type_hash(name) == expected, name
 
 
-def test_the_definitions_are_those_that_rosbags_writes() -> None:
+def test_the_definitions_are_those_that_rosbags_writes():
     jazzy = get_typestore(Stores.ROS2_JAZZY)
     compared = 0
     for name in FILES.keys() & jazzy.fielddefs.keys():
@@ -65,14 +63,14 @@ MESSAGES = {
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_messages_are_read_as_rosbags_reads_them(name: str) -> None:
+def test_messages_are_read_as_rosbags_reads_them(name):
     types = Types({})
     data = serialise(make(types.use(name), MESSAGES[name]))
     theirs = types_of(types.used).deserialize_cdr(data, name)
     assert BagTypes(types.used).values(data, name) == INSTALLED.values(data, name) == plain(theirs)
 
 
-def test_the_language_is_read_without_its_comments_and_defaults() -> None:
+def test_the_language_is_read_without_its_comments_and_defaults():
     types = BagTypes(
         {
             "own/msg/All": "# all\nint8 ONE = 1  # one\nfloat64[<=2] few [1., 2.]\n\tInner[3] in\n",
@@ -99,13 +97,13 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("what", DAMAGED)
-def test_what_is_damaged_is_told_at_once(what: str) -> None:
+def test_what_is_damaged_is_told_at_once(what):
     texts, why = DAMAGED[what]
     with pytest.raises(ValueError, match=why):
         BagTypes(texts).values(MARK + bytes(8), "own/msg/A")
 
 
 @pytest.mark.parametrize("data", [b"", b"\0\0\0\0", MARK, MARK + b"\5\0\0\0abc\0"])
-def test_bytes_that_are_no_message_are_refused(data: bytes) -> None:
+def test_bytes_that_are_no_message_are_refused(data):
     with pytest.raises(ValueError):
         BagTypes({"std_msgs/msg/String": "string data"}).values(data, "std_msgs/msg/String")

@@ -1,9 +1,6 @@
 """Bytes: what they are is compared in test_compiled.py; here, that hostile ones are bounded."""
 
-from __future__ import annotations
-
 import struct
-from typing import Any
 
 import pytest
 from hypothesis import given
@@ -25,7 +22,7 @@ TEXTS = {
 
 
 @pytest.fixture(scope="module")
-def made() -> Any:
+def made():
     interfaces = Definitions(TEXTS)
     assert interfaces.errors == {}
     return lambda name: interfaces.type(f"mine/msg/{name}")

@@ -1,7 +1,5 @@
 """Every class made of an installed definition is as the compiled one; and of 500 drawn ones."""
 
-from __future__ import annotations
-
 import base64
 import json
 import random

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import importlib
 import sys
 from itertools import pairwise
@@ -94,7 +92,7 @@ def test_a_file_is_called_as_its_type(name):
 
 
 @pytest.fixture
-def importable(monkeypatch) -> Any:
+def importable(monkeypatch):
     """Makes definitions importable."""
 
     def importable(texts: dict[str, str]) -> None:

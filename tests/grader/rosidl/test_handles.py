@@ -1,7 +1,5 @@
 """What DDS is shown of a made class; in a run, see `messages/made_classes`."""
 
-from __future__ import annotations
-
 from ctypes import CFUNCTYPE, c_bool, c_void_p, string_at
 from typing import Any
 

@@ -1,8 +1,5 @@
-from __future__ import annotations
-
 import importlib
 import sys
-from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -20,7 +17,7 @@ DEFINITIONS = {
 
 
 @pytest.fixture(autouse=True)
-def environment(monkeypatch, tmp_path) -> Iterator[Path]:
+def environment(monkeypatch, tmp_path):
     """An environment in which these are installed as definitions, and nothing else is."""
     for name, text in DEFINITIONS.items():
         package, kind, own = name.split("/")
@@ -42,7 +39,7 @@ def environment(monkeypatch, tmp_path) -> Iterator[Path]:
 
 
 @pytest.fixture
-def folder(monkeypatch, tmp_path) -> Callable[[str], Path]:
+def folder(monkeypatch, tmp_path):
     """Makes a folder where Python looks for packages."""
     monkeypatch.syspath_prepend(str(tmp_path / "path"))
 

@@ -1,7 +1,5 @@
 """Runs for the tests of this folder: how long each submission is watched, and waited for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 
@@ -36,7 +34,7 @@ Run = Callable[..., Recording]
 
 
 @pytest.fixture(scope="session")
-def recorded() -> Run:
+def recorded():
     """Give the recording of a submission, by its name below tests/submissions; `number`: another.
 
     Made once for all tests, see `tests.runs`.

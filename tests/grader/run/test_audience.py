@@ -1,7 +1,5 @@
 """Who looks on at a run sees all of it, and changes nothing of it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Interfaces compiled for a run in real time: what DDS carries, and who may touch it."""
 
-from __future__ import annotations
-
 import os
 import random
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A busy machine and neighbours slow a run down, but change nothing in it."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Iterator

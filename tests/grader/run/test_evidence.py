@@ -1,12 +1,9 @@
 """What comes from a submission's process is believed by its form, or not at all."""
 
-from __future__ import annotations
-
 import json
 import os
 import random
 import signal
-from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
 from itertools import count
@@ -35,7 +32,7 @@ ACCOUNT = {
 
 
 @pytest.fixture(scope="module")
-def submission(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Submission]:
+def submission(tmp_path_factory):
     folder = tmp_path_factory.mktemp("alice")
     (folder / "a.py").write_text("while True:\n    pass\n")
     with open_submission(folder) as opened:
@@ -140,7 +137,7 @@ def test_of_a_process_that_tells_nonsense_or_nothing_nothing_is_told(submission)
 
 
 @pytest.fixture
-def evidence_page() -> Iterator[EvidencePage]:
+def evidence_page():
     with closing(EvidencePage()) as made:
         yield made
 
@@ -166,7 +163,7 @@ def test_nobody_makes_the_page_longer_or_shorter(evidence_page):
 
 
 @pytest.fixture
-def page() -> Iterator[int]:
+def page():
     made = account.make()
     yield made
     os.close(made)

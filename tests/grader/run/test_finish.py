@@ -1,7 +1,5 @@
 """How a run ended, and the recording that is made of it, once."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from typing import get_args
 

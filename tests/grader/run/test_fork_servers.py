@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -30,13 +29,13 @@ PLAN = Plan(Limits(first_motion_s=0.5, rest_s=0.2, total_s=5))
 
 
 @pytest.fixture(scope="module", autouse=True)
-def ended_afterwards() -> Iterator[None]:
+def ended_afterwards():
     yield
     fork_servers.close()
 
 
 @pytest.fixture
-def fresh() -> Iterator[None]:
+def fresh():
     """No server is there, and none is afterwards."""
     fork_servers.close()
     yield
@@ -44,7 +43,7 @@ def fresh() -> Iterator[None]:
 
 
 @pytest.fixture
-def forgiven() -> Iterator[None]:
+def forgiven():
     """The servers that a test has killed are not there afterwards, and count for nothing."""
     yield
     for side, each in list(fork_servers._servers.items()):

@@ -1,11 +1,8 @@
 """What the simulator's process leaves is fetched whole; anything else is the grader's failure."""
 
-from __future__ import annotations
-
 import json
 import os
 import pickle
-from collections.abc import Iterator
 from pathlib import Path
 from struct import pack
 
@@ -28,17 +25,17 @@ TOPICS = (PublishedTopic("/turtle1/cmd_vel", "geometry_msgs/msg/Twist"), Publish
 
 
 @pytest.fixture(scope="module")
-def trace() -> TurtleTrace:
+def trace():
     return TurtleTrace.of(drive(Spiral(), ticks=50).trace)
 
 
 @pytest.fixture(scope="module")
-def scene() -> Scene:
+def scene():
     return load_scene("turtlesim")
 
 
 @pytest.fixture
-def file() -> Iterator[int]:
+def file():
     """A file without a name, as a run has one."""
     file = os.memfd_create("recording")
     yield file
@@ -46,7 +43,7 @@ def file() -> Iterator[int]:
 
 
 @pytest.fixture
-def left(file, scene, trace) -> bytes:
+def left(file, scene, trace):
     """What lies in the file when it was left."""
     leave(Path(f"/proc/self/fd/{file}"), scene, trace, PUBLISHED)
     return contents(file)

@@ -1,7 +1,5 @@
 """What is sent to the simulator, by ROS or on the link, ends a run at worst, and gains nothing."""
 
-from __future__ import annotations
-
 import os
 import signal
 from dataclasses import replace
@@ -122,7 +120,7 @@ def test_names_are_cut():
 
 
 @pytest.fixture
-def short() -> Any:
+def short():
     return replace(CHALLENGE, limits=LIMITS, varied=replace(CHALLENGE.varied, count=0))
 
 

@@ -1,7 +1,5 @@
 """The kernel's limits of a process: each is struck in a child."""
 
-from __future__ import annotations
-
 import errno
 import mmap
 import os

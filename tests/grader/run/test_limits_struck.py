@@ -1,7 +1,5 @@
 """What a submission takes too much of is refused, or ends it, and the recording says what."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.message import NOTHING, msg

@@ -1,7 +1,5 @@
 """What is told of a submission's process: whole runs, most of them in virtual time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pytest

@@ -1,7 +1,5 @@
 """What is evaluated of a package before it is started can forge nothing but its own facts."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

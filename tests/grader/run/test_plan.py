@@ -1,7 +1,5 @@
 """What is to be run comes to the simulator's process as it was meant."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import fields
 

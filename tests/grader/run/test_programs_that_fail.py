@@ -1,7 +1,5 @@
 """Whatever one of several programs does, wherever: the others go on, and it is the one to blame."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.run import virtual_time

@@ -1,7 +1,5 @@
 """Real time judges as virtual time does."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """What surrounds the two processes of a run, whatever surrounds the grader."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -48,7 +46,7 @@ def recorded(
 
 
 @pytest.fixture
-def unconfined(monkeypatch: pytest.MonkeyPatch) -> None:
+def unconfined(monkeypatch):
     """A level at which a submission reaches more than its own."""
     monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
 

@@ -1,7 +1,5 @@
 """Several programs of a launch file in virtual time, each in a process of its own."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -51,7 +49,7 @@ def said(recording: Recording, name: str) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def conversation() -> Recording:
+def conversation():
     """The programs that talk with each other; they do not drive."""
     still = Plan(Limits(first_motion_s=4, rest_s=4, total_s=4))
     return recorded(LAUNCHED / "conversation", still)

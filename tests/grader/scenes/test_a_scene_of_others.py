@@ -1,7 +1,5 @@
 """A mistake in a scene of somebody else's is that scene's, never the submission's."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess
@@ -144,7 +142,7 @@ NAMES = (*SENTENCES, "ends_its_process", "misnamed", "bright")
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory):
     """Give a folder with a node, the lamp of the page and, for each mistake, an exercise in it."""
     sources = (__file__, ROOT / "tests/docs/test_examples.py", ROOT / "docs/write-a-scene.md")
     made = once.folder(make, [Path(source).read_text(encoding="utf-8") for source in sources])

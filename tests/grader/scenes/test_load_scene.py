@@ -1,7 +1,5 @@
 """A scene is found by its name, and can be judged without ROS."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

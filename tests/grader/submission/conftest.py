@@ -5,8 +5,6 @@ tests/grader_robots/inspection/test_inspecting.py. Modules that need it have an 
 their own.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from grader.inspection import inspector

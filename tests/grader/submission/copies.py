@@ -1,7 +1,5 @@
 """Hand-ins, and what is found in them: in a copy that goes, but told as it was handed in."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Where in the window a condition on the pose is true, as the source shows it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -16,7 +16,7 @@ from tests.grader.submission.test_opening import PACKAGE
 
 
 @pytest.fixture
-def scratch(tmp_path: Path) -> Path:
+def scratch(tmp_path):
     folder = tmp_path / "scratch"
     folder.mkdir()
     return folder

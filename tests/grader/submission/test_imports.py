@@ -1,7 +1,5 @@
 """What a submission imports is read, and told apart: in any case, or only perhaps."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

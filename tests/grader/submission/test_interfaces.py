@@ -1,7 +1,5 @@
 """What a hand-in's definitions are, and how they are compared with its exercise's."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

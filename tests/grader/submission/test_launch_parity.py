@@ -36,7 +36,7 @@ def all_of_it(*folders: str) -> Inspection:
 
 
 @pytest.fixture(autouse=True)
-def inspection(monkeypatch: pytest.MonkeyPatch) -> None:
+def inspection(monkeypatch):
     """All launch files are evaluated once, and not again for each of them."""
     monkeypatch.setattr(inspecting, "inspect", lambda _, folders, *__: (all_of_it(*folders), ()))
 

@@ -1,7 +1,5 @@
 """What a look at a student's source shows, and what it is silent about."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

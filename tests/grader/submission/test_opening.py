@@ -31,7 +31,7 @@ PACKAGE = {
 
 
 @pytest.fixture(autouse=True)
-def inspection() -> None:
+def inspection():
     """Confined, as in a run."""
 
 

@@ -1,7 +1,5 @@
 """Why a call was never reached: from the source, and the lines that have run."""
 
-from __future__ import annotations
-
 import ast
 
 import pytest

@@ -27,7 +27,7 @@ PACKAGE = {"setup.py": SETUP, "spiral/__init__.py": "", "spiral/node.py": NODE}
 
 
 @pytest.fixture
-def home(tmp_path: Path) -> Path:
+def home(tmp_path):
     """Where a teacher keeps what was handed in."""
     folder = tmp_path / "home"
     folder.mkdir()

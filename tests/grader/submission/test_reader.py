@@ -3,8 +3,6 @@
 Each of these has once taken minutes, gigabytes or the grader's process.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import socket
@@ -26,7 +24,7 @@ NODE = "def main():\n    pass\n"
 
 
 @pytest.fixture(autouse=True)
-def inspection() -> None:
+def inspection():
     """Confined, as in a run: here it has to be."""
 
 

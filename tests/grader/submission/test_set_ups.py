@@ -1,7 +1,5 @@
 """What an inspection says of set-up files is held against them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

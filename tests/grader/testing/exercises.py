@@ -1,7 +1,5 @@
 """A small exercise in a folder, for tests of what is made for authors."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """An exercise is tried on its solutions: who catches what, and what is to mend."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """A function drives the real world, and what comes out is a recording as of a run."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.recording.subject import Start

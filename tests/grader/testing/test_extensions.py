@@ -1,7 +1,5 @@
 """Scenes and report formats of others are checked without a run."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import count
 

@@ -1,7 +1,5 @@
 """mutants.yaml is read, and what is wrong in it is named."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.errors import ExerciseError

@@ -1,7 +1,5 @@
 """Packages lose what they should, and the first line names why."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Every check of a robot comes to an end, with a finding, whatever was recorded."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Less never earns more, and one more file never costs points: for each exercise about robots."""
 
-from __future__ import annotations
-
 import math
 import shutil
 import tempfile

@@ -1,7 +1,5 @@
 """The exercise sheet of a package says that nothing of it is started."""
 
-from __future__ import annotations
-
 from grader.exercise.loading import load_exercise
 from tests.grader.exercise.test_sheet import sheet_of
 

@@ -1,7 +1,5 @@
 """Right solutions and mutants may be packages."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.exercise.loading import load_exercise

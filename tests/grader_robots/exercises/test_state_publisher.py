@@ -1,7 +1,5 @@
 """A robot that is moved in this way or that gets the verdict that it deserves; no ROS is needed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """A Thymio loses what it should, and the first line names why."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.exercise.loading import load_exercise

@@ -1,7 +1,5 @@
 """What xacro says comes down to what a student can use."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader_robots.exercises.description_package.robots import xacro_advice, xacro_brief

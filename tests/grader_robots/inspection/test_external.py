@@ -1,7 +1,5 @@
 """What is of other packages is told apart: known, unknown, and ours under a wrong name."""
 
-from __future__ import annotations
-
 from grader.inspection.trace import Include
 from tests.grader_robots.inspection.test_launches import each_launched, launched
 

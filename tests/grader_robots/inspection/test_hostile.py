@@ -1,7 +1,5 @@
 """A package that does what none should: a line says what, and nothing of ours fails."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

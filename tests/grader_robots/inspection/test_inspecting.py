@@ -1,7 +1,5 @@
 """A submission that is looked at: one confined process, the same findings every time."""
 
-from __future__ import annotations
-
 import sys
 import zipfile
 

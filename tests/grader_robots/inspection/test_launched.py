@@ -1,7 +1,5 @@
 """What a launch file would start stands in a table, with the line that says so."""
 
-from __future__ import annotations
-
 from grader.inspection.launched import HEADINGS, tables
 from tests.grader_robots.inspection.test_launches import FILE, traced
 

@@ -1,7 +1,5 @@
 """Launch files are taken as ROS takes them, and what they start is taken down."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterable, Mapping
 from pathlib import Path

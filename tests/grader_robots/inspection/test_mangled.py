@@ -1,7 +1,5 @@
 """Whatever is handed in as a package is looked at and judged: it is nobody's fault but its own."""
 
-from __future__ import annotations
-
 import re
 import tempfile
 from pathlib import Path

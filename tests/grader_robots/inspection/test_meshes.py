@@ -1,7 +1,5 @@
 """A mesh's file becomes a few triangles; what is none, or too much, becomes nothing."""
 
-from __future__ import annotations
-
 import base64
 import io
 from zipfile import ZipFile

@@ -1,7 +1,5 @@
 """Solids, trees, tables and what is expected of curves, as a page has them; all of it escaped."""
 
-from __future__ import annotations
-
 import json
 import re
 

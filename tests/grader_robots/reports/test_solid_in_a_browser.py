@@ -4,8 +4,6 @@ A program in the page plays its reader: it asks for keys, clicks and moments as 
 tells what came of it.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """A robot of two joints, and something that moves it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The robot that a package's launch file hands on is drawn; where there is none, that is said."""
 
-from __future__ import annotations
-
 import base64
 from dataclasses import replace
 

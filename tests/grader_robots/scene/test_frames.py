@@ -1,7 +1,5 @@
 """A listener of tf knows who hangs on whom; what is at odds in it is marked."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """What a run leaves: who said what, from process to process and through a bag."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -15,7 +13,7 @@ from tests.grader_robots.scene.robots import URDF, walks
 
 
 @pytest.fixture(scope="module")
-def walk() -> RobotTrace:
+def walk():
     return drive(walks, 200, URDF)
 
 

@@ -1,7 +1,5 @@
 """The robot is shown where tf says that its links are; what has no place is told."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -24,7 +22,7 @@ TICKS = 400
 
 
 @pytest.fixture(scope="module")
-def walk() -> RobotTrace:
+def walk():
     return drive(walks, TICKS, URDF)
 
 

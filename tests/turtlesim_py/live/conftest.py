@@ -1,7 +1,5 @@
 """A simulator with its page, as a process of its own, and those who look at it."""
 
-from __future__ import annotations
-
 import json
 import re
 from contextlib import ExitStack

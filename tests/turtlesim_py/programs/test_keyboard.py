@@ -1,7 +1,5 @@
 """Keys from a terminal, and the terminal afterwards."""
 
-from __future__ import annotations
-
 import os
 import pty
 import signal

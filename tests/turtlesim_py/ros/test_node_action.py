@@ -1,7 +1,5 @@
 """A real node's action rotate_absolute: every way in which a goal can end."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Exports of course systems, made by hand as their own source code or documentation has them."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from contextlib import ExitStack

@@ -1,7 +1,5 @@
 """Times as people, names of files and course systems write them."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 
 import pytest

@@ -1,7 +1,5 @@
 """Canvas's download of submissions, as its content_zipper.rb names it."""
 
-from __future__ import annotations
-
 from tests.files import lay
 from tests.grader.batch.find.exports import NODE, content, noted, packed
 

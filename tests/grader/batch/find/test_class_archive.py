@@ -1,7 +1,5 @@
 """The archive of a class: what one has put into it harms neither the machine nor the others."""
 
-from __future__ import annotations
-
 import io
 import stat
 import tarfile

@@ -1,7 +1,5 @@
 """Folders of repositories: Classroom 50, GitHub Classroom, clones; nothing in them is read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from tests.files import lay

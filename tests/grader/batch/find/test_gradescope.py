@@ -1,7 +1,5 @@
 """Gradescope's export: folders, and Ruby's YAML beside them."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from pathlib import Path
 

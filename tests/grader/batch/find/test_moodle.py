@@ -1,7 +1,5 @@
 """Moodle's download of all submissions, as its downloader.php names it."""
 
-from __future__ import annotations
-
 from tests.files import lay
 from tests.grader.batch.find.exports import NODE, content, noted, packed
 

@@ -1,7 +1,5 @@
 """Folders that no course system has made: one file or folder a student."""
 
-from __future__ import annotations
-
 import os
 import re
 import unicodedata

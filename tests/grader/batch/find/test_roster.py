@@ -1,7 +1,5 @@
 """Who is in a class: tables as spreadsheets and course systems write them."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from pathlib import Path
 

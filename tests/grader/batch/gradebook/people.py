@@ -1,7 +1,5 @@
 """A class as several course systems know it, with names as they are."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """What Moodle reads in what we write for it."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from dataclasses import replace

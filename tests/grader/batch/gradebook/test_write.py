@@ -1,7 +1,5 @@
 """The files of a gradebook: which there are, that they stay the same, what is said of them."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Classes to be shown, without a run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime

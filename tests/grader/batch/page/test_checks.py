@@ -1,7 +1,5 @@
 """The table of checks: how many passed, the mean, and what is said most often to the others."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """What the class page adds to the colours of all pages can be told apart as well."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import pytest

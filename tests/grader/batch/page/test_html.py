@@ -1,7 +1,5 @@
 """The class page: complete, alone, safe, bounded, and the same for the same class."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import re

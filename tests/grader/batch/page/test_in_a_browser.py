@@ -1,8 +1,5 @@
 """The class page as a browser shows it."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -20,7 +17,7 @@ TOLD = ("Zoë", "Müller", "zoe17", "bob18", "Bob", "Brown", "kim19", "Kim")
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
+def browser():
     with open_browser() as opened:
         yield opened
 

@@ -1,7 +1,5 @@
 """A hand-in as a page may show it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from datetime import UTC, datetime
 

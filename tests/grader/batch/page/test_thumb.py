@@ -1,7 +1,5 @@
 """A run made small: the same bytes each time, bounded, and read back as from a stranger."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -1,7 +1,5 @@
 """Every expectation comes to an end, with a finding, whatever was exchanged."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -119,7 +117,7 @@ messages = st.one_of(
 @pytest.mark.parametrize("name", EXPECTED)
 @settings(max_examples=CASES // 2)
 @given(parts=st.lists(endpoints | events | messages, max_size=12), code=st.none() | st.just(0))
-def test_an_expectation_ends_with_a_finding(name: str, parts: list[Any], code: int | None) -> None:
+def test_an_expectation_ends_with_a_finding(name, parts, code):
     found = judged(EXPECTED[name], *parts, code=code)
     assert found.share in (0, 0.5, 1)
     for sentence in (found.rationale, found.help):

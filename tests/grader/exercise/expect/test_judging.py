@@ -1,7 +1,5 @@
 """What was exchanged is judged: what is right passes, what is not is told, and parts are fair."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
@@ -47,7 +45,7 @@ def fails(
 # Nodes and topics -----------------------------------------------------------------------------
 
 
-def test_a_node_or_topic_that_is_not_there_or_another_is_told_with_what_is() -> None:
+def test_a_node_or_topic_that_is_not_there_or_another_is_told_with_what_is():
     passes({"node": "node"}, TALKS)
     fails("There is no node /talker; there is /node.", {"node": "talker"}, TALKS)
     fails("there is none", {"node": "talker"})
@@ -64,7 +62,7 @@ def test_a_node_or_topic_that_is_not_there_or_another_is_told_with_what_is() -> 
     fails("has the type std_msgs/msg/String, expected std_msgs/msg/Float64", wanted, TALKS, *FIVE)
 
 
-def test_a_topic_needs_messages_after_the_begin() -> None:
+def test_a_topic_needs_messages_after_the_begin():
     passes({"topic": "chatter"}, TALKS, *FIVE)
     fails("0 messages on /chatter came, expected at least 1", {"topic": "chatter"}, TALKS)
     few = {"topic": "chatter", "count": {"at_most": 3}}
@@ -73,7 +71,7 @@ def test_a_topic_needs_messages_after_the_begin() -> None:
     fails("2 messages", late, TALKS, *FIVE)
 
 
-def test_values_may_depend_on_number_time_and_what_was_heard() -> None:
+def test_values_may_depend_on_number_time_and_what_was_heard():
     passes({"topic": "chatter", "values": "Hello {n}"}, TALKS, *FIVE)
     found = fails(
         "Message 0 on /chatter, at 0.50 s: data was 'Hello 0', expected 'Hello 1'.",
@@ -85,7 +83,7 @@ def test_values_may_depend_on_number_time_and_what_was_heard() -> None:
     passes({"topic": "chatter", "values": "/^Hello [0-9]$/"}, TALKS, *FIVE)
 
 
-def test_a_value_may_depend_on_what_was_heard_of_peers() -> None:
+def test_a_value_may_depend_on_what_was_heard_of_peers():
     data = [number(n, "/data", n, node="/peer") for n in range(1, 6)]
     mean = {"topic": "mean", "values": "=mean([each.data for each in heard['/data'][-3:]])"}
     talks = endpoint("topic /mean", "std_msgs/msg/Float64")
@@ -111,15 +109,13 @@ def test_a_value_may_depend_on_what_was_heard_of_peers() -> None:
         ("=heard['/in'][-1].data.x", 1.0),
     ],
 )
-def test_what_a_program_sends_makes_an_expression_fail_and_not_the_grader(
-    values: str, sends: float
-) -> None:
+def test_what_a_program_sends_makes_an_expression_fail_and_not_the_grader(values, sends):
     talks = endpoint("topic /out", "std_msgs/msg/Float64")
     wanted = {"topic": "out", "values": values}
     fails("cannot be told", wanted, talks, number(1, "/in", sends), number(2, "/out", 1))
 
 
-def test_a_text_between_strokes_that_a_program_sends_is_no_pattern() -> None:
+def test_a_text_between_strokes_that_a_program_sends_is_no_pattern():
     wanted = {"topic": "out", "values": "=heard['/in'][-1].data"}
     talks = endpoint("topic /out")
     for sent in ("/.*/", "/(/", "/(a+)+$/"):
@@ -132,7 +128,7 @@ def test_a_text_between_strokes_that_a_program_sends_is_no_pattern() -> None:
 RATE = {"topic": "chatter", "rate": {"hz": 2, "tolerance": 0.05}}
 
 
-def test_a_rate_lasts_to_the_end_or_to_the_last_message_without_pauses() -> None:
+def test_a_rate_lasts_to_the_end_or_to_the_last_message_without_pauses():
     passes(RATE, TALKS, *FIVE, length_s=3)
     paused = [*FIVE, text(9.9, "/chatter", "")]
     fails("a longest pause of 7.40 s; expected 2 times a second", RATE, TALKS, *paused)
@@ -146,7 +142,7 @@ def test_a_rate_lasts_to_the_end_or_to_the_last_message_without_pauses() -> None
 
 
 @pytest.mark.parametrize("period_s", [1.0, 0.25, 0.4, 0.01])
-def test_half_a_rate_is_not_half_of_the_points(period_s: float) -> None:
+def test_half_a_rate_is_not_half_of_the_points(period_s):
     other = [text(period_s * n, "/chatter", f"Hello {n}") for n in range(1, 6)]
     fails(f"came {1 / period_s:.2f} times a second", RATE, TALKS, *other)
     # where the values count as well, they are right
@@ -155,7 +151,7 @@ def test_half_a_rate_is_not_half_of_the_points(period_s: float) -> None:
 
 
 @pytest.mark.parametrize("hz", [25.0, 50.0, 100.0])
-def test_a_rate_is_the_mean_of_all_periods(hz: float) -> None:
+def test_a_rate_is_the_mean_of_all_periods(hz):
     wanted = {"topic": "chatter", "rate": {"hz": hz, "tolerance": 0.02}}
     uneven = [text((n + 0.4 * (n % 2)) / hz, "/chatter", "") for n in range(100)]
     passes(wanted, TALKS, *uneven, length_s=100 / hz)
@@ -163,7 +159,7 @@ def test_a_rate_is_the_mean_of_all_periods(hz: float) -> None:
     fails(f"came {0.97 * hz:.2f} times", wanted, TALKS, *slower, length_s=100 / hz)
 
 
-def test_a_wrong_rate_is_told_before_the_count_that_it_makes() -> None:
+def test_a_wrong_rate_is_told_before_the_count_that_it_makes():
     wanted = {**RATE, "count": {"at_least": 8}}
     slow = [text(n, "/chatter", "Hello") for n in range(1, 6)]
     fails("/chatter came 1.00 times a second", wanted, TALKS, *slow)
@@ -178,17 +174,17 @@ def test_a_wrong_rate_is_told_before_the_count_that_it_makes() -> None:
         ({"depth": 1}, "has the depth 10, expected 1"),
     ],
 )
-def test_quality_that_is_not_as_expected_is_told(qos: dict[str, Any], words: str) -> None:
+def test_quality_that_is_not_as_expected_is_told(qos, words):
     fails(words, {"topic": "chatter", "qos": qos}, TALKS, *FIVE)
     wanted = {"topic": "chatter", "qos": qos, "values": "Hello {n}"}
     fails(words, wanted, TALKS, *FIVE, share=0.5)
 
 
-def test_quality_of_any_kind_passes_and_of_the_right_one() -> None:
+def test_quality_of_any_kind_passes_and_of_the_right_one():
     passes({"topic": "chatter", "qos": {"depth": 10}}, TALKS, *FIVE)
 
 
-def test_what_a_late_peer_gets_is_counted() -> None:
+def test_what_a_late_peer_gets_is_counted():
     wanted = {"got": "chatter", "by": "peer", "count": {"at_most": 1}}
     one = event("got", topic="/chatter", values={})
     passes(wanted, one)
@@ -199,7 +195,7 @@ def test_what_a_late_peer_gets_is_counted() -> None:
 # Lines ----------------------------------------------------------------------------------------
 
 
-def test_a_line_is_logged_so_many_times() -> None:
+def test_a_line_is_logged_so_many_times():
     passes({"log": "Hi"}, line(1, "Hi"))
     passes({"log": "/H.$/"}, line(1, "Hi"))
     fails("'Hi' was not logged; nothing was.", {"log": "Hi"})
@@ -228,9 +224,7 @@ def test_a_line_is_logged_so_many_times() -> None:
         ("Accepted.", (event("action", action="/a", accepted=True),), "before the result came"),
     ],
 )
-def test_a_line_that_is_missing_is_told_with_what_may_be_wrong(
-    said: str, more: Any, help_: str
-) -> None:
+def test_a_line_that_is_missing_is_told_with_what_may_be_wrong(said, more, help_):
     assert help_ in str(judged({"log": "Hi you!"}, line(1, said), *more).help)
 
 
@@ -238,7 +232,7 @@ EACH = {"log": 'Publishing: "{data}"', "each": "chatter"}
 LOGGED = [line(0.5 * n + 0.5, f'Publishing: "Hello {n}"') for n in range(5)]
 
 
-def test_each_message_has_its_line_in_time() -> None:
+def test_each_message_has_its_line_in_time():
     passes(EACH, *FIVE, *LOGGED)
     fails("'Publishing: \"Hello 4\"' was not logged", EACH, *FIVE, *LOGGED[:4])
     late = [*LOGGED[:4], line(9, 'Publishing: "Hello 4"')]
@@ -250,7 +244,7 @@ def test_each_message_has_its_line_in_time() -> None:
     fails("was not logged", wanted, *heard, *LOGGED[1:])
 
 
-def test_a_print_or_another_level_earns_half_and_one_line_for_all_nothing() -> None:
+def test_a_print_or_another_level_earns_half_and_one_line_for_all_nothing():
     printed = "".join(f'Publishing: "Hello {n}"\n' for n in range(5))
     found = fails("was printed and not logged", EACH, *FIVE, share=0.5, output=printed)
     assert "get_logger().info" in str(found.help)
@@ -267,7 +261,7 @@ def test_a_print_or_another_level_earns_half_and_one_line_for_all_nothing() -> N
     passes({"log": "Hi", "level": "warn"}, line(1, "Hi", level=30))
 
 
-def test_very_many_lines_and_very_long_ones_are_judged_at_once() -> None:
+def test_very_many_lines_and_very_long_ones_are_judged_at_once():
     messages = [text(1, "/chatter", f"{n}" * 20) for n in range(3_000)]
     lines = [line(1, f"I said {n}" * 20) for n in range(3_000)]
     assert judged({"log": "I say {data}", "each": "chatter"}, *messages, *lines).share == 0
@@ -284,7 +278,7 @@ ASKED = {"id": "adds", "service": "/add", "type": "example_interfaces/srv/AddTwo
 SENT = {**ASKED, "request": {"a": 2, "b": 3}, "sent_ns": 10**9}
 
 
-def test_an_answer_is_compared_and_what_keeps_it_away_is_told() -> None:
+def test_an_answer_is_compared_and_what_keeps_it_away_is_told():
     right = event("call", **SENT, response={"sum": 5}, answered_ns=10**9)
     passes(CALL, right)
     wrong = event("call", **SENT, response={"sum": 6}, answered_ns=10**9)
@@ -308,11 +302,11 @@ def test_an_answer_is_compared_and_what_keeps_it_away_is_told() -> None:
      {"topic": "t"}, {"log": "a"}, {"got": "t", "by": "peer"}, {"node": "n"}, EACH,
      {"transform": "a", "parent": "b"}],
 )  # fmt: skip
-def test_an_empty_recording_fails_and_breaks_nothing(expected: dict[str, Any]) -> None:
+def test_an_empty_recording_fails_and_breaks_nothing(expected):
     assert judged(expected).share == 0
 
 
-def test_a_request_to_a_peer_is_compared() -> None:
+def test_a_request_to_a_peer_is_compared():
     wanted = {"served": "add", "request": {"a": 2, "b": 3}, "count": {"at_most": 1}}
     right = event("served", service="/add", request={"a": 2, "b": 3})
     passes(wanted, right)
@@ -324,9 +318,7 @@ def test_a_request_to_a_peer_is_compared() -> None:
 
 
 @pytest.mark.parametrize("expected", [{"served": "add"}, {"sends": "add"}])
-def test_what_a_peer_cannot_answer_is_told_as_what_the_program_has_sent(
-    expected: dict[str, Any],
-) -> None:
+def test_what_a_peer_cannot_answer_is_told_as_what_the_program_has_sent(expected):
     asked = [
         event("served", service="/add", request={"a": 0}),
         event("action", action="/add", goal={}),
@@ -348,7 +340,7 @@ def goal(*without: str, **values: Any) -> Any:
     return event("goal", **{k: v for k, v in HANDLED.items() if k not in without}, **values)
 
 
-def test_a_goal_is_judged_by_answer_feedback_result_and_status() -> None:
+def test_a_goal_is_judged_by_answer_feedback_result_and_status():
     passes(GOAL, goal())
     none = goal("sent_ns", "accepted", "feedback", "status", "result", "ended_ns")
     fails("Nothing serves the action /fib, nor any other.", GOAL, none)
@@ -374,18 +366,18 @@ def test_a_goal_is_judged_by_answer_feedback_result_and_status() -> None:
         ([[10**9, {}], [10**9, {}]], "The feedback to {'order': 2}: "),
     ],
 )
-def test_an_empty_list_is_no_feedback(feedback: list[Any], words: str) -> None:
+def test_an_empty_list_is_no_feedback(feedback, words):
     fails(words, GOAL, goal("feedback", feedback=feedback))
 
 
-def test_the_goal_that_a_program_sends_is_compared() -> None:
+def test_the_goal_that_a_program_sends_is_compared():
     wanted = {"sends": "fib", "values": {"order": 10}}
     passes(wanted, event("action", action="/fib", goal={"order": 10}))
     fails("order was 1, expected 10", wanted, event("action", action="/fib", goal={"order": 1}))
     fails("The action /fib got no goal.", wanted)
 
 
-def test_parameters_are_compared_told_taken_and_refused() -> None:
+def test_parameters_are_compared_told_taken_and_refused():
     wanted = {"parameter": "asks", "values": {"p": "world"}}
     asks = {"id": "asks", "node": "/node"}
     right = event("parameter", **asks, values={"p": "world"}, answered_ns=10**9)
@@ -411,7 +403,7 @@ FRAME = {
 }
 
 
-def test_a_transform_is_right_with_either_sign_and_the_right_way_round() -> None:
+def test_a_transform_is_right_with_either_sign_and_the_right_way_round():
     for sign in (1, -1):
         numbers = (1, 0, 0, 0, 0, 0.6 * sign, 0.8 * sign)
         passes(FRAME, transform(1, "world", "turtle1", *numbers))
@@ -433,7 +425,7 @@ def test_a_transform_is_right_with_either_sign_and_the_right_way_round() -> None
     assert "StaticTransformBroadcaster" in str(moving.help)
 
 
-def test_the_end_a_flood_and_the_hint_of_the_author_are_told() -> None:
+def test_the_end_a_flood_and_the_hint_of_the_author_are_told():
     passes({"exits": 0})
     fails("the exit code 1, expected 0", {"exits": 0}, code=1)
     fails("The program still ran after 10.00 s.", {"exits": 0}, code=None)
@@ -443,7 +435,7 @@ def test_the_end_a_flood_and_the_hint_of_the_author_are_told() -> None:
     assert str(judged({"node": "talker", "help": "Look here."}).help) == "Look here."
 
 
-def test_a_pattern_of_the_author_that_never_ends_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pattern_of_the_author_that_never_ends_is_ended(monkeypatch):
     monkeypatch.setattr(asking, "LIMITS", WorkLimits(cpu_s=0.3, wall_s=30.0))
     checks = Checks()
     add_checks(checks, {"logs": {"log": "/^(a+)+$/"}}, [RunCase()], KnownTypes({}), 10)

@@ -1,7 +1,5 @@
 """Traces of casts for tests, written by hand; `/peer` is the one peer."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from grader.cast.trace import CastTrace, SentMessage

@@ -1,7 +1,5 @@
 """Squares and other ways, driven through the real world, get the verdicts they deserve."""
 
-from __future__ import annotations
-
 import math
 import random
 from copy import deepcopy

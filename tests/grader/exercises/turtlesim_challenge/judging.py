@@ -1,7 +1,5 @@
 """The challenge's verdicts on behaviour that is driven through the real world, without ROS."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Right and spoiled behaviour, driven through the real world, gets the verdicts it deserves."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

@@ -1,7 +1,5 @@
 """The colours: what `pen_per_quadrant` and `picture` find, and which cause they tell."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

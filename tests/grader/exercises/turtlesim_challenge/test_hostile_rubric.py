@@ -1,7 +1,5 @@
 """Who looks for points without the work finds none: the challenge's rubric, attacked."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Less never earns more: a spiral of which one thing is taken away, then another."""
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """How it stops: what `edge_stop` finds, and which cause it tells."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.grader.driving import Spiral, spoiled, twist

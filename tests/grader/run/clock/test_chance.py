@@ -1,12 +1,9 @@
 """What a program draws is the same in every run, whichever way it draws it."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -64,7 +61,7 @@ for n in range(10):
 
 
 @pytest.fixture
-def for_all() -> Iterator[Path]:
+def for_all():
     """A folder that every user may read; pytest's are its own."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o755)

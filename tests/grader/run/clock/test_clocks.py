@@ -14,7 +14,7 @@ ASKED_NS: list[int] = []
 
 
 @pytest.fixture
-def scheduler(monkeypatch: pytest.MonkeyPatch) -> Scheduler:
+def scheduler(monkeypatch):
     scheduler = Scheduler()
     monkeypatch.setattr(scheduler, "sleep", ASKED_NS.append)
     monkeypatch.setattr(time_and_chance, "SCHEDULER", scheduler, raising=False)

@@ -20,7 +20,7 @@ class Emptiness:
 
 
 @pytest.fixture
-def scheduler(monkeypatch: pytest.MonkeyPatch) -> Scheduler:
+def scheduler(monkeypatch):
     scheduler = Scheduler()
     scheduler.advance = Emptiness(scheduler).advance
     monkeypatch.setattr(threads, "SCHEDULER", scheduler, raising=False)

@@ -3,8 +3,6 @@
 import os
 import shlex
 import sys
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -91,7 +89,7 @@ if {marker!r} in " ".join(sys.orig_argv):
 
 
 @pytest.fixture
-def changed_rclpy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
+def changed_rclpy(tmp_path, monkeypatch):
     """Take something away from the rclpy of a run's processes whose command holds a text."""
 
     def change(marker: str, name: str) -> None:

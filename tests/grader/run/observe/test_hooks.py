@@ -1,7 +1,5 @@
 """Where rclpy is made otherwise than we know, what a witness has seen counts for nothing."""
 
-from __future__ import annotations
-
 import json
 import os
 

@@ -1,7 +1,5 @@
 """Which lines of a submission run, and what its conditions are asked about."""
 
-from __future__ import annotations
-
 import traceback
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What is sent is counted by its line, in order, as long as that is short."""
 
-from __future__ import annotations
-
 import sys
 
 import pytest

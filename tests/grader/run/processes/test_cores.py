@@ -1,7 +1,5 @@
 """How much of the machine is ours."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.run.processes import cores

@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -41,14 +40,14 @@ DIES = "import socket, sys; s = socket.socket(fileno=int(sys.argv[2])); s.send(b
 
 
 @pytest.fixture(scope="module")
-def server() -> Iterator[ForkServer]:
+def server():
     made = ForkServer(COMMAND, ENV)
     yield made
     made.close()
 
 
 @pytest.fixture
-def fresh() -> Iterator[ForkServer]:
+def fresh():
     """One that a test may end."""
     made = ForkServer(COMMAND, ENV)
     yield made
@@ -56,7 +55,7 @@ def fresh() -> Iterator[ForkServer]:
 
 
 @pytest.fixture(params=["started", "forked"])
-def warm(request: pytest.FixtureRequest, server: ForkServer) -> ForkServer | None:
+def warm(request, server):
     return server if request.param == "forked" else None
 
 
@@ -169,7 +168,7 @@ def test_limits_are_those_that_the_grader_has_now(server):
 
 
 @pytest.fixture(params=["started", "own namespace", "shared namespace", "no pidfd"])
-def namespace(request: pytest.FixtureRequest) -> Iterator[ForkServer | None]:
+def namespace(request):
     """Servers that may, and may not, make a process namespace; or have no pidfd; or none."""
     if request.param == "started":
         yield None

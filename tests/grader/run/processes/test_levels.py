@@ -1,14 +1,11 @@
 """Which level there is, what is told where it is too low, and that nothing runs below it."""
 
-from __future__ import annotations
-
 import json
 import os
 import resource
 import site
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -39,7 +36,7 @@ def there_is(level: levels.Level, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def weak(monkeypatch: pytest.MonkeyPatch) -> None:
+def weak(monkeypatch):
     there_is(WEAK, monkeypatch)
     monkeypatch.setattr(levels, "_least", "")
 
@@ -168,7 +165,7 @@ def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(refused
 
 
 @pytest.fixture(params=["started", "forked"])
-def warm(request: pytest.FixtureRequest) -> Iterator[ForkServer | None]:
+def warm(request):
     if request.param == "started":
         yield None
         return

@@ -1,7 +1,5 @@
 """What a family of processes uses, and what ends it."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -37,7 +37,7 @@ def is_private() -> bool:
 @pytest.fixture(
     params=others_are_more("the best way that there is here", ("the best", DOMAIN), "the best")
 )
-def kind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+def kind(request, monkeypatch):
     """How a run is kept apart."""
     if request.param == DOMAIN:
         monkeypatch.setattr(network, "_refused", {network._as_root, network._as_user})

@@ -12,7 +12,6 @@ import socket
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -63,7 +62,7 @@ class Tried:
 
 
 @pytest.fixture(scope="module")
-def run() -> Iterator[Any]:
+def run():
     """Run a program confined, and tell what it has tried; each kind of it once."""
     runs: dict[tuple[str, ...], Tried] = {}
     with ExitStack() as stack:
@@ -145,17 +144,17 @@ def run() -> Iterator[Any]:
         for level in LEVELS
     ]
 )
-def level(request: pytest.FixtureRequest) -> str:
+def level(request):
     return str(request.param)
 
 
 @pytest.fixture(params=others_are_more(OTHERS, USERS, OURSELVES))
-def user(request: pytest.FixtureRequest) -> str:
+def user(request):
     return str(request.param)
 
 
 @pytest.fixture
-def tried(run: Any, user: str, level: str) -> Tried:
+def tried(run, user, level):
     found: Tried = run(user, level)
     return found
 

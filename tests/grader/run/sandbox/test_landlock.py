@@ -1,7 +1,5 @@
 """Landlock: each rule at work in a child, and what kernels of before do without it."""
 
-from __future__ import annotations
-
 import errno
 import fcntl
 import os
@@ -30,7 +28,7 @@ def needs(version: int) -> pytest.MarkDecorator:
 
 
 @pytest.fixture
-def places(tmp_path: Path) -> Path:
+def places(tmp_path):
     """Folders to `read`, to `write`, and `hidden` ones, with a file in each."""
     for name in ("read", "write", "hidden"):
         (tmp_path / name / "sub").mkdir(parents=True)

@@ -1,7 +1,5 @@
 """The system call filter: its program, interpreted here for both machines, and at work."""
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import os
@@ -41,12 +39,12 @@ LOW = (1 << 32) - 1
 
 
 @pytest.fixture(params=sorted(seccomp.MACHINES))
-def machine(request: pytest.FixtureRequest) -> str:
+def machine(request):
     return str(request.param)
 
 
 @pytest.fixture(params=[True, False])
-def apart(request: pytest.FixtureRequest) -> bool:
+def apart(request):
     """Whether a process has a network of its own."""
     return bool(request.param)
 

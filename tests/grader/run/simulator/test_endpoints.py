@@ -9,7 +9,7 @@ TALKS = EndpointInfo("/a", "topic /chatter", "std_msgs/msg/String", True, id=1 <
 
 
 @pytest.fixture
-def endpoints() -> SimulatorEndpoints:
+def endpoints():
     return SimulatorEndpoints(lambda: 0, lambda remark: None)
 
 

@@ -7,7 +7,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from itertools import chain
 
 import pytest
@@ -37,19 +37,19 @@ Listen = Callable[..., StudentLink]
 
 
 @pytest.fixture
-def ends() -> Iterator[tuple[socket.socket, socket.socket]]:
+def ends():
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours, theirs:
         yield ours, theirs
 
 
 @pytest.fixture
-def theirs(ends: tuple[socket.socket, socket.socket]) -> socket.socket:
+def theirs(ends):
     return ends[1]
 
 
 @pytest.fixture
-def listen(ends: tuple[socket.socket, socket.socket]) -> Listen:
+def listen(ends):
     """Give our end: of this process, where no other is named."""
 
     def listen(pid: int = os.getpid(), page: int = NO_PAGE, **patience: float) -> StudentLink:

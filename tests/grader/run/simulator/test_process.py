@@ -1,7 +1,5 @@
 """What a simulator tells while it works: no faster than it is wanted, and never at its own cost."""
 
-from __future__ import annotations
-
 import json
 import socket
 import threading

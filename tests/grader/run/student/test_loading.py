@@ -1,7 +1,5 @@
 """Lists of numbers in a message take ints and arrays, as where nothing checks them; no more."""
 
-from __future__ import annotations
-
 import array
 
 import numpy as np

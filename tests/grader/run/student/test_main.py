@@ -1,7 +1,5 @@
 """In real time: what drives the scene is connected, and a program starts as on a desk."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys
@@ -29,7 +27,7 @@ class Node:
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> types.SimpleNamespace:
+def clock(monkeypatch):
     """A clock that only sleeping moves."""
     clock = types.SimpleNamespace(now_s=0.0)
     clock.monotonic = lambda: clock.now_s

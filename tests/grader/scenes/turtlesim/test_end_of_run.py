@@ -1,7 +1,5 @@
 """A run is over when there is nothing more to see, and the reason says why."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.scenes.scene import Limits

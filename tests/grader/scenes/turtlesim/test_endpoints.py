@@ -1,7 +1,5 @@
 """What the scene says that it has is what its node really has."""
 
-from __future__ import annotations
-
 from grader.scenes.turtlesim.interfaces import endpoints_of
 from grader.scenes.turtlesim.trace import TurtleTrace
 from tests.grader.driving import Spiral, drive

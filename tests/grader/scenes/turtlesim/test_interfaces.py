@@ -1,7 +1,5 @@
 """turtlesim or turtlesim_msgs: what a submission imports, and texts for the other one."""
 
-from __future__ import annotations
-
 import pytest
 
 from grader.errors import SubmissionError

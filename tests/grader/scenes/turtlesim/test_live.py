@@ -1,7 +1,5 @@
 """The page of a graded run: who looks sees what is told, and can do nothing else."""
 
-from __future__ import annotations
-
 import base64
 import http.client
 import json

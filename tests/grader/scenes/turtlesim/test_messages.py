@@ -1,7 +1,5 @@
 """Messages and traces mean the same; what other people's bags hold is no trace."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,7 +25,7 @@ STRING = "std_msgs/msg/String"
 
 
 @pytest.fixture(scope="module")
-def trace() -> TurtleTrace:
+def trace():
     return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
 
 

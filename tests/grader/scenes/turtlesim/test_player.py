@@ -1,7 +1,5 @@
 """The animations of runs that a page plays: strokes, places, and where two runs differ."""
 
-from __future__ import annotations
-
 import base64
 import json
 import math

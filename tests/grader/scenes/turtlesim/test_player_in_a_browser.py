@@ -1,7 +1,5 @@
 """The page that plays runs in a real browser: to the pixel, by mouse, by keyboard alone."""
 
-from __future__ import annotations
-
 import base64
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The pages that play runs have their sentences' translations in them."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

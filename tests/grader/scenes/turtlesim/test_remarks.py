@@ -1,7 +1,5 @@
 """A reader of any result is told what was done to the arena other than by driving."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
@@ -23,7 +21,7 @@ MOVES = "it moves a turtle without driving"
 
 
 @pytest.fixture(scope="module")
-def trace() -> TurtleTrace:
+def trace():
     """Driving and pens only."""
     return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
 

@@ -1,7 +1,5 @@
 """Where varied runs start: a matter of the seed, at the distance that was asked for."""
 
-from __future__ import annotations
-
 import math
 
 from hypothesis import given

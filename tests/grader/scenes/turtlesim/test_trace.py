@@ -1,7 +1,5 @@
 """What a trace of turtlesim tells when it is asked."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +12,7 @@ from turtlesim_py.world.trajectory import Trajectory
 
 
 @pytest.fixture(scope="module")
-def trace() -> TurtleTrace:
+def trace():
     return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
 
 

@@ -1,7 +1,5 @@
 """What a page shows of a run: ways in pixels, pens, curves, calls, and the place of rest."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 
@@ -31,7 +29,7 @@ def traced(controller, ticks: int = 4000) -> TurtleTrace:
 
 
 @pytest.fixture(scope="module")
-def spiral() -> TurtleTrace:
+def spiral():
     return traced(Spiral())
 
 

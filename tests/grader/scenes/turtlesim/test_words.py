@@ -1,7 +1,5 @@
 """Colours, places and calls in words, for those who do not see them."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

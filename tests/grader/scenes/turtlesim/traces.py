@@ -1,7 +1,5 @@
 """Traces with everything odd that one can hold, and a comparison that overlooks nothing."""
 
-from __future__ import annotations
-
 import struct
 from dataclasses import fields
 from typing import Any
