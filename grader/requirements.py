@@ -29,7 +29,7 @@ OPTIONAL = {
     "websockets": (
         "websockets",
         msg("--live serves a page with it"),
-        "websockets>=13.1,<18",
+        "websockets>=14,<18",
     ),
 }
 

@@ -195,7 +195,7 @@ def serve_page(node: RclcppNode, arena: Arena, interfaces: str) -> tuple[LiveSer
         from turtlesim_py.live.feed import Feed  # here: few want a page
         from turtlesim_py.live.server import LiveServer, Settings
     except ImportError as error:
-        needed = f"-1: a page needs the package websockets, 13.1 or newer ({error})"
+        needed = f"-1: a page needs the package websockets, 14 or newer ({error})"
         raise UnusableParameter("view_port", port, needed) from None
     about = {
         "node": node.get_fully_qualified_name(),
