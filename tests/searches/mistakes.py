@@ -26,7 +26,6 @@ _QUADRANT = r"_?(?:(?:current_|old_)?quadrant|corner|last|pen_of|area|region|sec
 _SPEED = r"_?(?:linear_speed|speed|linear|velocity|radius|v)"
 _POSE = r"(?:pose|msg|data|p|self\.pose|self)"
 
-
 #: Passages, where they begin and end, and what stands there instead.
 Change = tuple[tuple[int, int, str], ...]
 Places = Callable[["Program"], Iterable[Change]]
@@ -61,11 +60,9 @@ class Operator:
     missing: bool = False
 
     def named_by(self, text: str) -> bool:
-        """Whether a text names this class of mistakes."""
         return re.search(self.words, text, re.IGNORECASE) is not None
 
     def mutant(self, source: str, chance: random.Random) -> Mutant | None:
-        """Make the mistake in one of its places; None where there is none."""
         program = _program(source)
         changes = list(self.places(program))
         if not changes:
@@ -74,8 +71,6 @@ class Operator:
 
 
 class Program:
-    """A source, and what of it has which part."""
-
     def __init__(self, text: str) -> None:
         self.text = text
         self.tree = ast.parse(text)
@@ -89,9 +84,7 @@ class Program:
         return begin, self.starts[node.end_lineno - 1] + node.end_col_offset
 
     def code(self, node: ast.AST) -> str:
-        """The text of a node."""
-        begin, end = self.span(node)
-        return self.text[begin:end]
+        return self.text[slice(*self.span(node))]
 
     @cached_property
     def prose(self) -> list[tuple[int, int]]:
@@ -112,17 +105,14 @@ class Program:
 
     @cached_property
     def functions(self) -> list[Function]:
-        """All functions and methods, outer ones first."""
         return [each for each in ast.walk(self.tree) if isinstance(each, Function)]
 
     def around(self, offset: int) -> Function | None:
-        """The innermost function around a place."""
         spans = [(self.span(each), each) for each in self.functions]
         inside = [each for (begin, end), each in spans if begin <= offset <= end]
         return max(inside, key=lambda each: each.lineno, default=None)
 
     def calls(self, *names: str) -> Iterator[ast.Call]:
-        """The calls of functions by their last name."""
         for node in ast.walk(self.tree):
             if isinstance(node, ast.Call) and last_name(node.func) in names:
                 yield node
@@ -133,7 +123,6 @@ class Program:
         return [each for each in self.functions if each.name in given]
 
     def own(self, ctx: type[ast.expr_context]) -> Iterator[ast.Attribute]:
-        """Every `self.NAME` that is read, or set."""
         for node in ast.walk(self.tree):
             match node:
                 case ast.Attribute(value=ast.Name(id="self")) if isinstance(node.ctx, ctx):
@@ -141,7 +130,6 @@ class Program:
 
     @cached_property
     def kept(self) -> set[str]:
-        """Attributes of self that are both set and read."""
         set_, read = ({n.attr for n in self.own(ctx)} for ctx in (ast.Store, ast.Load))
         return set_ & read
 
@@ -168,7 +156,8 @@ def last_name(node: ast.expr) -> str:
 def _mutant(program: Program, change: Change, missing: bool) -> Mutant | None:
     text = _edited(program, change)
     if missing and not _parses(text):  # it was the only statement of its block
-        text = _edited(program, [_passing(program, *each) for each in change])
+        passing = [(b, e, re.sub(r"\S[^\n]*", "pass", program.text[b:e])) for b, e, _ in change]
+        text = _edited(program, passing)
     if text == program.text:
         return None
     lines = _changed_lines(program.text, text)
@@ -182,10 +171,6 @@ def _edited(program: Program, change: Iterable[tuple[int, int, str]]) -> str:
     for begin, end, new in sorted(change, reverse=True):
         text = text[:begin] + new + text[end:]
     return text
-
-
-def _passing(program: Program, begin: int, end: int, new: str) -> tuple[int, int, str]:
-    return begin, end, new or re.sub(r"\S[^\n]*", "pass", program.text[begin:end])
 
 
 def _changed_lines(old: str, new: str) -> set[int]:
@@ -228,11 +213,12 @@ def _statements(text: str, lines: set[int]) -> set[int]:
 # Kinds of places ----------------------------------------------------------------------------------
 
 
-def swap(pattern: str, *news: str, within: str = "", needs: str = "") -> Places:
+def swap(pattern: str, *news: str, within: str = "", of: str = "", needs: str = "") -> Places:
     """Replace what matches, by one of some templates.
 
     Args:
         within: a pattern of the names of functions in which alone.
+        of: a kind of callbacks in which alone.
         needs: an import that comes with it.
     """
 
@@ -241,6 +227,8 @@ def swap(pattern: str, *news: str, within: str = "", needs: str = "") -> Places:
             around = program.around(found.start())
             if within and (around is None or not re.fullmatch(within, around.name)):
                 continue
+            if of and around not in program.callbacks(of):
+                continue
             for new in news:
                 yield ((*found.span(), found.expand(new)), *program.importing(needs))
 
@@ -248,33 +236,11 @@ def swap(pattern: str, *news: str, within: str = "", needs: str = "") -> Places:
 
 
 def drop(pattern: str, within: str = "", of: str = "") -> Places:
-    """Leave out the whole lines that match; in callbacks `of` a kind alone."""
-    swapping = swap(pattern, "", within=within)
-
-    def places(program: Program) -> Iterator[Change]:
-        for change in swapping(program):
-            if not of or program.around(change[0][0]) in program.callbacks(of):
-                yield change
-
-    return places
-
-
-def argument(call: str, index: int, new: str, needs: str = "") -> Places:
-    """Replace an argument, by its place or else its end; `new` has the old one as {0}."""
-
-    def places(program: Program) -> Iterator[Change]:
-        for node in program.calls(call):
-            if len(node.args) > index:
-                begin, end = program.span(node.args[index])
-                edit = (begin, end, new.format(program.text[begin:end]))
-                yield (edit, *program.importing(needs))
-
-    return places
+    """Leave out the whole lines that match."""
+    return swap(pattern, "", within=within, of=of)
 
 
 def called(*calls: str) -> Places:
-    """Call a callback where it is to be passed."""
-
     def places(program: Program) -> Iterator[Change]:
         names = {each.name for each in program.functions}
         for node in program.calls(*calls):
@@ -286,8 +252,6 @@ def called(*calls: str) -> Places:
 
 
 def misspelt(ctx: type[ast.expr_context], inside_init: bool = True) -> Places:
-    """Misspell an attribute of self in one place."""
-
     def places(program: Program) -> Iterator[Change]:
         for node in program.own(ctx):
             around = program.around(program.span(node)[0])
@@ -332,26 +296,6 @@ def arguments(of: str, change: Callable[[list[str]], list[str]]) -> Places:
     return places
 
 
-def insert(of: str, new: str, needs: str) -> Places:
-    """Begin callbacks `of` a kind with a statement, which needs an import."""
-
-    def places(program: Program) -> Iterator[Change]:
-        for each in program.callbacks(of):
-            body = [s for s in each.body if not isinstance(s, ast.Global | ast.Nonlocal)]
-            if isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
-                body = body[1:]
-            at = program.starts[body[0].lineno - 1]
-            text = f"{' ' * body[0].col_offset}{new}\n"
-            yield ((at, at, text), *program.importing(needs))
-
-    return places
-
-
-def before_spin(*news: str) -> Places:
-    """Add a statement before `rclpy.spin(node)`."""
-    return swap(r"^(?=( +)rclpy\.spin\((\w+)\)\n)", *(rf"\1{new}\n" for new in news))
-
-
 def is_limit(node: ast.AST) -> bool:
     """Whether a comparison tells that a wall is near."""
     if isinstance(node, ast.UnaryOp):
@@ -370,7 +314,6 @@ def is_limit(node: ast.AST) -> bool:
 
 
 def flipped(program: Program) -> Iterator[Change]:
-    """`>` for `<` in the condition to stop."""
     for node in ast.walk(program.tree):
         if isinstance(node, ast.Compare) and is_limit(node):
             begin, end = program.span(node.left)[1], program.span(node.comparators[0])[0]
@@ -378,28 +321,27 @@ def flipped(program: Program) -> Iterator[Change]:
             yield ((begin, end, sign.translate(str.maketrans("<>", "><"))),)
 
 
-def fewer_walls(program: Program) -> Iterator[Change]:
-    """Forget one wall."""
+def walls(program: Program) -> Iterator[tuple[tuple[int, int], str, list[str]]]:
+    """Where walls are watched, by `or` or `and`, and how each is."""
     for node in ast.walk(program.tree):
-        if isinstance(node, ast.BoolOp) and all(is_limit(each) for each in node.values):
+        if isinstance(node, ast.BoolOp) and all(map(is_limit, node.values)):
             sign = " or " if isinstance(node.op, ast.Or) else " and "
-            parts = [program.code(each) for each in node.values]
-            for each in parts:
-                kept = [part for part in parts if part != each]
-                yield ((*program.span(node), sign.join(kept)),)
+            yield program.span(node), sign, [program.code(each) for each in node.values]
+
+
+def fewer_walls(program: Program) -> Iterator[Change]:
+    for span, sign, parts in walls(program):
+        for each in parts:
+            yield ((*span, sign.join(part for part in parts if part != each)),)
 
 
 def and_for_or(program: Program) -> Iterator[Change]:
-    """All walls at once."""
-    for node in ast.walk(program.tree):
-        match node:
-            case ast.BoolOp(op=ast.Or(), values=values) if all(map(is_limit, values)):
-                parts = [program.code(each) for each in values]
-                yield ((*program.span(node), " and ".join(parts)),)
+    for span, sign, parts in walls(program):
+        if sign == " or ":
+            yield ((*span, " and ".join(parts)),)
 
 
 def same_colours(program: Program) -> Iterator[Change]:
-    """One colour for two quadrants."""
     colours = list(program.matches(r"\b\d{1,3}, \d{1,3}, \d{1,3}\b"))
     for one in colours:
         for other in colours:
@@ -470,7 +412,8 @@ OPERATORS: tuple[Operator, ...] = (
              drop(r"^if __name__ == [^\n]*\n[^\n]*\n"), missing=True),
     Operator("init_missing", r"rclpy\.init", drop(r"^ +rclpy\.init\(.*\n"), missing=True),
     Operator("spin_missing", r"rclpy\.spin\(", drop(r"^ +rclpy\.spin\(\w+\)\n"), missing=True),
-    Operator("shutdown_too_early", r"shut ?down", before_spin("rclpy.shutdown()")),
+    Operator("shutdown_too_early", r"shut ?down",
+             swap(r"^(?=( +)rclpy\.spin\()", r"\1rclpy.shutdown()\n")),
     # what meets nobody
     Operator("velocity_topic_misspelt", r"listens to|nobody listens",
              swap(r"turtle1/cmd_vel", "turtle1/cmd_val", "turtle1/cmdvel", "turtle1/cmd_Vel")),
@@ -479,7 +422,7 @@ OPERATORS: tuple[Operator, ...] = (
     Operator("turtle1_missing", r"nobody (?:listens|publishes|offers)",
              swap(r"/?turtle1/(?=cmd_vel|pose|set_pen)", "/")),
     Operator("publisher_of_another_type", r"listens to geometry_msgs|publisher (?:is|was made) for",
-             argument("create_publisher", 0, "Pose")),
+             swap(r"(?<=create_publisher\()\w+", "Pose")),
     Operator("transient_local", r"TRANSIENT_LOCAL|QoS",
              swap(r"(create_subscription\((?:\s*[^\s,]+,){3}\s*)10",
                   r"\1QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)",
@@ -493,7 +436,8 @@ OPERATORS: tuple[Operator, ...] = (
              swap(r"(?<!await )(\b[\w.]+)\.call_async\((?=.*\)$)", r"\1.call(",
                   within=r"(?!main)\w+")),
     Operator("sleep_in_pose_callback", r"sleep",
-             insert("create_subscription", "time.sleep(0.5)", needs="import time")),
+             swap(r"def \w+\(.*:\n( +)", r"\g<0>time.sleep(0.5)\n\1", of="create_subscription",
+                  needs="import time")),
     Operator("timer_of_zero", r"period", swap(r"(create_timer\()0\.\d+", r"\g<1>0.0", r"\g<1>0")),
     Operator("timer_in_milliseconds", r"milliseconds",
              swap(r"(create_timer\()0\.(\d)", r"\g<1>\g<2>00")),
