@@ -34,28 +34,18 @@ OUTSIDE, SAYS = "outside.yaml", "name: outside\n"
 
 @dataclass(frozen=True)
 class Change:
-    """One change to a package.
-
-    Attributes:
-        kind: a function of this module by its name.
-        file: which of its files, counted around.
-        line, other: which of its lines; what else the kind needs to choose.
-        text: what is put in.
-        end: how the names of files end that it is for.
-    """
+    """One change to a package, by a function of this module; numbers are counted around."""
 
     kind: str
     file: int
     line: int
-    other: int
+    other: int  # what else the kind needs to choose
     text: str
-    end: str
+    end: str  # how the names of files end that it is for
 
 
 @dataclass(frozen=True)
 class Mangled:
-    """A package and what becomes of it."""
-
     base: int
     changes: tuple[Change, ...]
 
@@ -92,20 +82,17 @@ def _dropped(path: Path, change: Change, _: list[Path]) -> None:
 
 
 def _doubled(path: Path, change: Change, _: list[Path]) -> None:
-    _with_lines(
-        path, lambda lines: lines.insert(change.line % len(lines), lines[change.line % len(lines)])
-    )
+    _with_lines(path, lambda lines: lines.insert(at := change.line % len(lines), lines[at]))
 
 
 def _swapped(path: Path, change: Change, files: list[Path]) -> None:
-    """A line of another file in the place of one."""
+    """A line of another file, or of the same, in the place of one."""
     beside = files[change.other % len(files)].read_bytes().split(b"\n")
     taken = beside[change.other % len(beside)]
     _with_lines(path, lambda lines: lines.__setitem__(change.line % len(lines), taken))
 
 
 def _added(path: Path, change: Change, files: list[Path]) -> None:
-    """A line more."""
     text = change.text.encode("utf-8", "surrogatepass")
     _with_lines(path, lambda lines: lines.insert(change.line % (len(lines) + 1), text))
 
@@ -116,15 +103,11 @@ def _written(path: Path, change: Change, _: list[Path]) -> None:
 
 def _word(path: Path, change: Change, _: list[Path]) -> None:
     """Another word in the place of one between quotes."""
-
-    def replace(lines: list[bytes]) -> None:
-        at = [n for n, line in enumerate(lines) if line.count(b'"') > 1]
-        if at:
-            parts = lines[at[change.line % len(at)]].split(b'"')
-            parts[1] = change.text.encode("utf-8", "surrogatepass")
-            lines[at[change.line % len(at)]] = b'"'.join(parts)
-
-    _with_lines(path, replace)
+    parts = path.read_bytes().split(b'"')
+    if len(parts) > 2:
+        at = 1 + 2 * (change.line % (len(parts) // 2))
+        parts[at] = change.text.encode("utf-8", "surrogatepass")
+        path.write_bytes(b'"'.join(parts))
 
 
 def _renamed(path: Path, change: Change, _: list[Path]) -> None:
@@ -211,19 +194,8 @@ def _bind_a_socket(path: Path) -> None:
 _KINDS: dict[str, Callable[[Path, Change, list[Path]], None]] = {
     each.__name__: each
     for each in (
-        *(
-            _dropped,
-            _doubled,
-            _swapped,
-            _added,
-            _written,
-            _word,
-            _renamed,
-            _resized,
-            _encoded,
-            _nested,
-        ),
-        _linked,
+        *(_dropped, _doubled, _swapped, _added, _written, _word, _renamed, _resized, _encoded),
+        *(_nested, _linked),
     )
 }
 
@@ -244,17 +216,7 @@ _SUBSTITUTIONS = (
     *("$(find-pkg-share a)", "$(find a)", "$(arg a)", "$(eval 1/0)", "$(var x)", "$(env HOME)"),
     "$(command 'xacro a')",
 )
-_ODD = (
-    "",
-    " ",
-    "\0",
-    "\ud800",
-    "\u202e",
-    "9" * 400,
-    "a" * 300,
-    "a" * 2500,
-    "a/" * 2000,
-)
+_ODD = ("", " ", "\0", "\ud800", "\u202e", "9" * 400, "a" * 300, "a" * 2500, "a/" * 2000)
 _ALL = [*_WORDS, *_SUBSTITUTIONS, *_ODD]
 words = st.integers(0, len(_ALL) - 1).map(lambda n: _ALL[n])  # not to be shown as a whole
 _KEYS = _listed("""
@@ -271,10 +233,9 @@ _cmake = st.one_of(
         words,
     ),
     st.builds("set(found {})\nforeach(X IN LISTS found)".format, _some),
-    st.builds("project({})".format, words),
     st.builds(
         "{}({})".format,
-        st.sampled_from(["file", "install", "set", "foreach", "endforeach", "if", "endif"]),
+        st.sampled_from(_listed("file install set foreach endforeach if endif project")),
         st.lists(words | st.sampled_from(_KEYS), max_size=6).map(" ".join),
     ),
 )
@@ -320,14 +281,7 @@ name filename file pkg exec value if unless default type xyz from ns args link v
 _xml = st.builds(
     lambda tag, attributes, end: f"<{tag} {' '.join(attributes)}{end}",
     st.sampled_from(_TAGS),
-    st.lists(
-        st.builds(
-            '{}="{}"'.format,
-            st.sampled_from(_ATTRIBUTES),
-            words,
-        ),
-        max_size=4,
-    ),
+    st.lists(st.builds('{}="{}"'.format, st.sampled_from(_ATTRIBUTES), words), max_size=4),
     st.sampled_from(["/>", ">", "></a>"]),
 )
 _SETUP = """from glob import glob

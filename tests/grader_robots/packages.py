@@ -11,13 +11,16 @@ from functools import cache
 from pathlib import Path
 from unittest.mock import patch
 
+from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.inspection import inspector
 from grader.inspection.answer import Inspection, decode
 from grader.inspection.examining import steps
 from grader.inspection.examining.main import inspect
 from grader.inspection.trace import PackageTrace, encode
+from grader.judging import judge
 from grader.recording.recording import Recording, Recordings, Run
+from grader.result.result import Result
 from grader.testing.solutions import read_solutions
 from tests import apart, once
 from tests.hand_ins import SUBMISSIONS
@@ -32,18 +35,9 @@ INSPECTORS = inspector.places(("robot_description",))
 HANDED_IN = ("r2d2_tutorial", "urdf_to_package")
 
 
-def looked_at(
-    path: Path,
-    package: str = "",
-    cpu_s: float = steps.LIMITS.cpu_s,
-    wall_s: float = steps.LIMITS.wall_s,
-) -> PackageTrace:
-    """What is found of a package, without what confines the process that looks.
-
-    Args:
-        cpu_s, wall_s: so much time may a step take.
-    """
-    return inspected(path, cpu_s, wall_s, package=package, inspectors=INSPECTORS).trace
+def looked_at(path: Path, package: str = "", **limits: float) -> PackageTrace:
+    """What is found of a package, without what confines the process that looks."""
+    return inspected(path, **limits, package=package, inspectors=INSPECTORS).trace
 
 
 def inspected(
@@ -52,7 +46,11 @@ def inspected(
     wall_s: float = steps.LIMITS.wall_s,
     **order: object,
 ) -> Inspection:
-    """The answer to an order for an inspection; see `grader.inspection.examining.main.inspect`."""
+    """The answer to an order for an inspection; see `grader.inspection.examining.main.inspect`.
+
+    Args:
+        cpu_s, wall_s: so much time may a step take.
+    """
     process = _looking()
     assert process.stdin is not None
     assert process.stdout is not None
@@ -92,6 +90,15 @@ def look_without_end() -> None:
 def recorded(trace: PackageTrace) -> Recordings:
     """A trace as a run leaves it."""
     return Recordings(Recording(trace, Run(trace_sha256=trace.sha256()), scene="package"))
+
+
+def graded(path: Path, exercise: Exercise = EXERCISE) -> Result:
+    return judge(recorded(looked_at(path)), exercise)
+
+
+def lost(result: Result) -> dict[str, float]:
+    """The checks that lose points, with the share that is left."""
+    return {v.check: v.score / v.max_score for v in result.verdicts if not v.passed}
 
 
 def written(folder: Path, files: Mapping[str, str | None], of: Path = REFERENCE) -> Path:

@@ -15,6 +15,8 @@ from robot_py.model import Joint, JointType, Link, Mimic, Model, Origin
 from robot_py.urdf import parse
 
 ROBOTS = Path(__file__).parent / "robots"
+#: Where yourdfpy 0.0.60 and MuJoCo 4.0.0 see the links, which agree to 1e-12. (They do not where a
+#: prismatic axis is not of length 1: yourdfpy takes it as it is, MuJoCo and KDL do not.)
 SECOND_OPINIONS = json.loads((ROBOTS / "frames.json").read_text())
 
 ANGLES = st.floats(-7, 7)
@@ -129,11 +131,6 @@ def test_a_quaternion_has_length_1_and_says_what_the_matrix_says(rpy):
 def test_quaternions_have_their_known_values(rpy, expected):
     found = kinematics.quaternion(kinematics.matrix(Origin(rpy=rpy)))
     assert found == pytest.approx(expected, abs=1e-12)
-
-
-def test_an_axis_of_any_length_moves_by_the_position():
-    pushed = kinematics.joint_transform(joint("prismatic", axis=(0, 0, 20.0)), 0.5)
-    assert kinematics.translation(pushed) == (0, 0, 0.5)
 
 
 @pytest.mark.parametrize("kind", ["revolute", "continuous", "prismatic"])

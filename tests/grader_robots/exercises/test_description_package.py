@@ -7,14 +7,15 @@ import pytest
 import yaml
 
 from grader.judging import judge
-from grader.result.result import Result
 from tests.grader_robots.packages import (
     EXERCISE,
     FOLDER,
     HANDED_IN,
     REFERENCE,
     SOLUTIONS,
+    graded,
     looked_at,
+    lost,
     recorded,
     written,
 )
@@ -28,19 +29,11 @@ GRADED, OTHERS = yaml.safe_load(
 FIRST_LINES = GRADED | OTHERS
 
 
-def graded(path: Path, exercise: object = EXERCISE) -> Result:
-    return judge(recorded(looked_at(path)), exercise)  # type: ignore[arg-type]
-
-
 def changed(folder: Path, file: str, old: str, new: str, **more: str | None) -> Path:
     """The reference with a passage of a file replaced, and without other files."""
     text = (REFERENCE / file).read_text()
     assert old in text
     return written(folder, {file: text.replace(old, new), **more})
-
-
-def lost(result: Result) -> dict[str, float]:
-    return {v.check: v.score / v.max_score for v in result.verdicts if not v.passed}
 
 
 @pytest.mark.parametrize(
@@ -140,11 +133,11 @@ def test_the_starter_is_told_what_to_begin_with():
 def test_a_name_of_launch_that_nobody_knows_is_not_judged_and_never_failed(tmp_path):
     names = ("import Command, Launch", "import Wondrous, Command, Launch")
     result = graded(changed(tmp_path, DISPLAY, *names, **NO_SPAWN))
-    status = {verdict.check: verdict.status for verdict in result.verdicts}
-    assert status["launch"] == "not_judged"
-    assert "failed" not in status.values()
-    rationale = next(str(v.rationale) for v in result.verdicts if v.check == "launch")
-    assert "launch.substitutions.Wondrous, which the grader does not know" in rationale
+    verdicts = {verdict.check: verdict for verdict in result.verdicts}
+    assert verdicts["launch"].status == "not_judged"
+    assert "failed" not in {verdict.status for verdict in result.verdicts}
+    unknown = "launch.substitutions.Wondrous, which the grader does not know"
+    assert unknown in str(verdicts["launch"].rationale)
 
 
 def test_a_file_of_another_package_is_nobody_s_fault(tmp_path):

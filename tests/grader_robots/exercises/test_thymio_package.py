@@ -3,11 +3,10 @@
 import pytest
 
 from grader.exercise.loading import load_exercise
-from grader.judging import judge
 from grader.testing.checking import examine
 from grader.testing.solutions import read_solutions
 from grader_robots.inspection.oddities import odd_traces
-from tests.grader_robots.packages import looked_at, recorded, written
+from tests.grader_robots.packages import graded, lost, recorded, written
 from tests.tiers import others_are_more
 
 EXERCISE = load_exercise("thymio_package")
@@ -30,8 +29,7 @@ EACH = "half a second each; the first mutant is graded by each make test"
 
 @pytest.mark.parametrize("name", others_are_more(EACH, RIGHT, RIGHT[-1]))
 def test_a_right_thymio_keeps_all_points(name, tmp_path):
-    result = judge(recorded(looked_at(SOLUTIONS[name].lay_out(tmp_path))), EXERCISE)
-    assert [verdict.check for verdict in result.verdicts if not verdict.passed] == []
+    assert lost(graded(SOLUTIONS[name].lay_out(tmp_path), EXERCISE)) == {}
 
 
 @pytest.mark.parametrize(
@@ -39,10 +37,9 @@ def test_a_right_thymio_keeps_all_points(name, tmp_path):
 )
 def test_the_first_line_of_a_wrong_thymio_names_its_mistake(name, tmp_path):
     solution = SOLUTIONS[name]
-    result = judge(recorded(looked_at(solution.lay_out(tmp_path))), EXERCISE)
+    result = graded(solution.lay_out(tmp_path), EXERCISE)
     assert FIRST_LINES[name] in str(result.diagnosis.cause)
-    left = {v.check: v.score / v.max_score for v in result.verdicts if not v.passed}
-    assert left == solution.leaves
+    assert lost(result) == solution.leaves
 
 
 def test_its_checks_survive_whatever_a_package_is():
@@ -50,19 +47,15 @@ def test_its_checks_survive_whatever_a_package_is():
         assert examine(EXERCISE, recorded(trace))[1] == [], what
 
 
-def lost(path):
-    result = judge(recorded(looked_at(path)), EXERCISE)
-    return {verdict.check: verdict.status for verdict in result.verdicts if not verdict.passed}
-
-
 def test_a_xacro_that_is_not_installed_has_its_numbers_all_the_same(tmp_path):
     cmake = (REFERENCE / "CMakeLists.txt").read_text().replace(" urdf", "")
-    left = lost(written(tmp_path, {"CMakeLists.txt": cmake}, REFERENCE))
-    assert not {"parameters", "masses", "wheels", "urdf"} & left.keys()
+    result = graded(written(tmp_path, {"CMakeLists.txt": cmake}, REFERENCE), EXERCISE)
+    assert not {"parameters", "masses", "wheels", "urdf"} & lost(result).keys()
 
 
 def test_what_waits_for_a_robot_is_not_judged_where_xacro_makes_none(tmp_path):
     xacro = (REFERENCE / "urdf/thymio.urdf.xacro").read_text().replace("</robot>", "")
-    left = lost(written(tmp_path, {"urdf/thymio.urdf.xacro": xacro}, REFERENCE))
+    result = graded(written(tmp_path, {"urdf/thymio.urdf.xacro": xacro}, REFERENCE), EXERCISE)
+    left = {verdict.check: verdict.status for verdict in result.verdicts if not verdict.passed}
     waits = ("meshes", "parameters", "masses", "wheels", "spawns", "one_source")
     assert left == {"urdf": "failed", "launch": "failed"} | dict.fromkeys(waits, "not_judged")

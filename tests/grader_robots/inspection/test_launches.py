@@ -4,6 +4,7 @@ import textwrap
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import pytest
 import yaml
 
 from grader.inspection.trace import LaunchFile, PackageTrace
@@ -36,15 +37,29 @@ def traced(folder, bodies: Mapping[str, str]) -> PackageTrace:
     return looked_at(written(folder, files))
 
 
+def started(folder, body: str, file: str = FILE) -> LaunchFile:
+    """A launch file that comes to its end."""
+    launch = launched(folder, body, file)
+    assert launch.problem is None
+    return launch
+
+
 def each_launched(folder, bodies: Iterable[str], kind: str = "py") -> tuple[LaunchFile, ...]:
     names = (f"launch/a{number:02}.launch.{kind}" for number in range(40))
     return traced(folder, dict(zip(names, bodies, strict=False))).launches
 
 
-def test_what_the_original_refuses_is_refused(tmp_path):
-    refused = CASES["refused"]
-    bodies = [f"return LaunchDescription([{action}])" for action in refused]
-    found = each_launched(tmp_path, bodies)
+@pytest.mark.parametrize(
+    ("cases", "body", "kind"),
+    [
+        ("refused", "return LaunchDescription([{}])", "py"),
+        ("xml", "<launch>{}</launch>", "xml"),
+        ("yaml", "{}", "yaml"),
+    ],
+)
+def test_what_the_original_refuses_is_refused(cases, body, kind, tmp_path):
+    refused = CASES[cases]
+    found = each_launched(tmp_path, map(body.format, refused), kind)
     for launch, (action, says) in zip(found, refused.items(), strict=True):
         assert launch.problem is not None and launch.problem.kind == "error", action
         assert says in str(launch.problem.text)
@@ -59,7 +74,7 @@ def test_how_a_launch_file_ends_is_told_apart(tmp_path):
 
 
 def test_conditions_groups_and_includes_are_followed(tmp_path):
-    launch = launched(
+    launch = started(
         tmp_path,
         """
         go = LaunchConfiguration('go')
@@ -77,7 +92,6 @@ def test_conditions_groups_and_includes_are_followed(tmp_path):
         ])
         """,
     )
-    assert launch.problem is None
     told = [(node.name, node.namespace, node.later) for node in launch.nodes]
     assert told == [
         ("group", "in", False),
@@ -90,7 +104,7 @@ def test_conditions_groups_and_includes_are_followed(tmp_path):
 
 
 def test_the_environment_is_appended_to_or_prepended_with_any_separator(tmp_path):
-    launch = launched(
+    launch = started(
         tmp_path,
         """
         def told(name):
@@ -103,7 +117,6 @@ def test_the_environment_is_appended_to_or_prepended_with_any_separator(tmp_path
             told('B')])
         """,
     )
-    assert launch.problem is None
     assert [node.arguments for node in launch.nodes] == [("d-c:a:b",), (",b",)]
     in_xml = launched(
         tmp_path / "xml",
@@ -139,77 +152,53 @@ def test_values_of_parameters_go_through_yaml_where_the_original_does_so(tmp_pat
     assert fragile.problem is not None and "as yaml" in str(fragile.problem.text)
 
 
-def test_a_launch_file_in_xml_is_refused_where_the_original_does_so(tmp_path):
-    bodies = [f"<launch>{element}</launch>" for element in CASES["xml"]]
-    found = each_launched(tmp_path, bodies, "xml")
-    for launch, says in zip(found, CASES["xml"].values(), strict=True):
-        assert launch.problem is not None
-        assert says in str(launch.problem.text)
+IN_XML = """<launch>
+<arg name="rviz" default="true"/>
+<let name="file" value="$(find-pkg-share rviz2)/a.rviz"/>
+<group if="$(var rviz)">
+  <push_ros_namespace namespace="in"/>
+  <node pkg="rviz2" exec="rviz2" name="$(var rviz)" args="-d '$(var file)' --x">
+    <param name="a" value="1.5"/><param name="b" value="1" type="str"/>
+    <remap from="c" to="d"/>
+  </node>
+</group>
+<include file="$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py">
+  <arg name="pause" value="true"/>
+</include>
+</launch>"""
+IN_YAML = """launch:
+  - arg: {name: rviz, default: "true"}
+  - group:
+      - push_ros_namespace: {namespace: in}
+      - node:
+          if: $(var rviz)
+          pkg: rviz2
+          exec: rviz2
+          name: $(var rviz)
+          args: -d $(find-pkg-share rviz2)/a.rviz --x
+          param: [{name: a, value: 1.5}, {name: b, value: [1, 2]}, {name: c, value: true}]
+          remap: [{from: c, to: d}]
+  - include:
+      file: $(find-pkg-share gazebo_ros)/launch/gazebo.launch.py
+      arg: [{name: pause, value: "true"}]
+"""
 
 
-def test_a_launch_file_in_xml_starts_what_it_says(tmp_path):
-    launch = launched(
-        tmp_path,
-        """<launch>
-        <arg name="rviz" default="true"/>
-        <let name="file" value="$(find-pkg-share rviz2)/a.rviz"/>
-        <group if="$(var rviz)">
-          <push_ros_namespace namespace="in"/>
-          <node pkg="rviz2" exec="rviz2" name="$(var rviz)" args="-d '$(var file)' --x">
-            <param name="a" value="1.5"/><param name="b" value="1" type="str"/>
-            <remap from="c" to="d"/>
-          </node>
-        </group>
-        <include file="$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py">
-          <arg name="pause" value="true"/>
-        </include>
-        </launch>""",
-        "launch/display.launch.xml",
-    )
-    assert launch.problem is None
-    node = launch.nodes[0]
+@pytest.mark.parametrize(
+    ("kind", "body", "values"),
+    [
+        ("xml", IN_XML, {"a": "1.5", "b": "1"}),
+        ("yaml", IN_YAML, {"a": "1.5", "b": "[1, 2]", "c": "true"}),
+    ],
+)
+def test_a_launch_file_in_xml_or_yaml_starts_what_it_says(kind, body, values, tmp_path):
+    launch = started(tmp_path, body, f"launch/display.launch.{kind}")
+    (node,) = launch.nodes
     assert (node.name, node.namespace, node.remappings) == ("true", "in", ("c:=d",))
     assert node.arguments == ("-d", "/opt/ros/jazzy/share/rviz2/a.rviz", "--x")
-    assert [each.value for each in node.parameters] == ["1.5", "1"]
+    assert {each.name: each.value for each in node.parameters} == values
     include = launch.includes[0]
     assert (include.package, include.arguments) == ("gazebo_ros", ("pause:=true",))
-
-
-def test_a_launch_file_in_yaml_starts_what_one_in_xml_does(tmp_path):
-    launch = launched(
-        tmp_path,
-        """
-        launch:
-          - arg: {name: rviz, default: "true"}
-          - group:
-              - push_ros_namespace: {namespace: in}
-              - node:
-                  if: $(var rviz)
-                  pkg: rviz2
-                  exec: rviz2
-                  args: -d $(find-pkg-share rviz2)/a.rviz
-                  param: [{name: a, value: 1.5}, {name: b, value: [1, 2]}, {name: c, value: true}]
-                  remap: [{from: c, to: d}]
-          - include:
-              file: $(find-pkg-share gazebo_ros)/launch/gazebo.launch.py
-              arg: [{name: pause, value: "true"}]
-        """,
-        "launch/display.launch.yaml",
-    )
-    assert launch.problem is None
-    (node,) = launch.nodes
-    assert (node.namespace, node.remappings) == ("in", ("c:=d",))
-    assert node.arguments == ("-d", "/opt/ros/jazzy/share/rviz2/a.rviz")
-    values = {each.name: each.value for each in node.parameters}
-    assert values == {"a": "1.5", "b": "[1, 2]", "c": "true"}
-    assert launch.includes[0].arguments == ("pause:=true",)
-
-
-def test_a_launch_file_in_yaml_is_refused_where_it_is_none(tmp_path):
-    found = each_launched(tmp_path, CASES["yaml"], "yaml")
-    for launch, says in zip(found, CASES["yaml"].values(), strict=True):
-        assert launch.problem is not None and launch.problem.kind == "error"
-        assert says in str(launch.problem.text)
 
 
 def test_a_package_that_is_asked_for_has_a_folder_of_its_own(tmp_path):
@@ -220,6 +209,5 @@ def test_a_package_that_is_asked_for_has_a_folder_of_its_own(tmp_path):
     found = [os.path.basename(os.path.realpath(each)) for each in shares if os.path.isdir(each)]
     return LaunchDescription([Node(package="rviz2", executable="rviz2", arguments=found)])
     """
-    launch = launched(tmp_path, body)
-    assert launch.problem is None
+    launch = started(tmp_path, body)
     assert launch.nodes[0].arguments == ("rviz2", "xacro")

@@ -39,10 +39,8 @@ def test_a_mangled_package_is_looked_at_and_judged(package):
         trace = looked_at(package.lay_out(Path(folder)), cpu_s=3.0, wall_s=3.0)
         assert (Path(folder) / OUTSIDE).read_text(encoding="ascii") == SAYS
     assert decode(encode(trace)) == trace
-    problems = [
-        each.problem for each in (trace.setup, *trace.launches, *trace.descriptions) if each
-    ]
-    assert [each for each in problems if each and OURS.search(str(each.text))] == []
+    looks = [each for each in (trace.setup, *trace.launches, *trace.descriptions) if each]
+    assert [each for each in looks if each.problem and OURS.search(str(each.problem.text))] == []
     for exercise in EXERCISES:
         found = judge(recorded(trace), exercise.checks, exercise.points, exercise.tolerances)
         assert not any("fault of the exercise" in str(verdict.rationale) for verdict in found)
