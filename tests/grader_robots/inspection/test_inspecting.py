@@ -122,7 +122,8 @@ def test_a_set_up_that_kills_or_stops_who_looks_is_judged_and_gets_nothing(
     monkeypatch.setattr(inspecting, "EVERY_S", 0.05)
     result = graded(tmp_path, f"import os, signal\nos.kill(os.getppid(), signal.{signal})\n")
     assert (result.score, result.run.outcome) == (0, outcome)
-    assert said in f"{result.run.flags[0]} {result.diagnosis.cause}"
+    (flag,) = result.run.flags
+    assert said in f"{flag!s} {result.diagnosis.cause!s}"
 
 
 @pytest.mark.parametrize(
