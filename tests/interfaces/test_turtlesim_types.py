@@ -8,15 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import rclpy
 from ament_index_python.packages import get_package_share_directory
-from rclpy.action import ActionClient, ActionServer
-from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
-from rclpy.task import Future
+from rclpy.action import ActionServer
 from type_description_interfaces.srv import GetTypeDescription
 
+from tests.graph import Graph
 from turtlesim_py.ros.interfaces import NAMES, Interfaces, installed
 
 #: By package and type. Those of turtlesim were measured on 1.8.2; later ones of Jazzy have the
@@ -60,38 +56,11 @@ CALLS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "TeleportRelative": ({"linear": 2.0}, {}),
 }
 
-DEADLINE_S = 30.0  # only a failing test waits for it
-
-
-class Peer:
-    """A node and what spins it, alone in a context of its own.
-
-    Its topics are not a turtle's: a simulator may stand in the same domain.
-    """
-
-    def __init__(self) -> None:
-        self._context = Context()
-        rclpy.init(context=self._context)
-        self.node = Node("peer", context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self.node)
-
-    def wait_for(self, future: Future) -> Any:
-        """Spin until `future` is done, and return its result."""
-        self._executor.spin_until_future_complete(future, timeout_sec=DEADLINE_S)
-        assert future.done(), f"nothing came within {DEADLINE_S} s"
-        return future.result()
-
-    def close(self) -> None:
-        """Take everything down again."""
-        self._executor.shutdown()
-        self.node.destroy_node()
-        self._context.shutdown()
-
 
 @pytest.fixture
-def peer():
-    peer = Peer()
+def peer(ros):
+    """A node alone; its topics are not a turtle's: a simulator may stand in the same domain."""
+    peer = Graph("peer")
     yield peer
     peer.close()
 
@@ -104,19 +73,19 @@ def interfaces(request):
 
 def description(package: str, name: str) -> dict[str, Any]:
     """What the package says of a type, for programs."""
-    file = Path(get_package_share_directory(package), f"{name}.json")
-    made: dict[str, Any] = json.loads(file.read_text())
-    return made
+    return json.loads(Path(get_package_share_directory(package), f"{name}.json").read_text())
+
+
+def type_hash(package: str, name: str) -> str:
+    entries = description(package, name)["type_hashes"]
+    hashes = {entry["type_name"]: entry["hash_string"] for entry in entries}
+    return hashes[f"{package}/{name}"]
 
 
 @pytest.mark.parametrize("name", TYPE_HASHES)
 def test_type_hash_is_that_of_the_original(interfaces, name):
-    hashes = {
-        entry["type_name"]: entry["hash_string"]
-        for entry in description(interfaces.package, name)["type_hashes"]
-    }
     expected = HASHES[interfaces.package][name]
-    assert hashes[f"{interfaces.package}/{name}"] == f"RIHS01_{expected}"
+    assert type_hash(interfaces.package, name) == f"RIHS01_{expected}"
 
 
 @pytest.mark.parametrize("name", COMMENTED)
@@ -136,12 +105,12 @@ def test_both_packages_say_the_same_of_a_type(name):
 def test_message_arrives_as_it_was_sent(peer, interfaces, name):
     kind = getattr(interfaces.msg, name)
     message = kind(**MESSAGES[name])
-    received: Future = Future()
     topic = f"sent/{interfaces.package}/{name.lower()}"
-    peer.node.create_subscription(kind, topic, received.set_result, 7)
     publisher = peer.node.create_publisher(kind, topic, 7)
-    peer.node.create_timer(0.01, lambda: publisher.publish(message))  # until it is known
-    assert peer.wait_for(received) == message
+    received = peer.listen(kind, topic)
+    peer.until(publisher.get_subscription_count, "the subscriber")
+    publisher.publish(message)
+    assert peer.until(lambda: received, "the message") == [message]
     (endpoint,) = peer.node.get_publishers_info_by_topic(topic)
     expected = HASHES[interfaces.package][f"msg/{name}"]
     assert str(endpoint.topic_type_hash) == f"RIHS01_{expected}"
@@ -151,18 +120,16 @@ def test_message_arrives_as_it_was_sent(peer, interfaces, name):
 def test_service_is_called_and_answers(peer, interfaces, name):
     kind = getattr(interfaces.srv, name)
     asked, answered = CALLS[name]
-    request_, response = kind.Request(**asked), kind.Response(**answered)
-    requests = []
+    response, requests = kind.Response(**answered), []
 
     def answer(incoming: Any, _: Any) -> Any:
         requests.append(incoming)
         return response
 
-    peer.node.create_service(kind, f"sent/{interfaces.package}/{name.lower()}", answer)
-    client = peer.node.create_client(kind, f"sent/{interfaces.package}/{name.lower()}")
-    assert client.wait_for_service(DEADLINE_S)
-    assert peer.wait_for(client.call_async(request_)) == response
-    assert requests == [request_]
+    service = f"sent/{interfaces.package}/{name.lower()}"
+    peer.node.create_service(kind, service, answer)
+    assert peer.call(kind, service, **asked) == response
+    assert requests[0] == kind.Request(**asked)
 
 
 def test_action_gives_feedback_and_a_result(peer, interfaces):
@@ -173,32 +140,21 @@ def test_action_gives_feedback_and_a_result(peer, interfaces):
         goal.succeed()
         return kind.Result(delta=-goal.request.theta)
 
-    feedback: Future = Future()
-    ActionServer(peer.node, kind, "sent/rotate_absolute", execute)
-    client = ActionClient(peer.node, kind, "sent/rotate_absolute")
-    assert client.wait_for_server(DEADLINE_S)
-    goal = peer.wait_for(
-        client.send_goal_async(
-            kind.Goal(theta=1.5),
-            lambda message: feedback.set_result(message.feedback),
-        )
-    )
-    assert peer.wait_for(goal.get_result_async()).result == kind.Result(delta=-1.5)
-    assert peer.wait_for(feedback) == kind.Feedback(remaining=1.5)
+    feedback = []
+    name = f"sent/{interfaces.package}/rotate_absolute"
+    ActionServer(peer.node, kind, name, execute)
+    client = peer.action(kind, name)
+    goal = peer.done(client.send_goal_async(kind.Goal(theta=1.5), feedback.append))
+    assert peer.done(goal.get_result_async()).result == kind.Result(delta=-1.5)
+    peer.until(lambda: feedback, "feedback")
+    assert feedback[0].feedback == kind.Feedback(remaining=1.5)
 
 
 def test_a_node_describes_the_type_to_others(peer, interfaces):
     package = interfaces.package
-    peer.node.create_publisher(interfaces.msg.Pose, "described", 7)
-    client = peer.node.create_client(GetTypeDescription, "/peer/get_type_description")
-    assert client.wait_for_service(DEADLINE_S)
-    answer = peer.wait_for(
-        client.call_async(
-            GetTypeDescription.Request(
-                type_name=f"{package}/msg/Pose", type_hash=f"RIHS01_{HASHES[package]['msg/Pose']}"
-            )
-        )
-    )
+    peer.node.create_publisher(interfaces.msg.Pose, f"described/{package}", 7)
+    asked = {"type_name": f"{package}/msg/Pose", "type_hash": type_hash(package, "msg/Pose")}
+    answer = peer.call(GetTypeDescription, "/peer/get_type_description", **asked)
     assert answer.successful, answer.failure_reason
     fields = [field.name for field in answer.type_description.type_description.fields]
     assert fields == ["x", "y", "theta", "linear_velocity", "angular_velocity"]
