@@ -1,6 +1,5 @@
 """The tutorial's node in virtual time: as in real time, and the same every time."""
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -12,9 +11,11 @@ from grader.testing.solutions import read_solutions
 from grader_robots.scene import motion
 from grader_robots.scene.trace import RobotTrace
 from tests import archive, runs
+from tests.grader_robots.packages import written
 
 EXERCISE = load_exercise("state_publisher")
 LOOP = EXERCISE.folder / "right" / "constructor_loop.py"
+LAUNCH = "launch/walker.launch.py"
 REFERENCE = read_solutions(EXERCISE)[0].path
 #: For what does not depend on how long it runs.
 SHORT = replace(EXERCISE, limits=replace(EXERCISE.limits, total_s=1.5))
@@ -53,10 +54,8 @@ def test_a_recording_is_read_back_as_it_was_and_so_is_its_package(tmp_path):
 
 
 def test_what_a_launch_file_would_have_started_otherwise_is_told(tmp_path):
-    package = tmp_path / "walker"
-    shutil.copytree(REFERENCE, package)
-    launch = package / "launch" / "walker.launch.py"
-    launch.write_text(launch.read_text().replace('output="screen"', 'parameters=[{"r": 1.0}]'))
+    text = (REFERENCE / LAUNCH).read_text().replace('output="screen"', 'parameters=[{"r": 1.0}]')
+    package = written(tmp_path, {LAUNCH: text}, REFERENCE)
     (remark,) = grading.record(package, SHORT).nominal.run.flags
     assert str(remark) == (
         "launch/walker.launch.py was evaluated and not run: state_publisher was started by itself, "
@@ -76,12 +75,9 @@ def test_the_same_in_real_time():
 
 
 def test_what_is_added_so_that_it_starts_here_is_not_looked_at(tmp_path):
-    package = tmp_path / "walker"
-    shutil.copytree(REFERENCE, package)
-    (package / "walker" / "__init__.py").unlink()
-    setup = (package / "setup.py").read_text()
     found = "packages=__import__('setuptools').find_packages()"
-    (package / "setup.py").write_text(setup.replace("packages=[package_name]", found))
+    setup = (REFERENCE / "setup.py").read_text().replace("packages=[package_name]", found)
+    package = written(tmp_path, {"walker/__init__.py": None, "setup.py": setup}, REFERENCE)
     (script,) = grading.record(package, SHORT).nominal.package.setup.scripts
     assert str(script.fault) == "setup.py does not list the package walker, so nothing installs it"
 

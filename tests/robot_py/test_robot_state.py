@@ -108,10 +108,6 @@ def test_only_joints_that_are_named_are_sent_and_names_of_no_joint_are_nothing()
     assert [one.child_frame for one in transforms] == ["head"]
 
 
-def test_names_of_another_robot_make_an_empty_message():
-    assert RobotState(WALKER).hear(at(START, "left", "right"), START) == robot_state.Published(())
-
-
 def test_of_a_joint_that_is_named_twice_the_first_counts():
     state = JointState(START, ("periscope", "periscope"), (0.1, 0.2))
     (transform,) = RobotState(WALKER).hear(state, START).transforms

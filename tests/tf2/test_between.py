@@ -54,20 +54,6 @@ def test_between_two_samples_it_goes_straight_and_turns_evenly_the_shorter_way(f
     np.testing.assert_allclose(matrix(found)[:3, :3], expected, atol=1e-7)
 
 
-def test_a_third_of_a_quarter_turn_is_thirty_degrees():
-    buffer = BufferCore()
-    half = math.sqrt(0.5)
-    buffer.set_transform(transform("a", "b", 1, (0, 0, 0)), "a test")
-    # the same rotation as its opposite, which is further away as four numbers
-    buffer.set_transform(transform("a", "b", 4, (3, 6, 9), (0, 0, -half, -half)), "a test")
-    found = buffer.lookup_transform_core("a", "b", at(2))
-    assert xyz(found) == pytest.approx([1, 2, 3], abs=1e-15)
-    angle = math.radians(30)
-    assert quaternion(found) == pytest.approx(
-        [0, 0, math.sin(angle / 2), math.cos(angle / 2)], abs=1e-15
-    )
-
-
 @st.composite
 def trees(draw):
     """Frames f0, f1, ... of one tree in any order of coming, each below one with a smaller number.

@@ -12,21 +12,25 @@ CHECK = (
 )
 
 
-def test_its_list_of_what_to_check_is_left_out_where_it_only_hides_the_line():
-    said = f"xacro: XML parsing error: mismatched tag: line 49, column 2 {WHEN} {CHECK}"
-    assert (
-        xacro_brief(said, "crab") == "xacro: XML parsing error: mismatched tag: line 49, column 2"
-    )
-
-
-def test_files_are_called_as_in_the_package():
-    said = f"xacro: error: No such file or directory: /prefix/share/crab/urdf/legs.xacro {WHEN}"
-    assert xacro_brief(said, "crab") == "xacro: No such file or directory: urdf/legs.xacro"
-
-
-def test_the_macro_in_which_it_happens_stays():
-    said = "xacro: error: name 'r' is not defined when instantiating macro: leg (/prefix/a.xacro)"
-    assert "when instantiating macro: leg" in xacro_brief(said, "crab")
+@pytest.mark.parametrize(
+    ("said", "brief"),
+    [
+        (
+            f"XML parsing error: mismatched tag: line 9 {WHEN} {CHECK}",
+            "XML parsing error: mismatched tag: line 9",
+        ),
+        (
+            f"error: No such file or directory: /prefix/share/crab/urdf/legs.xacro {WHEN}",
+            "No such file or directory: urdf/legs.xacro",
+        ),
+        (
+            "error: name 'r' is not defined when instantiating macro: leg (/prefix/a.xacro)",
+            "name 'r' is not defined when instantiating macro: leg (/prefix/a.xacro)",
+        ),
+    ],
+)
+def test_what_only_hides_the_line_is_left_out_and_files_are_called_as_in_the_package(said, brief):
+    assert xacro_brief(f"xacro: {said}", "crab") == f"xacro: {brief}"
 
 
 @pytest.mark.parametrize(

@@ -98,6 +98,9 @@ def test_where_a_robot_cannot_be_drawn_it_is_told(tmp_path):
     read = Thumb.read(tmp_path)
     assert read is not None and read.picture == ""
     assert read.words.startswith("The robot arm with 1 link: base; as ")
+    # feedback, which has no recording, says what a picture would show
+    of_class = entry("zoe", result({"a": 10.0}), folder=tmp_path)
+    assert "The robot arm with 1 link: base" in Feedback().page(of_class).decode()
 
 
 def test_frames_are_a_drawing_with_words(robot):
@@ -135,22 +138,9 @@ def test_where_nothing_was_found_the_page_says_so_and_works(trace, scene, tmp_pa
     assert "no robot description was" in page or "no transform from odom" in page
 
 
-def test_without_the_recording_the_picture_beside_the_result_is_shown(tmp_path):
+def test_a_page_of_turtles_or_without_a_recording_has_nothing_of_it():
     page = html.render(samples.report(verdict("a")))
-    assert "<canvas" not in page and 'class="still"' not in page
-
-
-def test_feedback_which_has_no_recording_says_what_a_picture_would_show(tmp_path):
-    run = Run(trace_sha256=package_trace().sha256())
-    recording = Recording(package_trace(), run, scene="package")
-    (tmp_path / THUMB).write_bytes(thumb(Recordings(recording)))
-    of_class = entry("zoe", result({"a": 10.0}), folder=tmp_path)
-    assert "The robot arm with 1 link: base" in Feedback().page(of_class).decode()
-
-
-def test_a_page_of_turtles_has_nothing_of_it():
-    page = html.render(samples.report(verdict("a")))
-    for part in (".solid", "turning", "aspect-ratio: 1", "data-heading"):
+    for part in (".solid", "turning", "aspect-ratio: 1", "data-heading", "<canvas", '="still"'):
         assert part not in page
 
 
