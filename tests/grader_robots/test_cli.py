@@ -4,11 +4,6 @@ import pytest
 
 from grader.cli import main
 from grader.exercise.loading import load_exercise
-from grader.scenes import load_scene
-
-
-def test_the_scene_of_a_robot_has_no_live_page():
-    assert load_scene("robot").live_page(0) is None
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,14 @@ def checks_of(*functions):
     return checks
 
 
+def passing(name):
+    def passes(recordings, tolerances):
+        return Finding(1, "seen")
+
+    passes.__name__ = name
+    return passes
+
+
 def raising(error):
     def raises(recordings, tolerances):
         raise error
@@ -152,7 +160,7 @@ def test_a_check_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_pat
     assert capfd.readouterr() == ("", "so far\n")
 
 
-def endless():
+def endless(recordings=None, tolerances=None):
     while True:
         try:
             while True:
@@ -180,21 +188,11 @@ def test_a_check_that_hits_a_limit_is_not_judged_and_those_before_it_count(said,
     monkeypatch.setattr(asking, "LIMITS", WorkLimits(cpu_s=0.2, wall_s=30.0))
     run, goes_on = HITS[said]
 
-    def before(recordings, tolerances):
-        return Finding(1, "seen")
-
     def hits(recordings, tolerances):
         return run()
 
-    def other(recordings, tolerances):
-        return Finding(1, "seen")
-
-    checks = checks_of(before, hits, other)
-
-    @checks(after=("hits",))
-    def depends(recordings, tolerances):
-        return Finding(1, "seen")
-
+    checks = checks_of(passing("before"), hits, passing("other"))
+    checks(after=("hits",))(passing("depends"))
     found = verdicts(checks, {"before": 1, "hits": 5, "other": 3, "depends": 2})
     broken = found["hits"]
     assert (broken.status, broken.score, broken.max_score) == ("not_judged", 0, 5)
@@ -216,14 +214,10 @@ def test_a_finding_comes_back_as_it_was_made():
 
 def test_checks_are_limited_in_every_thread(monkeypatch):
     monkeypatch.setattr(asking, "LIMITS", WorkLimits(cpu_s=0.2, wall_s=30.0))
-
-    def hits(recordings, tolerances):
-        endless()
-
-    checks = checks_of(hits)
+    checks = checks_of(endless)
     with ThreadPoolExecutor(2) as pool:
-        tasks = [pool.submit(verdicts, checks, {"hits": 1}) for _ in range(2)]
-        assert {task.result()["hits"].status for task in tasks} == {"not_judged"}
+        tasks = [pool.submit(verdicts, checks, {"endless": 1}) for _ in range(2)]
+        assert {task.result()["endless"].status for task in tasks} == {"not_judged"}
 
 
 def test_a_key_on_the_keyboard_is_not_the_check_s_where_there_is_no_copy(monkeypatch):
@@ -264,15 +258,8 @@ def test_a_check_that_looks_at_a_varied_run_waits_and_so_does_what_depends_on_it
         return Finding(float(all(r.run.ticks >= 0 for r in recordings)), "")
 
     checks = checks_of(alone, counts, all_of_them)
-
-    @checks(after=("counts",))
-    def later(recordings, tolerances):
-        return Finding(1.0, "")
-
-    @checks(after=("alone",))
-    def sooner(recordings, tolerances):
-        return Finding(1.0, "")
-
+    checks(after=("counts",))(passing("later"))
+    checks(after=("alone",))(passing("sooner"))
     assert early_names(nominal, checks) == ["alone", "sooner"]
     one = NominalAlone(nominal)
     assert next(iter(one)) is nominal

@@ -1,13 +1,12 @@
 """The exercise sheet says all that is judged, with the numbers that are in force."""
 
 import pytest
-import yaml
 
 from grader.exercise.loading import load_exercise
 from grader.exercise.sheet import Start, in_force, sheet
 from grader.recording.subject import load_subject
 from tests.grader.testing import exercises
-from tests.grader.testing.exercises import refusal
+from tests.grader.testing.exercises import edited, refusal
 
 START = Start("mine/pkg/node.py", "pkg", "grader run mine")
 
@@ -48,10 +47,8 @@ def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_be
 
 
 def test_numbers_are_those_in_force_and_keep_their_explanations(tmp_path):
-    path = tmp_path / "mine.yaml"
-    changes = {"tolerances": {"edge_m": 1.25, "centres_m": [5.5]}, "limits": {"total_s": 240}}
-    path.write_text(yaml.safe_dump({"exercise": "turtlesim_challenge", **changes}))
-    text = sheet_of(path)
+    tolerances = {"edge_m": 1.25, "centres_m": [5.5]}
+    text = sheet_of(edited(tmp_path, tolerances=tolerances, limits={"total_s": 240}))
     assert "\nedge_m: 1.25            # a stop this near a wall is near the edge" in text
     assert "\ncentres_m: [5.5]  # where students take the centre to be\n" in text
     assert "whichever of the four it is, between 0 and 1.25 m from it" in " ".join(text.split())
@@ -67,3 +64,11 @@ def test_an_exercise_needs_no_words_of_its_own_but_a_task_is_a_text(tmp_path):
     assert "ros2 run " not in text.partition("To see")[0]
     assert "more run" not in text
     assert "task: expected a text, found 3" in refusal(exercises.write(tmp_path / "ahead", task=3))
+
+
+def test_the_sheet_of_a_package_says_that_nothing_is_started():
+    text = sheet_of("description_package")
+    assert "Nothing of your package is started" in text
+    assert "simulated seconds" not in text
+    for check, points in load_exercise("description_package").points.items():
+        assert f"| {points:g} | " in text and f"`{check}`" in text

@@ -1,26 +1,24 @@
 """How varied runs differ from the nominal one: what an exercise says, and what is drawn."""
 
 import pytest
-import yaml
 
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
 from grader.recording.subject import Start
 from grader.testing import checking, drive, twist
+from tests.grader.testing.exercises import edited
 from turtlesim_py.world.turtle import SIZE_M
 
 NAME = "turtlesim_challenge"
 SAME = {"start": "same", "speed": [1.5, 1.6], "turn": [0.8, 0.9]}
 
 
-def edited(tmp_path, **varied):
-    path = tmp_path / "mine.yaml"
-    path.write_text(yaml.safe_dump({"exercise": NAME, "varied_runs": varied}))
-    return load_exercise(str(path))
+def varied(tmp_path, **runs):
+    return load_exercise(edited(tmp_path, varied_runs=runs))
 
 
 def test_the_seed_draws_factors_from_the_ranges_and_the_place_of_the_nominal_run(tmp_path):
-    exercise = edited(tmp_path, count=2, runs=[SAME])
+    exercise = varied(tmp_path, count=2, runs=[SAME])
     same, elsewhere = exercise.starts(5)
     assert exercise.starts(5) == [same, elsewhere]
     assert (same.x, same.y, same.theta) == (SIZE_M / 2, SIZE_M / 2, 0.0)
@@ -28,8 +26,8 @@ def test_the_seed_draws_factors_from_the_ranges_and_the_place_of_the_nominal_run
     assert 0.8 <= same.turn <= 0.9
     assert elsewhere.is_as_commanded
     assert exercise.starts(6)[0].speed != same.speed
-    assert edited(tmp_path, count=1).starts() == load_exercise(NAME).starts()[:1]
-    asked = edited(tmp_path, count=1, runs=[SAME]).conditions
+    assert varied(tmp_path, count=1).starts() == load_exercise(NAME).starts()[:1]
+    asked = varied(tmp_path, count=1, runs=[SAME]).conditions
     names = [f"varied_runs.1.{name}" for name in ("same", "speed_from", "turn_to")]
     assert [asked[name] for name in names] == [1, 1.5, 0.9]
 
@@ -47,7 +45,7 @@ def test_the_seed_draws_factors_from_the_ranges_and_the_place_of_the_nominal_run
 )
 def test_what_cannot_be_drawn_from_is_refused_with_its_line(tmp_path, runs, words):
     with pytest.raises(ExerciseError, match=words):
-        edited(tmp_path, count=1, runs=runs)
+        varied(tmp_path, count=1, runs=runs)
 
 
 def test_each_student_of_a_secret_has_runs_of_his_own():
@@ -80,6 +78,6 @@ def test_the_factors_hold_for_every_turtle_and_outlive_reset_kill_and_spawn():
 
 @pytest.mark.parametrize(("speed", "is_told"), [(1.2, True), (1.5, False)])
 def test_the_author_is_warned_of_a_range_that_a_computed_stop_may_pass(tmp_path, speed, is_told):
-    exercise = edited(tmp_path, count=1, runs=[{**SAME, "speed": [speed, 1.6]}])
+    exercise = varied(tmp_path, count=1, runs=[{**SAME, "speed": [speed, 1.6]}])
     told = [str(fault.text) for fault in checking._too_alike(exercise)]
     assert ["drive a circle 1.33 times as large" in text for text in told] == [True] * is_told

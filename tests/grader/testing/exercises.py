@@ -71,6 +71,13 @@ def write(folder: Path, checks: str = CHECKS, mutants: object = MUTANTS, **chang
     return folder
 
 
+def edited(folder: Path, text: str = "", **changes: Any) -> Path:
+    """An edited copy of the challenge, by text or by changes."""
+    path = folder / "mine.yaml"
+    path.write_text(yaml.safe_dump({"exercise": "turtlesim_challenge", **changes}) + text)
+    return path
+
+
 def refusal(path: Path) -> str:
     """Return why an exercise cannot be loaded."""
     with pytest.raises(ExerciseError) as error:

@@ -103,16 +103,6 @@ def test_rviz_as_a_plain_program_is_rviz(tmp_path):
         assert lost(graded(written(tmp_path / str(len(words)), {DISPLAY: changed}))) == left
 
 
-def test_an_angle_in_degrees_is_told_as_one(tmp_path):
-    joint = (
-        '<link name="fin"/><joint name="fin_joint" type="fixed"><parent link="base_link"/>'
-        '<child link="fin"/><origin rpy="90 0 0"/></joint></robot>'
-    )
-    result = graded(changed(tmp_path, XACRO, "</robot>", joint))
-    assert lost(result) == {"urdf": 0.5}
-    assert "'fin_joint' is turned by 90 rad, as if in degrees" in str(result.diagnosis.cause)
-
-
 def test_a_copy_of_the_package_that_was_left_within_it_costs_nothing(tmp_path):
     package = written(tmp_path, {})
     shutil.copytree(REFERENCE, package / "old", ignore=shutil.ignore_patterns("__pycache__"))
@@ -149,38 +139,37 @@ def test_a_file_of_another_package_is_nobody_s_fault(tmp_path):
     assert status["installed"] == "passed"
 
 
-def test_what_a_description_does_not_say_is_found_where_urdfdom_is_silent(tmp_path):
-    joint = '<joint name="again" type="fixed"><parent link="base_link"/><child link="camera"/>'
-    result = graded(changed(tmp_path, XACRO, "</robot>", f"{joint}</joint></robot>"))
-    assert lost(result) == {"urdf": 0.5}
-    assert "'camera' hangs on 2 joints" in str(result.diagnosis.cause)
+MESH = "package://walker_description/meshes/camera.stl"
+FIXED = '<joint name="fin" type="fixed"><parent link="base_link"/><child link='
+BASE = '<link name="base_link"/>'
 
 
 @pytest.mark.parametrize(
-    ("uri", "says"),
+    ("old", "new", "left", "said"),
     [
         (
-            "file:///home/me/ros2_ws/src/walker_description/meshes/camera.stl",
-            "a path of one machine",
+            *("</robot>", f'<link name="f"/>{FIXED}"f"/><origin rpy="90 0 0"/></joint></robot>'),
+            *({"urdf": 0.5}, "'fin' is turned by 90 rad, as if in degrees"),
         ),
         (
-            "package://walker_description/camera.stl",
-            "camera.stl is installed as package://walker_description/meshes/camera.stl",
+            *("</robot>", f'{FIXED}"camera"/></joint></robot>'),  # of which urdfdom is silent
+            *({"urdf": 0.5}, "'camera' hangs on 2 joints"),
+        ),
+        (MESH, "file:///home/me/meshes/camera.stl", {"meshes": 0}, "a path of one machine"),
+        (
+            *(MESH, "package://walker_description/camera.stl", {"meshes": 0}),
+            f"camera.stl is installed as {MESH}",
+        ),
+        (
+            *(BASE, f"<?xacro?>{BASE}", dict.fromkeys(("urdf", "launch", "meshes", "spawn"), 0)),
+            "take the other away",
         ),
     ],
 )
-def test_a_wrong_way_to_a_mesh_that_is_installed_is_a_fault_of_the_description(uri, says, tmp_path):
-    installed = "package://walker_description/meshes/camera.stl"
-    result = graded(changed(tmp_path, XACRO, installed, uri))
-    assert lost(result) == {"meshes": 0}
-    assert says in str(result.diagnosis.cause)
-
-
-def test_a_second_declaration_is_told_as_what_it_is(tmp_path):
-    link = '<link name="base_link"/>'
-    result = graded(changed(tmp_path, XACRO, link, f"<?xacro?>{link}"))
-    assert lost(result)["urdf"] == 0
-    assert "take the other away" in str(result.diagnosis.help)
+def test_a_fault_of_the_description_is_told_as_what_it_is(old, new, left, said, tmp_path):
+    result = graded(changed(tmp_path, XACRO, old, new))
+    assert lost(result) == left
+    assert said in f"{result.diagnosis.cause!s} {result.diagnosis.help!s}"
 
 
 def test_who_asks_for_what_is_not_there_is_told_with_the_line(tmp_path):
