@@ -27,12 +27,6 @@ AXES = VECTORS.filter(lambda axis: math.hypot(*axis) > 0.01)
 TYPES = st.sampled_from(list(JointType))
 
 
-def robot(name: str) -> Model:
-    model = parse((ROBOTS / f"{name}.urdf").read_text()).model
-    assert model is not None
-    return model
-
-
 def chain(*joints: Joint) -> Model:
     names = {"root", *(joint.child for joint in joints), *(joint.parent for joint in joints)}
     links = {name: Link(name) for name in sorted(names)}
@@ -47,7 +41,7 @@ def joint(kind: str, name: str = "j", parent: str = "root", child: str = "tip", 
 @pytest.mark.parametrize("number", range(len(SECOND_OPINIONS)))
 def test_links_are_where_yourdfpy_and_mujoco_see_them(number):
     opinion = SECOND_OPINIONS[number]
-    model = robot(opinion["robot"])
+    model = parse((ROBOTS / f"{opinion['robot']}.urdf").read_text()).model
     frames = kinematics.forward(model, kinematics.with_mimics(model, opinion["positions"]))
     assert sorted(frames) == sorted(opinion["frames"])
     for link, seen in opinion["frames"].items():
@@ -87,13 +81,12 @@ def naive(one: Joint, position: float) -> np.ndarray:
     (roll, pitch, yaw), axis = one.origin.rpy, np.array(one.axis) / math.hypot(*one.axis)
     x, y, z = np.eye(3)
     turn = rodrigues(z, yaw) @ rodrigues(y, pitch) @ rodrigues(x, roll)
-    moved = np.zeros(3)
-    moving = one.type in ("revolute", "continuous")
-    if one.type == "prismatic":
-        moved = axis * position
     placed, acted = np.eye(4), np.eye(4)
     placed[:3, :3], placed[:3, 3] = turn, one.origin.xyz
-    acted[:3, :3], acted[:3, 3] = rodrigues(axis, position) if moving else np.eye(3), moved
+    if one.type == "prismatic":
+        acted[:3, 3] = axis * position
+    if one.type in ("revolute", "continuous"):
+        acted[:3, :3] = rodrigues(axis, position)
     return placed @ acted
 
 

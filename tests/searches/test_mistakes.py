@@ -44,7 +44,7 @@ def test_a_mistake_fits_a_right_controller_and_says_which_lines_are_to_be_change
 
 @dataclass(frozen=True)
 class Drawn:
-    """A mistake in a controller: the file or package without it, and the file with it."""
+    """A mistake in a controller, whose first line is to name it at a line to be changed."""
 
     operator: Operator
     submission: Path
@@ -52,13 +52,11 @@ class Drawn:
     mutant: Mutant
 
     def is_at(self, found):
-        """Whether the first line has a line that has to be changed."""
         place = found.place if found is not None else None
         is_there = place is not None and PurePath(place.file).name == self.file.name
         return is_there and place.line in self.mutant.lines
 
     def is_named_by(self, found):
-        """Whether its words are those of this mistake."""
         return found is not None and self.operator.named_by(f"{found.cause!s} {found.help!s}")
 
 

@@ -105,6 +105,9 @@ def test_each_student_has_starts_of_his_own_where_the_exercise_says_so(tmp_path)
     reseeded = loaded(tmp_path, "varied_runs: {per_student: true, seed: 99}")
     assert reseeded.seed_for("4711") != exercise.seed_for("4711")
     assert load_exercise(NAME).seed_for("4711") is None
+    # ... and where there is a secret
+    asked = (("4711", "this"), ("4712", "this"), ("4711", "that"))
+    assert len({load_exercise(NAME).seed_for(*each) for each in asked} - {None}) == 3
     assert loaded(tmp_path, "varied_runs: {per_student: false}").seed_for("4711") is None
     own = loaded(tmp_path, "varied_runs: {per_student: true}")
     assert own.conditions["varied_runs.per_student"] == 1

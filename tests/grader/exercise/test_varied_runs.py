@@ -48,14 +48,6 @@ def test_what_cannot_be_drawn_from_is_refused_with_its_line(tmp_path, runs, word
         varied(tmp_path, count=1, runs=runs)
 
 
-def test_each_student_of_a_secret_has_runs_of_his_own():
-    exercise = load_exercise(NAME)
-    one, two = (exercise.seed_for(name, "nobody guesses this") for name in ("ann", "bob"))
-    assert one != two
-    assert exercise.seed_for("ann", "nobody guesses that") != one
-    assert exercise.seed_for("ann") is None
-
-
 def test_the_factors_hold_for_every_turtle_and_outlive_reset_kill_and_spawn():
     def controller(tick, pose, arena):
         if tick == 10:

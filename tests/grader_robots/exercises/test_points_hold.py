@@ -1,6 +1,5 @@
 """Less never earns more, and one more file never costs points: for each exercise about robots."""
 
-import math
 import shutil
 import tempfile
 from functools import cache
@@ -13,33 +12,14 @@ import yaml
 from grader.exercise.loading import load_exercise
 from grader.judging import judge
 from grader.recording.recording import Recording, Recordings
-from grader_robots.scene.driving import drive, joint_state, tf
-from robot_py.robot_state import Placed
+from grader_robots.scene.driving import drive
+from tests.grader_robots.exercises.test_state_publisher import walker
 from tests.grader_robots.packages import looked_at, recorded
 from tests.tiers import others_are_more
 
 CASES = yaml.safe_load(Path(__file__).with_name("points_hold.yaml").read_text(encoding="utf-8"))
 TAKEN, EXTRA = CASES["taken"], CASES["extra"]
 MENDS = {frozenset(pair) for pair in CASES["mends"]}
-
-
-def walker(without):
-    """What the node publishes, without what is taken away."""
-
-    def controller(tick, now_ns):
-        if tick % 2:
-            return ()
-        t = tick * 0.016
-        moved = {"swivel": 0.5 * t, "tilt": 0.3 * math.sin(t), "periscope": 0.1 * math.sin(t)}
-        moved = {name: at for name, at in moved.items() if f"the {name}" not in without}
-        half = (0.5 * t + math.pi / 2) / 2
-        at, turned = (2 * math.cos(t / 2), 2 * math.sin(t / 2), 0.7), (0.0, 0.0)
-        stamp = 0 if "stamps" in without else now_ns
-        sent = joint_state(stamp, list(moved), list(moved.values()))
-        way = tf(Placed(stamp, "odom", "axis", at, (*turned, math.sin(half), math.cos(half))))
-        return (sent,) if "the odometry" in without else (sent, way)
-
-    return controller
 
 
 @cache
@@ -64,7 +44,7 @@ def points(name: str, taken: frozenset[str], extra: str = "") -> float:
         trace = looked_at(package)
     recordings = recorded(trace)
     if name == "state_publisher":
-        ran = drive(walker(taken), 1000, exercise.setting)
+        ran = drive(walker(without=taken), 1000, exercise.setting)
         recordings = Recordings(Recording(ran, scene="robot", package=trace))
     return judge(recordings, exercise).score
 

@@ -50,27 +50,25 @@ SETUP = Setup(
 PACKAGE = PackageTrace(SETUP, launches=(LAUNCH,), texts=(URDF,))
 
 
-def walker(every=2, radius=2.0, speed=0.5, height=0.7, look=math.pi / 2, joints=lambda t: {}):
-    """Publishes every so many ticks."""
+def walker(
+    every=2, radius=2.0, speed=0.5, height=0.7, look=math.pi / 2, joints=lambda t: {}, without=()
+):
+    """Publishes every so many ticks, without what is taken away."""
 
     def controller(tick, now_ns):
         if tick % every:
             return ()
         t = tick * 0.016
-        moved = {
-            "swivel": 0.5 * t,
-            "tilt": 0.3 * math.sin(t),
-            "periscope": 0.1 * math.sin(t),
-            **joints(t),
-        }
+        moved = {"swivel": 0.5 * t, "tilt": 0.3 * math.sin(t), "periscope": 0.1 * math.sin(t)}
+        moved = {name: at for name, at in moved.items() if f"the {name}" not in without} | joints(t)
         angle = speed * t
         half = (angle + look * math.copysign(1, speed)) / 2
         at = (radius * math.cos(angle), radius * math.sin(angle), height)
         turned = (0.0, 0.0, math.sin(half), math.cos(half))
-        return (
-            joint_state(now_ns, list(moved), list(moved.values())),
-            tf(Placed(now_ns, "odom", "axis", at, turned)),
-        )
+        stamp = 0 if "stamps" in without else now_ns
+        sent = joint_state(stamp, list(moved), list(moved.values()))
+        way = tf(Placed(stamp, "odom", "axis", at, turned))
+        return (sent,) if "the odometry" in without else (sent, way)
 
     return controller
 

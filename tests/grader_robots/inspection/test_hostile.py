@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -49,10 +48,6 @@ def found(folder: Path, files: dict[str, str]) -> PackageTrace:
     return trace
 
 
-def before(file: str, code: str) -> str:
-    return f"{code}\n{(REFERENCE / file).read_text(encoding='utf-8')}"
-
-
 @pytest.mark.parametrize("folder", ["", "/share", "/../empty", "/.."])
 def test_a_launch_file_that_takes_away_what_is_installed_is_named(folder, tmp_path):
     code = (
@@ -60,7 +55,8 @@ def test_a_launch_file_that_takes_away_what_is_installed_is_named(folder, tmp_pa
         "shutil.rmtree(os.environ['AMENT_PREFIX_PATH'].split(':')[0] "
         f"+ {folder!r}, ignore_errors=True)\n"
     )
-    first, then = found(tmp_path, {DISPLAY: before(DISPLAY, code)}).launches
+    text = (REFERENCE / DISPLAY).read_text(encoding="utf-8")
+    first, then = found(tmp_path, {DISPLAY: f"{code}\n{text}"}).launches
     gone = "~" if "empty" in folder else "share/walker_description/package.xml"
     assert str(first.problem.text) == f"it takes away {gone}"
     assert str(then.problem.text) == f"it cannot be evaluated: {DISPLAY} has taken away {gone}"
@@ -145,16 +141,10 @@ MESHES = {
 }
 
 
-def with_meshes(names: Iterable[str]) -> dict[str, str]:
-    """The description of a robot that has these meshes."""
-    shapes = "".join(
-        f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in names
-    )
-    return {"urdf/walker.urdf.xacro": f'<robot name="a"><link name="base">{shapes}</link></robot>'}
-
-
 def test_a_mesh_counts_as_found_where_the_package_installs_it(tmp_path):
-    trace = found(tmp_path, with_meshes(MESHES))
+    shapes = (f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in MESHES)
+    robot = f'<robot name="a"><link name="base">{"".join(shapes)}</link></robot>'
+    trace = found(tmp_path, {"urdf/walker.urdf.xacro": robot})
     assert [each.problem for each in trace.launches] == [None, None]
     (description,) = trace.descriptions
     assert {uri: mesh.state for uri, mesh in zip(MESHES, description.meshes, strict=True)} == MESHES
