@@ -1,5 +1,3 @@
-"""Who sits at another machine is told how a page of this one opens there."""
-
 import pytest
 
 from turtlesim_py import browser

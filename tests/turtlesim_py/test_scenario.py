@@ -1,5 +1,3 @@
-"""Replayed scenarios equal the recordings of the original, in every row and every pixel."""
-
 import json
 import subprocess
 import sys

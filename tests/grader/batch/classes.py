@@ -9,8 +9,6 @@ from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 
-import pytest
-
 from grader.batch import grade, pool
 from grader.cli import main
 from grader.run.processes import levels
@@ -38,17 +36,16 @@ class Class:
     handed_in: Path
     exercise: Path
 
-    def words(self, out: Path) -> tuple[Path | str, ...]:
+    def words(self, out):
         """What `grader batch` is to be told."""
         return self.handed_in, "--out", out, "--exercise", self.exercise
 
 
-def command(*words: Path | str) -> list[str]:
-    """`grader batch` as a process."""
+def command(*words):
     return [sys.executable, "-P", "-m", "grader", "batch", *map(str, words)]
 
 
-def batch(*words: Path | str) -> tuple[int, str]:
+def batch(*words):
     """Call `grader batch` in this process; the exit code, and what it said."""
     said = io.StringIO()
     with redirect_stdout(said), redirect_stderr(said):
@@ -57,13 +54,13 @@ def batch(*words: Path | str) -> tuple[int, str]:
     return code, said.getvalue()
 
 
-def work_here(patch: pytest.MonkeyPatch) -> None:
+def work_here(patch):
     """Have the workers' work done in this process: a start of one takes longer than most of it."""
     patch.setattr(levels, "_only", "")
     patch.setattr(pool, "work", lambda tasks, *_, **__: ((t, grade.done(t)) for t in tasks))
 
 
-def told(out: Path) -> dict[str, bytes]:
+def told(out):
     """What a class has come to, but for when that was, and how long it took."""
     files = [out / name for name in OF_ALL]
     files += [path for name in EACH for path in sorted(out.glob(f"submissions/*/{name}"))]
@@ -72,7 +69,6 @@ def told(out: Path) -> dict[str, bytes]:
     }
 
 
-def rows(path: Path) -> dict[str, dict[str, str]]:
-    """Return the rows of a table by their first column."""
+def rows(path):
     found = csv.DictReader(path.read_text("utf-8-sig").splitlines())
     return {next(iter(row.values())): row for row in found}

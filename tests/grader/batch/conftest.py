@@ -13,7 +13,7 @@ from tests.grader.batch import named_class
 from tests.grader.batch.classes import CONTROLLER, DEADLINE_S, ENV, Class, batch, command, work_here
 from tests.programs import ROOT
 
-HANDED_IN: dict[str, str | bytes] = {
+HANDED_IN = {
     "broken.zip": b"PK and nothing more",
     "crashes.py": "import rclpy\nx = 1 / 0\n",
     "leaves.py": "raise SystemExit(3)\n",
@@ -27,7 +27,7 @@ points: {drives: 5, sides: 25, corners: 20, straight: 10, returns: 15, stops: 10
 """
 
 
-def _make(folder: Path) -> None:
+def _make(folder):
     (lay(folder / "handed_in", HANDED_IN) / "nobody").mkdir()
     own = folder / "own_square"  # not an installed one: it has to be where it is judged
     leave = shutil.ignore_patterns("__pycache__")
@@ -45,7 +45,7 @@ def small_class():
     return Class(folder / "handed_in", folder / "own_square" / "quick.yaml")
 
 
-def _grade(small_class: Class, folder: Path) -> None:
+def _grade(small_class, folder):
     words = command(*small_class.words(folder / "class"), "--jobs", "2")
     done = subprocess.run(words, env=ENV, text=True, capture_output=True, timeout=DEADLINE_S)
     assert done.returncode == 0, done.stderr
@@ -63,7 +63,6 @@ def graded(small_class):
 
 @pytest.fixture
 def out(graded, tmp_path):
-    """The class, a test's own."""
     return Path(shutil.copytree(graded, tmp_path / "graded" / "class"))
 
 
@@ -72,7 +71,7 @@ def in_process(monkeypatch):
     work_here(monkeypatch)
 
 
-def _make_named(small: Class, folder: Path) -> None:
+def _make_named(small, folder):
     named_class.hand_in(folder / "handed_in")
     hidden = ["--pseudonyms", folder / "keys" / "key", "--names", folder / "named"]
     said = []

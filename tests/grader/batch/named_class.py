@@ -1,7 +1,5 @@
 """What a class hands in, as Moodle exports it: names of students in all places that have some."""
 
-from pathlib import Path
-
 from grader.reports.csv import table
 from tests.grader.batch.classes import CONTROLLER
 
@@ -16,7 +14,7 @@ MEMBERS = (
 )
 
 
-def hand_in(folder: Path) -> None:
+def hand_in(folder):
     """Write the export of a course system, and its roster."""
     folder.mkdir(parents=True)
     columns = ("Identifier", "ID number", "Full name", "Email address", "Group", "at")
@@ -31,14 +29,14 @@ def hand_in(folder: Path) -> None:
     place(folder, "Team Nord_200", {"drive.py": f"{said}import rclpy\nx = 1 / 0\n"})
 
 
-def place(folder: Path, whose: str, files: dict[str, str]) -> None:
+def place(folder, whose, files):
     into = folder / f"{whose}_assignsubmission_file"
     into.mkdir()
     for name, text in files.items():
         (into / name).write_text(text, "utf-8")
 
 
-def with_text(folder: Path, *texts: str) -> list[str]:
+def with_text(folder, *texts):
     """Return the files of a folder with one of these in their names or bytes."""
     data = [text.encode() for text in texts]
     paths = {path: str(path.relative_to(folder)).encode() for path in sorted(folder.rglob("*"))}

@@ -1,5 +1,3 @@
-"""`grader batch` on a small class of real submissions: who is graded, and who is not once more."""
-
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -20,7 +18,7 @@ Call = Callable[..., tuple[int, str]]
 NOT_RUN = "1 hand-in not run: the same content has been run already."
 
 
-def made_together(out: Path) -> dict[str, bytes]:
+def made_together(out):
     """Gradebook and pages: all but what tells of one run."""
     return {
         str(path.relative_to(out)): path.read_bytes()
@@ -29,18 +27,16 @@ def made_together(out: Path) -> dict[str, bytes]:
     }
 
 
-def scores(out: Path) -> dict[str, tuple[str, float | None]]:
+def scores(out):
     return {entry.id: (entry.state, entry.score) for entry in entries(out)}
 
 
-def when(out: Path, *ids: str) -> list[int]:
-    """When the results of these were written."""
+def when(out, *ids):
     return [(out / "submissions" / id / "result.json").stat().st_mtime_ns for id in ids]
 
 
 @pytest.fixture
 def later(small_class, tmp_path):
-    """What the class hands in, a test's own."""
     return Path(shutil.copytree(small_class.handed_in, tmp_path / "handed_in"))
 
 
@@ -48,7 +44,7 @@ def later(small_class, tmp_path):
 def call(small_class, out):
     """`grader batch` into the graded class; its submissions, or others'."""
 
-    def called(*words: str | Path, of: Path = small_class.handed_in) -> tuple[int, str]:
+    def called(*words, of=small_class.handed_in):
         return batch(*replace(small_class, handed_in=of).words(out), *words)
 
     return called

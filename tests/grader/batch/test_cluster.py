@@ -8,7 +8,6 @@ import time
 from concurrent.futures import Future
 from contextlib import ExitStack
 from dataclasses import replace
-from pathlib import Path
 
 import psutil
 import pytest
@@ -22,7 +21,7 @@ from tests.grader.batch.classes import DEADLINE_S, ENV, command, told
 from tests.programs import ROOT
 
 
-def start(what: str, folder: Path, *words: str) -> psutil.Popen:
+def start(what, folder, *words):
     """Start a scheduler, or a worker that grades one at a time."""
     module = (sys.executable, "-m", f"distributed.cli.dask_{what}", "--host", "127.0.0.1")
     with (folder / "log.txt").open("ab") as log:
@@ -35,8 +34,7 @@ def start(what: str, folder: Path, *words: str) -> psutil.Popen:
         )
 
 
-def is_grading(worker: psutil.Popen) -> bool:
-    """Whether a worker has a process that does its task."""
+def is_grading(worker):
     try:
         return any("grader.batch" in word for p in worker.children() for word in p.cmdline())
     except psutil.Error:  # others come and go while a worker starts
@@ -51,7 +49,7 @@ def test_two_workers_grade_as_one_machine_does_also_if_one_dies_in_the_middle(
     file = tmp_path / "scheduler.json"
     with ExitStack() as stack:
 
-        def started(what: str, *words: str) -> psutil.Popen:
+        def started(what, *words):
             process = start(what, tmp_path, "--scheduler-file", str(file), *words)
             stack.callback(process.wait)
             stack.callback(process.kill)
@@ -94,16 +92,14 @@ def test_the_example_of_one_machine_grades_as_without_a_cluster(small_class, gra
 
 
 class Client:
-    """A client of a cluster with these workers: what each offers, or raises."""
-
-    def __init__(self, *offers: str | Exception) -> None:
+    def __init__(self, *offers):
         self.offers = {f"tcp://10.0.0.{n}:7": offer for n, offer in enumerate(offers, 1)}
 
-    def nthreads(self) -> dict[str, int]:
+    def nthreads(self):
         return dict.fromkeys(self.offers, 1)
 
-    def submit(self, _: object, terms: Terms, workers: list[str], pure: bool) -> Future[str]:
-        future: Future[str] = Future()
+    def submit(self, _, terms, workers, pure):
+        future = Future()
         offer = self.offers[workers[0]]
         if isinstance(offer, str):
             future.set_result(offer)
@@ -114,7 +110,6 @@ class Client:
 
 @pytest.fixture
 def terms(tmp_path, monkeypatch):
-    """Those of a class, for this process as a worker."""
     monkeypatch.setattr("distributed.get_worker", lambda: type("Worker", (), {"address": "box"}))
     monkeypatch.setattr(levels, "here", lambda level: levels.Level(level or "landlock"))
     (tmp_path / "place").mkdir()
@@ -134,7 +129,7 @@ def test_a_worker_that_cannot_grade_the_class_is_refused(terms, monkeypatch):
             cluster.offer(terms)
         place.mkdir()
 
-    def refuse(_: str) -> levels.Level:
+    def refuse(_):
         raise NotOffered("no namespaces here")
 
     monkeypatch.setattr(levels, "here", refuse)
@@ -158,10 +153,10 @@ def test_a_class_has_the_best_level_that_all_workers_offer_or_the_worker_is_name
 @pytest.fixture
 def asked(monkeypatch):
     """What the process of a worker is asked, and does at once, but for the task `broken`."""
-    tasks: list[Task] = []
+    tasks = []
 
     class Process:
-        def done(self, task: Task) -> Answer:
+        def done(self, task):
             tasks.append(task)
             if task.key == "broken":
                 raise RuntimeError("boom")
@@ -173,7 +168,7 @@ def asked(monkeypatch):
     monkeypatch.delattr(cluster._of_thread, "process", raising=False)
 
 
-def a_task(terms: Terms, key: str = "0") -> Task:
+def a_task(terms, key="0"):
     (terms.place / key).mkdir()
     return Task(key, (), None, "", "square", "virtual", None, None, terms.place / key)
 

@@ -1,5 +1,3 @@
-"""What a class keeps of a hand-in is read back as it was written."""
-
 from datetime import UTC, datetime
 
 from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person, entries

@@ -1,5 +1,3 @@
-"""The exports have the forms that JPlag and Dolos document."""
-
 import csv
 import io
 import zipfile

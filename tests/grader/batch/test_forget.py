@@ -1,5 +1,3 @@
-"""`grader forget`: what only the student has goes, and others keep theirs."""
-
 import json
 import shutil
 from collections.abc import Callable
@@ -32,7 +30,6 @@ def out(named, tmp_path):
 
 @pytest.fixture
 def call(out, small_class):
-    """Call `grader forget`."""
     common = ["--from", str(out), "--exercise", str(small_class.exercise)]
     return lambda student, *words: main(["forget", student, *common, *words])
 
@@ -107,7 +104,7 @@ def test_a_call_that_was_cut_off_is_finished_by_the_next(
     real = getattr(room, name)
     left = iter(range(times))
 
-    def cut_off(*args: object) -> object:
+    def cut_off(*args):
         if next(left, None) is None:
             raise KeyboardInterrupt
         return real(*args)

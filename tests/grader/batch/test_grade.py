@@ -1,5 +1,3 @@
-"""What a worker answers where something is wrong."""
-
 import errno
 import os
 from pathlib import Path
@@ -23,7 +21,7 @@ from grader.run.processes import levels
     ],
 )
 def test_only_what_may_pass_is_to_be_tried_again(monkeypatch, error, state):
-    def make(task: Task) -> None:
+    def make(task):
         raise error
 
     monkeypatch.setattr(grade, "make", make)

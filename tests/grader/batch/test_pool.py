@@ -1,5 +1,3 @@
-"""Whatever happens to a worker, each task is answered once."""
-
 import sys
 from pathlib import Path
 
@@ -19,14 +17,14 @@ for line in sys.stdin:
 """
 
 
-def tasks(count: int) -> list[Task]:
+def tasks(count):
     return [
         Task(str(n), (), Path("a.py"), "", "square", "virtual", None, None, Path("x"))
         for n in range(count)
     ]
 
 
-def workers_that(monkeypatch: pytest.MonkeyPatch, then: str) -> None:
+def workers_that(monkeypatch, then):
     monkeypatch.setattr(pool, "_COMMAND", ("-c", ANSWERS.format(then=then)))
 
 

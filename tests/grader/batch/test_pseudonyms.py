@@ -1,5 +1,3 @@
-"""`grader batch --pseudonyms KEY`: where the grader would name a student stands a pseudonym."""
-
 import re
 import shutil
 import unicodedata
@@ -17,7 +15,7 @@ MADE = Pseudonyms(KEY.encode())
 NAMES = [text for id, name, *_ in MEMBERS for text in (id, name)]
 
 
-def batch_hidden(small: Class, folder: Path) -> tuple[int, str]:
+def batch_hidden(small, folder):
     """Grade the class that lies in a folder under pseudonyms, into that folder."""
     words = Class(folder / "handed_in", small.exercise).words(folder / "hidden")
     code, said = batch(*words, "--pseudonyms", folder / "keys" / "key")

@@ -1,5 +1,3 @@
-"""A changed rubric: who changes is told rightly, and nothing is lost when it is put into force."""
-
 import csv
 import shutil
 from argparse import Namespace
@@ -47,29 +45,28 @@ def out(out, in_process):
     return out
 
 
-def call(out: Path, rubric: str, *, apply: bool = False) -> int:
+def call(out, rubric, *, apply=False):
     words = Namespace(regrade=out, exercise=rubric, apply=apply, out=None, assignment="")
     return regrading.run(words, 1, "student")
 
 
-def rows(text: str) -> dict[str, dict[str, str]]:
+def rows(text):
     return {row["student"]: row for row in csv.DictReader(text.splitlines())}
 
 
-def scores(out: Path) -> dict[str, float | None]:
+def scores(out):
     return {entry.id: entry.score for entry in entries(out)}
 
 
 @cache
-def expected(graded: Path, rubric: str) -> dict[str, float]:
-    """The scores that judging in memory finds."""
+def expected(graded, rubric):
     keys = {id: Entry.read(graded / "submissions" / id).key for id in JUDGED}
     found = {key: load_recordings(Store(graded).run(key) / RECORDING) for key in {*keys.values()}}
     scores = {key: judge(each, load_exercise(rubric)).score for key, each in found.items()}
     return {id: scores[key] for id, key in keys.items()}
 
 
-def tree(folder: Path) -> dict[str, bytes]:
+def tree(folder):
     paths = (path for path in folder.rglob("*") if path.is_file())
     return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
 
@@ -176,7 +173,6 @@ MIDDLE = "the middle place stands for the others"
 def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
     out, graded, old, new, monkeypatch, after
 ):
-    """And the same call again does the rest."""
     put, calls = Store.put, iter(range(99))
     sides = {load_exercise(path).sha256: expected(graded, path) for path in (old, new)}
 

@@ -1,7 +1,4 @@
-"""What is in its place is whole; what was not finished goes."""
-
 import os
-from pathlib import Path
 
 import pytest
 
@@ -12,7 +9,7 @@ from grader.exercise.loading import load_exercise
 from tests.files import lay, lay_too_deep
 
 
-def made(store: Store, text: str, *names: str) -> Path:
+def made(store, text, *names):
     place = store.new_place()
     (place / RUN / RECORDING).mkdir(parents=True)
     (place / RUN / RECORDING / "bag").write_text(text)
@@ -65,7 +62,6 @@ def test_two_do_not_write_into_one_class(tmp_path):
 
 @pytest.fixture
 def alice_and_bob(tmp_path):
-    """Two who have handed in the same folder."""
     return [lay(tmp_path / who, {"pkg/node.py": "x = 1\n"}) for who in ("alice", "bob")]
 
 

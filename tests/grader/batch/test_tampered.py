@@ -3,9 +3,7 @@
 import json
 import os
 import shutil
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -24,7 +22,7 @@ from tests.grader.batch.classes import batch
 HUGE = 2**33
 
 
-def changed(path: Path, change: Callable[[Any], object]) -> None:
+def changed(path, change):
     """Write JSON anew that its own function changes; what is linked to the file stays."""
     data = json.loads(path.read_text(encoding="utf-8"))
     change(data)
@@ -32,21 +30,21 @@ def changed(path: Path, change: Callable[[Any], object]) -> None:
     path.write_text(json.dumps(data), encoding="utf-8")
 
 
-def replaced(path: Path, make: Callable[[Path], object]) -> None:
+def replaced(path, make):
     path.unlink()
     make(path)
 
 
-def is_huge(path: Path) -> None:
+def is_huge(path):
     path.touch()
     os.truncate(path, HUGE)
 
 
-def leads_to_an_endless_device(path: Path) -> None:
+def leads_to_an_endless_device(path):
     path.symlink_to("/dev/zero")
 
 
-def earns_more(result: dict[str, Any]) -> None:
+def earns_more(result):
     result["score"] += 1000
     result["verdicts"][0]["score"] += 1000
 
@@ -62,7 +60,7 @@ NO_FILE = {
     "no text": lambda path: path.write_bytes(b"\xff\xfe\x00"),
 }
 #: What in entry.json is not so.
-NO_ENTRY: dict[str, Callable[[dict[str, Any]], object]] = {
+NO_ENTRY = {
     "state": lambda entry: entry.update(state="wild"),
     "state is a list": lambda entry: entry.update(state=["judged"]),
     "points": lambda entry: entry.update(max_score="many"),
@@ -75,7 +73,7 @@ NO_ENTRY: dict[str, Callable[[dict[str, Any]], object]] = {
     "other exercise": lambda entry: entry.update(exercise_sha256="0" * 64),
 }
 #: What in result.json is not so.
-NO_RESULT: dict[str, Callable[[dict[str, Any]], object]] = {
+NO_RESULT = {
     "more than all points": earns_more,
     "other hand-in": lambda result: result["handed_in"].update(id="twin"),
     "other exercise": lambda result: result["provenance"]["judged"].update(
@@ -87,7 +85,6 @@ NO_RESULT: dict[str, Callable[[dict[str, Any]], object]] = {
 
 @pytest.fixture
 def folder(graded, tmp_path):
-    """A hand-in's folder of the class, a test's own."""
     copy = Path(shutil.copytree(Store(graded).student("right"), tmp_path / "right"))
     assert Entry.read(copy).state == "judged"
     return copy

@@ -1,5 +1,3 @@
-"""`grader check`: what was recorded is judged again, and keeps its name; its page is made anew."""
-
 import json
 import shutil
 from dataclasses import replace

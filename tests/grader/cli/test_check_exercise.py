@@ -1,5 +1,3 @@
-"""`grader check-exercise`: an exercise in order, with real runs, one to mend, one of no use."""
-
 import json
 import os
 import subprocess

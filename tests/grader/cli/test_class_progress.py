@@ -1,7 +1,4 @@
-"""The progress of a class in a terminal: how much time is left."""
-
 import io
-from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -19,11 +16,11 @@ class Clock:
 
     now = 1000.0
 
-    def __call__(self) -> float:
+    def __call__(self):
         return self.now
 
 
-def _graded(store: Store, number: int, path: Path | None) -> HandIn:
+def _graded(store, number, path):
     """A hand-in whose folder is there; without a path there was nothing to run."""
     made = HandIn(f"s{number}", (), path)
     Entry(made, "unusable" if path else "nothing", 10.0, folder=store.student(made.id)).put()
@@ -36,7 +33,7 @@ def test_after_ten_runs_the_time_left_is_right_however_slow_and_however_many_are
 ):
     store, clock, shown = Store(tmp_path), Clock(), list[Progress]()
 
-    def seen(*columns: str, **options: object) -> Progress:
+    def seen(*columns, **options):
         shown.append(Progress(*columns, **options))
         return shown[0]
 

@@ -1,7 +1,3 @@
-"""`grader course new`: the repository of a course."""
-
-from pathlib import Path
-
 import pytest
 
 from grader import system
@@ -9,11 +5,11 @@ from grader.cli import main
 from grader.exercise.places import names
 
 
-def new(folder: Path, *words: str, kind: str = "github") -> int:
+def new(folder, *words, kind="github"):
     return main(["course", "new", str(folder), "--for", kind, *words])
 
 
-def workflow(folder: Path) -> str:
+def workflow(folder):
     (path,) = folder.rglob("grade.yml")
     return path.read_text(encoding="utf-8")
 

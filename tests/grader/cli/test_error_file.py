@@ -1,5 +1,3 @@
-"""`--error-json FILE`: what went wrong as data, and nothing where nothing did."""
-
 import json
 
 import pytest

@@ -1,5 +1,3 @@
-"""Which language a call is answered in."""
-
 import subprocess
 import sys
 

@@ -1,5 +1,3 @@
-"""`grader run --live`: what it asks, what it says, what it leaves as it was."""
-
 import json
 import os
 import pty
@@ -55,7 +53,6 @@ def in_no_time(monkeypatch, drawn):
 
 
 def is_judged(known):
-    """Whether there is a verdict."""
     return any(check.status != "waiting" for check in known.judged)
 
 

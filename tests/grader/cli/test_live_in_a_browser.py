@@ -1,5 +1,3 @@
-"""`grader run --live` in a real browser: a person sees the run, its end, and the verdicts."""
-
 import json
 import re
 
@@ -31,7 +29,7 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
         address = re.search(r"http://\S+", program.wait_for_line("See the runs at"))[0]
         page = browser.new_page(viewport={"width": WIDTH, "height": 900}, locale="fr-FR")
         page.set_default_timeout(DEADLINE_S * 1000)
-        errors: list[str] = []
+        errors = []
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.goto(address)
         page.wait_for_selector("#state:has-text('nominal run, as fast as it goes')")

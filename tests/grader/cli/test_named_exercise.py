@@ -1,5 +1,3 @@
-"""The exercise that a hand-in names, whatever its files are called, and what is said of it."""
-
 import shutil
 from pathlib import Path
 
@@ -87,9 +85,6 @@ def test_what_cannot_be_read_and_a_link_out_of_the_hand_in_name_none(tmp_path):
     assert marks_of(tmp_path / "mine").exercises == {}
 
 
-# grader run -----------------------------------------------------------------------------------
-
-
 def test_the_named_exercise_is_used_and_told(tmp_path, capsys, in_no_time):
     node = lay(tmp_path, {"node.py": COMMENT.format("square") + NODE}) / "node.py"
     assert main(["run", str(node), "--out", str(tmp_path / "out")]) == 0
@@ -143,9 +138,6 @@ def test_so_is_a_node_that_publishes_what_another_one_asks_for(drawn):
 )
 def test_a_guess_is_not_told(marks):
     assert grading.fitting(marks, None) == ""
-
-
-# grader batch ---------------------------------------------------------------------------------
 
 
 def test_a_class_is_graded_by_the_exercise_that_its_hand_ins_name(

@@ -1,5 +1,3 @@
-"""`grader new`: the starter of the challenge, or of another exercise."""
-
 import os
 import re
 import shlex

@@ -14,7 +14,6 @@ from contextlib import redirect_stderr, redirect_stdout, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import psutil
 import pytest
@@ -58,17 +57,17 @@ class Graded:
     left_running: tuple[str, ...] = ()
 
     @property
-    def result(self) -> Any:
+    def result(self):
         return json.loads((self.out / "result.json").read_text())
 
 
-def start(*words: str | Path) -> subprocess.Popen[str]:
+def start(*words):
     command = [sys.executable, "-m", "grader", "run", *map(str, words)]
     pipe = subprocess.PIPE
     return subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=ENV)
 
 
-def called(*words: str | Path) -> tuple[int, str, str]:
+def called(*words):
     """The same in this process, for what is the same there."""
     said, messages = io.StringIO(), io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said), redirect_stderr(messages):
@@ -76,7 +75,7 @@ def called(*words: str | Path) -> tuple[int, str, str]:
         return main(["run", *map(str, words)]), said.getvalue(), messages.getvalue()
 
 
-def _grade(name: str, folder: Path) -> None:
+def _grade(name, folder):
     """Grade the submission of this name; the folder keeps all that became of it."""
     submission = folder / name
     if name == "starter":
@@ -97,7 +96,7 @@ def _grade(name: str, folder: Path) -> None:
     (folder / "kept.json").write_text(json.dumps(kept))
 
 
-def graded(name: str) -> Graded:
+def graded(name):
     """What became of a submission, by its name; nobody changes it."""
     folder = once.folder(partial(_grade, name), "grader run", name, FILES.get(name), SHORT)
     code, stdout, stderr, left = json.loads((folder / "kept.json").read_text())
@@ -187,7 +186,7 @@ def test_what_cannot_be_graded_gives_one_message_exit_code_2_and_no_files(
     assert not (tmp_path / "out").exists()
 
 
-def is_busy(process: psutil.Process) -> bool:
+def is_busy(process):
     """Whether it has done nothing but use the processor; of a fork its parent's start is not in."""
     with suppress(psutil.Error):
         return process.cpu_times().user > 0.3

@@ -1,5 +1,3 @@
-"""A course's secret gives each student varied runs of his own, and no result shows the seed."""
-
 import json
 from pathlib import Path
 

@@ -1,10 +1,6 @@
-"""`grader view`: a page beside the result that plays it, or a line on why there is none."""
-
 import json
 import re
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -33,12 +29,11 @@ def graded(tmp_path, drawn):
     return samples.graded(tmp_path / "graded", drawn, *verdicts, varied=(drawn,)).parent
 
 
-def shown(page: Path) -> dict[str, Any]:
-    """The data of a page."""
+def shown(page):
     text = page.read_text(encoding="utf-8")
     found = re.search(r'<script type="application/json" id="data">(.*?)</script>', text)
     assert found is not None
-    data: dict[str, Any] = json.loads(found[1])
+    data = json.loads(found[1])
     return data
 
 

@@ -1,12 +1,9 @@
-"""`grader run --watch` grades again after every save, and goes on after a mistake."""
-
 import os
 import signal
 import subprocess
 import sys
 from argparse import Namespace
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -52,7 +49,7 @@ def test_a_save_is_graded_again_and_an_unusable_one_does_not_end_it(tmp_path):
         process.communicate()
 
 
-def read_until(process: subprocess.Popen[str], words: str) -> str:
+def read_until(process, words):
     """What the process says until and with a line that holds the words."""
     assert process.stderr is not None
     said = ""
@@ -125,7 +122,7 @@ def test_of_a_single_file_its_neighbours_do_not_count(tmp_path):
     assert counted(tmp_path, *names, only="node.py") == {tmp_path / "node.py"}
 
 
-def counted(folder: Path, *names: str, only: str | None = None) -> set[Path]:
+def counted(folder, *names, only=None):
     """Which of these files count, of a folder or of one file in it."""
     for path in (folder / name for name in names):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,3 @@
-"""No option that names a file to write costs anybody what stands there."""
-
 import errno
 import json
 import os
@@ -84,7 +82,7 @@ def test_a_folder_that_cannot_be_made_is_told_and_no_traceback(here, capsys):
 
 
 def test_a_disk_that_is_full_by_then_is_told_and_no_traceback(here, capsys, monkeypatch):
-    def fails(*_: object) -> None:
+    def fails(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "recording/metadata.yaml")
 
     monkeypatch.setattr("grader.cli.check.main", fails)

@@ -1,5 +1,3 @@
-"""A machine for each test."""
-
 import tempfile
 from pathlib import Path
 

@@ -7,7 +7,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 from grader.cli import main
 from grader.strict_json import first_error
@@ -24,17 +23,17 @@ EXERCISES = ("turtlesim_challenge", "talker")
 FOR_THE_REAL_ONE = "# not for the stub\n"
 
 
-def course(kind: str) -> Path:
+def course(kind):
     """The repository of a course of this kind, which no test changes."""
 
-    def make(folder: Path) -> None:
+    def make(folder):
         words = ["--for", kind, "--exercises", *EXERCISES, "--source", SOURCE]
         assert main(["course", "new", str(folder), *words]) == 0
 
     return once.folder(make, "course", kind, EXERCISES, SOURCE)
 
 
-def scripts() -> Path:
+def scripts():
     """The folder of grade.sh and install.sh, which are the same in all."""
     return course("gradescope") / "autograders" / EXERCISES[0]
 
@@ -69,7 +68,7 @@ exit $code
 """
 
 
-def an_error(whose: str, message: str) -> str:
+def an_error(whose, message):
     """A sentence of shell: an error, as the grader would tell of it."""
     error = {"schema": "turtlesim-grader/error/v1", "whose": whose, "message": message}
     return f"printf %s {shlex.quote(json.dumps(error | {'max_score': 100.0}))} >$errors; exit 2"
@@ -78,7 +77,7 @@ def an_error(whose: str, message: str) -> str:
 class Machine:
     """A machine with the grader installed, and a folder that everybody can go to."""
 
-    def __init__(self, folder: Path, real: bool) -> None:
+    def __init__(self, folder, real):
         self.folder = folder
         self.venv = folder / "venv"
         self.work = folder / "work"
@@ -115,7 +114,7 @@ class Machine:
             "SECRET_TOKEN": "do-not-tell",
         }
 
-    def lay(self, kind: str, rubric: str = "") -> Path:
+    def lay(self, kind, rubric=""):
         """A course of its own for this machine; its exercises as in `rubric`, if that is given."""
         folder = self.folder / "course"
         shutil.copytree(course(kind), folder)
@@ -124,9 +123,7 @@ class Machine:
                 path.write_text(rubric)
         return folder
 
-    def bash(
-        self, *words: str | Path, cwd: Path | None = None, **env: str
-    ) -> subprocess.CompletedProcess[str]:
+    def bash(self, *words, cwd=None, **env):
         """Run bash with these words in the environment of a CI job."""
         return subprocess.run(
             ["bash", *words],
@@ -137,27 +134,27 @@ class Machine:
             text=True,
         )
 
-    def submission(self, does: str) -> Path:
+    def submission(self, does):
         """A submission for the stub."""
         folder = self.folder / "student"
         folder.mkdir()
         (folder / "does.sh").write_text(does)
         return folder
 
-    def grade(self, does: str, *options: str, **env: str) -> int:
+    def grade(self, does, *options, **env):
         """grade.sh's exit code."""
         submission = self.submission(does)
         return self.bash(scripts() / "grade.sh", submission, self.work, *options, **env).returncode
 
     @property
-    def error(self) -> tuple[str, str]:
+    def error(self):
         """Whose turn it is, and why."""
         error = json.loads((self.work / "error.json").read_text())
         assert first_error("grader.result", "error", error) is None
         return error["whose"], error["message"]
 
 
-def program(path: Path, script: str) -> None:
+def program(path, script):
     path.parent.mkdir(exist_ok=True)
     path.write_text(f"#!/bin/sh\n{script}\n")
     path.chmod(0o755)

@@ -11,8 +11,6 @@ import pytest
 from tests.grader.course.machine import RESULT, SOURCE, UID, an_error, program, scripts
 from tests.needs import needs
 
-# grade.sh: whose turn it is
-
 
 @pytest.mark.parametrize("code", [0, 1])
 def test_a_judgement_leaves_its_results(machine, code):
@@ -90,9 +88,6 @@ def test_without_an_exercise_nothing_is_graded(machine):
     assert machine.error == ("grader", "EXERCISE is not set")
 
 
-# grade.sh: what a submission can reach
-
-
 def test_a_submission_sees_nothing_of_the_callers_environment_and_gains_no_privileges(machine):
     does = "env >$out/env; pwd >$out/pwd; grep NoNewPrivs /proc/self/status >$out/status"
     assert machine.grade(f"{does}; ls -A . >/dev/null") == 0
@@ -136,9 +131,6 @@ def test_nothing_of_a_submission_is_left_running(machine):
     assert machine.grade("setsid env -i sleep 1000 </dev/null >/dev/null 2>&1 &") == 0
     running = ["pgrep", "--runstates", "RSD", "-U", str(UID)]  # not what is dead, but not buried
     assert subprocess.run(running).returncode == 1
-
-
-# install.sh
 
 
 def test_what_is_installed_is_not_installed_again(machine):

@@ -1,5 +1,3 @@
-"""The files of a course: what they say, and that they are what each system asks for."""
-
 import compileall
 import csv
 import re
@@ -8,7 +6,6 @@ import shutil
 import subprocess
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import pytest
 import yaml
@@ -28,22 +25,19 @@ GITHUB = Path("templates", EXERCISES[1], ".github", "workflows", "grade.yml")
 GITLAB = Path("templates", EXERCISES[1], ".gitlab-ci.yml")
 
 
-def files(kind: str) -> list[Path]:
+def files(kind):
     return sorted(path for path in course(kind).rglob("*") if path.is_file())
 
 
-def loaded(kind: str, file: Path) -> Any:
+def loaded(kind, file):
     return yaml.safe_load((course(kind) / file).read_text(encoding="utf-8"))
 
 
-def commands(kind: str) -> list[str]:
+def commands(kind):
     """The commands on its README, which are indented, with their continuations."""
     text = (course(kind) / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"(?m)(?:^ {4,}\S.*\n)+", text)
     return [re.sub(r"(?m)^ {4,7}", "", block) for block in blocks]
-
-
-# What all have
 
 
 @each_kind
@@ -108,9 +102,9 @@ def test_scripts_pass_shellcheck(kind):
         assert check.returncode == 0, check.stdout
 
 
-def steps(kind: str) -> list[str]:
+def steps(kind):
     """The scripts in a workflow."""
-    found: list[str] = []
+    found = []
     if kind == "github":
         jobs = loaded(kind, GITHUB)["jobs"].values()
         found = [step["run"] for each in jobs for step in each["steps"] if "run" in step]
@@ -137,9 +131,6 @@ def test_what_pip_has_compiled_is_no_part_of_a_course(tmp_path, monkeypatch):
     ]
 
 
-# What one kind has
-
-
 def test_the_grades_that_github_keeps_are_collected_also_of_what_was_unusable(machine):
     """From downloaded artifacts, whether there are results, errors or both."""
     (block,) = (text for text in commands("github") if "grades.csv" in text)
@@ -147,7 +138,7 @@ def test_the_grades_that_github_keeps_are_collected_also_of_what_was_unusable(ma
     results = machine.folder / "results"
     results.mkdir()
 
-    def collected() -> list[tuple[str, str]]:
+    def collected():
         path = f"{machine.venv / 'bin'}:{machine.env['PATH']}"
         done = machine.bash("-e", "-o", "pipefail", "-c", collect, PATH=path)
         assert done.returncode == 0, done.stderr
@@ -198,12 +189,12 @@ def test_templates_are_pushed_and_pushed_again_after_an_edit(machine):
     readme, there = laid / "templates" / EXERCISES[1] / "README.md", hub / f"{EXERCISES[1]}.git"
     who = [f"GIT_{who}_{what}" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")]
 
-    def done(*words: str | Path) -> str:
+    def done(*words):
         run = machine.bash(*words, **dict.fromkeys(who, "staff@x"))
         assert run.returncode == 0, run.stderr
         return run.stdout
 
-    def published() -> list[str]:
+    def published():
         done(laid / "publish.sh", str(hub), EXERCISES[1])
         return done("-c", f"git -C {there} log --name-only --format=%s main").splitlines()
 

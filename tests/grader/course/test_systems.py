@@ -46,7 +46,7 @@ class HandIn:
     pass_points: str = ""
 
 
-def on_github(machine: Machine, given: HandIn) -> Outcome:
+def on_github(machine, given):
     """Its two jobs, step by step, as `bash -e` in the checkout: the hand-in, and what grades it."""
     template = machine.lay("github", given.rubric) / "templates" / given.exercise
     checkout = machine.folder / "checkout"
@@ -87,7 +87,7 @@ def on_github(machine: Machine, given: HandIn) -> Outcome:
     return float(points[1]) if points else None, asked + summary.read_text()
 
 
-def on_gitlab(machine: Machine, given: HandIn) -> Outcome:
+def on_gitlab(machine, given):
     """Its only job, in the project's folder."""
     template = machine.lay("gitlab", given.rubric) / "templates" / given.exercise
     project = machine.folder / "project"
@@ -108,7 +108,7 @@ def on_gitlab(machine: Machine, given: HandIn) -> Outcome:
     return float(points[-1]), run.stdout + run.stderr
 
 
-def on_gradescope(machine: Machine, given: HandIn) -> Outcome:
+def on_gradescope(machine, given):
     """A tree like /autograder, with the zip that `make` packs; setup.sh has been run."""
     laid = machine.lay("gradescope", given.rubric)
     assert machine.bash("-c", "make", cwd=laid).returncode == 0
@@ -132,7 +132,7 @@ def on_gradescope(machine: Machine, given: HandIn) -> Outcome:
     return None if failed else result["score"], result["output"]
 
 
-def on_classroom50(machine: Machine, given: HandIn) -> Outcome:
+def on_classroom50(machine, given):
     """The bundle, and the student's checkout as working folder."""
     laid = machine.lay("classroom50", given.rubric)
     bundle = laid / "autograders" / given.exercise.replace("_", "-")
@@ -168,7 +168,7 @@ def on_classroom50(machine: Machine, given: HandIn) -> Outcome:
     return result["score"], (student / "release-body.md").read_text()
 
 
-def junit_score(file: Path) -> float:
+def junit_score(file):
     suite = ElementTree.parse(file).getroot().find("testsuite")
     assert suite is not None
     (score,) = (p.get("value") for p in suite.iter("property") if p.get("name") == "score")
@@ -176,16 +176,16 @@ def junit_score(file: Path) -> float:
 
 
 System = Callable[[Machine, HandIn], Outcome]
-SYSTEMS: list[System] = [on_github, on_gitlab, on_gradescope, on_classroom50]
+SYSTEMS = [on_github, on_gitlab, on_gradescope, on_classroom50]
 
 
-def by_systems(*kept: System, reason: str) -> pytest.MarkDecorator:
+def by_systems(*kept, reason):
     """Each of them; in `make test` those that are kept."""
     systems = others_are_more(reason, SYSTEMS, *kept)
     return pytest.mark.parametrize("system", systems, ids=lambda system: system.__name__)
 
 
-def worth(system: System) -> float:
+def worth(system):
     """17.5 points, as that system writes them."""
     return 18 if system is on_classroom50 else 17.5  # which has whole points
 

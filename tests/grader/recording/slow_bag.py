@@ -5,20 +5,14 @@ And types and messages as it reads them.
 
 from collections.abc import Mapping
 from io import BytesIO
-from pathlib import Path
-from typing import Any
 
-from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.storage_mcap import McapWriter, write_channel, write_string
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from rosbags.typesys.store import Typestore
 
 
 class _Storage(McapWriter):
-    """The .mcap."""
-
-    def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
+    def add_connection(self, connection, offered_qos_profiles):
         """Write a channel with the hash of its type."""
         records = self.chunk.bio
         begin = records.tell()
@@ -34,7 +28,7 @@ class _Storage(McapWriter):
         records.truncate()
         write_channel(records, channel, self.schemas)
 
-    def close(self, version: int, metadata: str) -> None:
+    def close(self, version, metadata):
         """Write the rest, the metadata too."""
         super().close(version, _with_distro(metadata))
 
@@ -44,13 +38,13 @@ class Rosbag2Writer(Writer):
 
     STORAGE_PLUGINS: Mapping[StoragePlugin, type[McapWriter]] = {StoragePlugin.MCAP: _Storage}
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder):
         super().__init__(folder, version=9, storage_plugin=StoragePlugin.MCAP)
         # Chunks inside the file: 0.2 MB instead of 2 MB a run, and every reader of MCAP can
         # unpack it.
         self.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
 
-    def close(self) -> None:
+    def close(self):
         """Finish the bag; last comes metadata.yaml."""
         super().close()
         text = self.metapath.read_text(encoding="utf-8")
@@ -59,11 +53,11 @@ class Rosbag2Writer(Writer):
         whole.replace(self.metapath)
 
 
-def _with_distro(metadata: str) -> str:
+def _with_distro(metadata):
     return metadata.replace("ros_distro: rosbags", "ros_distro: jazzy")
 
 
-def types_of(definitions: Mapping[str, str]) -> Typestore:
+def types_of(definitions):
     """Rosbags' types of definitions, as BagTypes are."""
     types = get_typestore(Stores.EMPTY)
     for msgtype, text in definitions.items():
@@ -71,7 +65,7 @@ def types_of(definitions: Mapping[str, str]) -> Typestore:
     return types
 
 
-def plain(value: Any) -> Any:
+def plain(value):
     """A message of rosbags', or a value of one, as plain data."""
     fields = getattr(value, "__dataclass_fields__", None)
     if fields is not None:

@@ -79,19 +79,11 @@ def on(topic, decoded):
     return [(time, message) for where, time, message in decoded if where == topic]
 
 
-# The container --------------------------------------------------------------------------------
-
-
-def information(folder):
-    text = (folder / "metadata.yaml").read_text()
-    found = yaml.safe_load(text)["rosbag2_bagfile_information"]
-    return found
-
-
 def test_the_type_hashes_are_those_of_the_installed_interfaces(folder):
     from ament_index_python.packages import get_package_share_directory
 
-    for topic in information(folder)["topics_with_message_count"]:
+    metadata = yaml.safe_load((folder / "metadata.yaml").read_text())
+    for topic in metadata["rosbag2_bagfile_information"]["topics_with_message_count"]:
         package, _, name = (kind := topic["topic_metadata"]["type"]).split("/")
         path = Path(get_package_share_directory(package), "msg", f"{name}.json")
         hashes = json.loads(path.read_text())["type_hashes"]
@@ -104,9 +96,6 @@ def test_the_definitions_of_turtlesim_are_those_of_our_interfaces():
         name = msgtype.rpartition("/")[2]
         ours = (DEFINITIONS / f"{name}.msg").read_text()
         assert bag_messages.DEFINITIONS[msgtype].split() == ours.split()
-
-
-# The messages ---------------------------------------------------------------------------------
 
 
 def test_poses_and_colors_are_those_of_the_recording_at_16_ms_a_tick(decoded, recorded):

@@ -1,5 +1,3 @@
-"""The folder of a recording: the same bytes every time, whole or refused with a clear text."""
-
 import json
 import math
 import os
@@ -76,9 +74,6 @@ def change(path, **values):
     path.write_text(json.dumps(data))
 
 
-# The same bytes -------------------------------------------------------------------------------
-
-
 def test_equal_runs_make_equal_files_and_so_does_what_was_read(folder, tmp_path):
     again = replace(drive(Spiral(), ticks=TICKS), observations=OBSERVATIONS, package=PACKAGE)
     for number, recording in enumerate((again, reading.load(folder))):
@@ -125,9 +120,6 @@ def test_pictures_and_scenario_are_copies_that_nobody_reads(recorded, folder):
     for name in ("path.png", "window.png", "scenario.json"):
         (folder / name).unlink()
     assert (reading.load(folder).trace.canvas == recorded.trace.canvas).all()
-
-
-# Whole or not at all --------------------------------------------------------------------------
 
 
 def test_the_metadata_comes_last(recorded, folder, monkeypatch):
@@ -188,11 +180,7 @@ def test_a_new_recording_replaces_an_older_one_and_nothing_else(recorded, tmp_pa
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
-# Damaged and foreign input --------------------------------------------------------------------
-
-
 def refused(folder):
-    """The text of the error."""
     with pytest.raises(RecordingError) as error:
         reading.load_all(folder)
     return str(error.value)
@@ -347,9 +335,6 @@ def test_a_bag_converted_to_sqlite3_is_an_error(folder):
     assert "cannot read the bag" in refused(folder)
 
 
-# From anywhere --------------------------------------------------------------------------------
-
-
 def test_a_bag_that_unpacks_to_more_than_there_is_room_for_is_refused(
     recorded, tmp_path, monkeypatch
 ):
@@ -419,9 +404,6 @@ def test_an_input_that_is_nested_without_measure_is_refused(recorded, tmp_path, 
     saving.save_all(Recordings(replace(recorded, trace=trace)), tmp_path)
     monkeypatch.undo()
     refused(tmp_path)
-
-
-# What the process told of itself --------------------------------------------------------------
 
 
 def test_what_was_told_and_found_of_a_package_is_read_back_and_may_be_missing(recorded, folder):

@@ -1,5 +1,3 @@
-"""A recording keeps on disk what it was, bit for bit, and can be replayed."""
-
 import math
 from dataclasses import fields, replace
 
@@ -148,9 +146,6 @@ def test_varied_runs_come_back_in_their_order(tmp_path):
     loaded = reading.load_all(tmp_path)
     assert_same(loaded.nominal, recorded)
     assert [r.start for r in loaded.varied] == [r.start for r in varied]
-
-
-# Odd values -----------------------------------------------------------------------------------
 
 
 @st.composite

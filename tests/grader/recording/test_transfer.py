@@ -1,5 +1,3 @@
-"""A trace survives the way from one process to another, and nothing else is taken for one."""
-
 import json
 import pickle
 from dataclasses import replace
@@ -25,9 +23,6 @@ def trace():
 
 def there(trace):
     return TurtleTrace.of(unpack(pack(trace, SCENE), SCENE))
-
-
-# There and back -------------------------------------------------------------------------------
 
 
 def test_an_unpacked_trace_equals_the_packed_one_and_equal_ones_have_equal_bytes(trace):
@@ -56,9 +51,6 @@ def test_names_that_no_file_could_have_survive(trace):
     way = trace.trajectory()
     odd = replace(trace, trajectories={"../a/b": way, "": way, "a\x85\u2028b": way, "\ud800": way})
     assert list(there(odd).trajectories) == list(odd.trajectories)
-
-
-# Strictness -----------------------------------------------------------------------------------
 
 
 class Trap:

@@ -98,7 +98,6 @@ MIXED = [
 
 
 def report(*verdicts, **more):
-    """A report without anything beside it."""
     return report_in(Path("/nowhere"), result(*verdicts, **more))
 
 

@@ -1,5 +1,3 @@
-"""Whatever a submission prints and is called: every format stays readable, and the scores agree."""
-
 import re
 from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
@@ -71,7 +69,7 @@ CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]"
 class Printed(Beside):
     """Nothing lies beside the result but what the node printed."""
 
-    def __init__(self, result: Result, printed: str) -> None:
+    def __init__(self, result, printed):
         super().__init__(result, Path("/nowhere"))
         self.__dict__["output"] = printed
 

@@ -1,5 +1,3 @@
-"""A report is told in the reader's language; what a machine reads in it is the same in all."""
-
 import json
 import re
 from dataclasses import replace

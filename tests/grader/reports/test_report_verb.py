@@ -1,5 +1,3 @@
-"""`grader report`, called as a user does."""
-
 import json
 import os
 import subprocess

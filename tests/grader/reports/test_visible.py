@@ -1,5 +1,3 @@
-"""What is hidden from students is in no report for them; teachers see all of it."""
-
 import csv
 import io
 import json

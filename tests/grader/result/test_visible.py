@@ -1,5 +1,3 @@
-"""What a student sees of a result depends on nothing that is hidden from him."""
-
 from dataclasses import replace
 
 import pytest

@@ -1,5 +1,3 @@
-"""A simulator with its page, as a process of its own, and those who look at it."""
-
 import json
 import re
 from contextlib import ExitStack
@@ -11,8 +9,6 @@ from tests.programs import DEADLINE_S, Program
 
 
 class Page:
-    """The program, and where its page is."""
-
     def __init__(self, program):
         self.program = program
         line = program.wait_for_line("to be seen at")
@@ -25,8 +21,6 @@ class Page:
 
 
 class Viewer:
-    """A program that speaks rosbridge."""
-
     connection: ClientConnection
 
     def __init__(self, address, options):

@@ -26,7 +26,6 @@ class Viewer:
             self.feed.after_tick(self.arena.tick())
 
     def changes(self):
-        """Those since the last look."""
         taken, self.news[:] = self.news[:], []
         for news in taken:
             if news.canvas is not None:

@@ -1,5 +1,3 @@
-"""The page in a real browser: what a person does there, and what he sees."""
-
 import base64
 import re
 from io import BytesIO
@@ -71,7 +69,6 @@ class Person:
         self.page.locator("#calls li:first-child", has_text=text).wait_for()
 
     def fill(self, form, **values):
-        """Fill a form in and send it."""
         for name, value in values.items():
             self.page.fill(f"[data-form={form}] [name={name}]", value)
         self.page.click(f"[data-form={form}] button")
@@ -85,7 +82,6 @@ class Person:
         )
 
     def canvas(self):
-        """The pixels that are shown, RGB."""
         pixels = pixels_of(self.page.evaluate(f"({PIXELS})()"))
         assert (pixels[..., 3] == 255).all()
         return pixels[..., :3]
@@ -96,7 +92,6 @@ class Person:
 
 
 def pixels_of(told):
-    """What `PIXELS` tells, RGBA."""
     return np.frombuffer(base64.b64decode(told), np.uint8).reshape(500, 500, 4)
 
 
@@ -259,7 +254,6 @@ def test_the_page_can_be_held_still_and_then_shows_what_there_is(browser, page):
 
 
 def explore(person):
-    """All that the page can show of a topic."""
     person.page.click("#refresh")
     person.page.click("#topics button:text-is('/seen/turtle1/pose')")
     person.sees("linear_velocity: float [m/s]")

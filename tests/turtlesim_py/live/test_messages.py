@@ -1,5 +1,3 @@
-"""What a page sends and does not fit is refused, with the sentence that the page translates."""
-
 import json
 
 import pytest

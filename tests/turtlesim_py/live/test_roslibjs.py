@@ -1,5 +1,3 @@
-"""roslibjs, the library of ROS's web pages, drives the turtle through the page's socket."""
-
 import subprocess
 
 from turtlesim.msg import Pose

@@ -1,5 +1,3 @@
-"""A real simulator with its page, and programs that speak rosbridge to it."""
-
 import http.client
 import json
 import math
@@ -27,7 +25,6 @@ OPS = ("advertise", "unadvertise", "publish", "subscribe", "unsubscribe", "call_
 
 
 def rests(viewer):
-    """It still answers."""
     answer = viewer.ask(op="call_service", service="/rosapi/topics", id="still there")
     assert answer["result"], answer
 

@@ -1,5 +1,3 @@
-"""Who is let in: this machine's own pages, and whoever has the token."""
-
 import pytest
 
 from turtlesim_py.live.site import Site, is_loopback

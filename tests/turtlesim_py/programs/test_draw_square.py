@@ -1,5 +1,3 @@
-"""draw_square: its decisions in a bare world, and the program beside a simulator."""
-
 import math
 
 import pytest

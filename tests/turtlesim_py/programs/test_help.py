@@ -1,5 +1,3 @@
-"""`--help` of every program says what it does, and starts nothing."""
-
 import tomllib
 from importlib import import_module
 

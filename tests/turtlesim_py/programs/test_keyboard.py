@@ -1,5 +1,3 @@
-"""Keys from a terminal, and the terminal afterwards."""
-
 import os
 import pty
 import signal

@@ -1,5 +1,3 @@
-"""mimic, between two topics of the test's own."""
-
 import pytest
 from geometry_msgs.msg import Twist
 

@@ -1,5 +1,3 @@
-"""turtle_teleop_key on a terminal of its own, with a real simulator at the other end."""
-
 import os
 import pty
 import signal
@@ -25,8 +23,6 @@ GREETING = [
 
 
 class Teleop:
-    """The program and the user's end of its terminal."""
-
     def __init__(self, *arguments):
         self._user, self._terminal = pty.openpty()
         self.found = termios.tcgetattr(self._terminal)
@@ -47,7 +43,6 @@ class Teleop:
             os.close(end)
 
     def wait_for_help(self):
-        """What is on the screen when the help is."""
         shown = b""
         while b"quit." not in shown:
             shown += os.read(self._user, 1024)

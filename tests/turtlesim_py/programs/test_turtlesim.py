@@ -1,5 +1,3 @@
-"""`turtlesim`: simulator and page, and a browser where there is one."""
-
 import http.client
 import re
 import socket

@@ -1,5 +1,3 @@
-"""What one spin of a node takes, and in which order."""
-
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 from rclpy.node import Node
@@ -10,8 +8,6 @@ from turtlesim_py.ros.executor import TickExecutor
 
 
 class Served:
-    """A node that notes what it is served."""
-
     def __init__(self, graph, on_failure=None):
         self.graph = graph
         self.node = Node("served", use_global_arguments=False)
@@ -37,7 +33,6 @@ class Served:
         return self.node.create_service(Empty, f"served/{name}", on_request)
 
     def spin(self):
-        """What one spin brings."""
         self.notes.clear()
         self.executor.spin_some()
         return list(self.notes)

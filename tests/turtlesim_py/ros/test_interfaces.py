@@ -1,5 +1,3 @@
-"""Under which of its two names a node serves turtlesim's interfaces."""
-
 import re
 
 import pytest

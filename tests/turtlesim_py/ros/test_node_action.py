@@ -1,5 +1,3 @@
-"""A real node's action rotate_absolute: every way in which a goal can end."""
-
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -24,14 +22,11 @@ class Goal:
 
     @property
     def remaining(self):
-        """What its feedback says."""
         own = self.handle.goal_id
         return [each.feedback.remaining for each in self.feedback if each.goal_id == own]
 
 
 class Rotation:
-    """A client of one turtle's action."""
-
     def __init__(self, graph, turtle):
         self.graph = graph
         self.client = graph.action(RotateAbsolute, f"/{turtle}/rotate_absolute")

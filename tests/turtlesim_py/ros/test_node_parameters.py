@@ -1,5 +1,3 @@
-"""A real node's parameters: what they are, and in whose words they are refused."""
-
 import pytest
 from rcl_interfaces.msg import IntegerRange, Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import (
@@ -26,7 +24,6 @@ def double(value):
 
 
 def set_each(graph, **values):
-    """Set several in one call: success and reason of each."""
     parameters = [Parameter(name=name, value=value) for name, value in values.items()]
     answer = graph.call(SetParameters, "/turtlesim/set_parameters", parameters=parameters)
     return [(result.successful, result.reason) for result in answer.results]

@@ -1,5 +1,3 @@
-"""The program turtlesim_node: its arguments, several of them at once, its end."""
-
 import re
 import signal
 

@@ -1,5 +1,3 @@
-"""A real node's services: what they do, what they answer, what is logged."""
-
 import re
 from pathlib import Path
 
@@ -22,7 +20,6 @@ WARN = 30
 
 @pytest.fixture
 def emptied(graph, simulator):
-    """The simulator with turtle1 alone."""
     graph.call(Empty, "/reset")
 
 

@@ -1,5 +1,3 @@
-"""A real node's topics: names, types, hashes, QoS, and what becomes of commands."""
-
 from functools import partial
 
 import pytest

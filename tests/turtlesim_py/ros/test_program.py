@@ -1,5 +1,3 @@
-"""What makes a simulator tick, with clocks of the test's own."""
-
 import itertools
 
 import pytest

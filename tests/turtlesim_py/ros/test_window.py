@@ -1,5 +1,3 @@
-"""The picture as data: the topic ~/image of a real node."""
-
 from io import BytesIO
 
 import numpy as np
@@ -85,7 +83,6 @@ def rate(graph):
 
 @pytest.fixture
 def renderings(monkeypatch):
-    """One entry for each picture that has been made."""
     made = []
     original = picture.render
 

@@ -1,5 +1,3 @@
-"""The canvas: strokes, the colour under a point, copies."""
-
 import numpy as np
 import pytest
 from hypothesis import given

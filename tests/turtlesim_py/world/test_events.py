@@ -1,5 +1,3 @@
-"""An event and its JSON form say the same, for every kind there is."""
-
 import json
 import math
 

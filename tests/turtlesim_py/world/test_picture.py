@@ -1,5 +1,3 @@
-"""The window: background, path, turtles."""
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,5 +1,3 @@
-"""The turtles' pictures."""
-
 import hashlib
 
 import pytest

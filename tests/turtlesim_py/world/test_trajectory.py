@@ -1,5 +1,3 @@
-"""The columns of a trajectory have names; as rows they are those of the original's recordings."""
-
 import math
 from dataclasses import fields
 

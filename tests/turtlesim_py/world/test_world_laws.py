@@ -1,5 +1,3 @@
-"""Laws of the world that hold for any input."""
-
 import math
 
 from hypothesis import given

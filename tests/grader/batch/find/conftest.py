@@ -1,5 +1,3 @@
-"""For all tests of finding."""
-
 from contextlib import ExitStack
 
 import pytest

@@ -2,18 +2,13 @@
 
 import io
 import zipfile
-from contextlib import ExitStack
-from pathlib import Path
-from typing import Any
 
-from grader.batch.entry import HandIn
-from grader.batch.find.finding import Found, find
+from grader.batch.find.finding import find
 
 NODE = "def main():\n    pass\n"
 
 
-def packed(files: dict[str, str | bytes]) -> bytes:
-    """A zip."""
+def packed(files):
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
@@ -24,17 +19,17 @@ def packed(files: dict[str, str | bytes]) -> bytes:
 class Finder:
     """Finds, and keeps what was found until the test is over."""
 
-    def __init__(self, stack: ExitStack) -> None:
+    def __init__(self, stack):
         self._stack = stack
 
-    def __call__(self, submissions: Path, **options: Any) -> Found:
+    def __call__(self, submissions, **options):
         return self._stack.enter_context(find(submissions, **options))
 
-    def by_id(self, submissions: Path, **options: Any) -> dict[str, HandIn]:
+    def by_id(self, submissions, **options):
         return {each.id: each for each in self(submissions, **options).hand_ins}
 
 
-def content(hand_in: HandIn) -> set[str]:
+def content(hand_in):
     """The files of a hand-in, by their paths in it."""
     assert hand_in.path is not None
     if hand_in.path.is_file():
@@ -43,6 +38,6 @@ def content(hand_in: HandIn) -> set[str]:
     return {str(path.relative_to(hand_in.path)) for path in files}
 
 
-def noted(found: Found, *words: str) -> bool:
+def noted(found, *words):
     """Whether one of the notes has all these words."""
     return any(all(word in note for word in words) for note in map(str, found.notes))

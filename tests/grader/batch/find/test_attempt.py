@@ -1,5 +1,3 @@
-"""Times as people, names of files and course systems write them."""
-
 from datetime import UTC, datetime
 
 import pytest

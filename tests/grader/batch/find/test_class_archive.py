@@ -1,5 +1,3 @@
-"""The archive of a class: what one has put into it harms neither the machine nor the others."""
-
 import io
 import stat
 import tarfile

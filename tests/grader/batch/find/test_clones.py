@@ -1,7 +1,5 @@
 """Folders of repositories: Classroom 50, GitHub Classroom, clones; nothing in them is read."""
 
-from pathlib import Path
-
 from tests.files import lay
 from tests.grader.batch.find.exports import NODE, noted
 
@@ -14,7 +12,7 @@ SCORES = (
 )
 
 
-def clones(root: Path, *names: str) -> Path:
+def clones(root, *names):
     for name in names:
         lay(root / name, {"node.py": NODE, ".git/HEAD": "ref: refs/heads/main\n"})
     return root

@@ -1,7 +1,6 @@
 """Gradescope's export: folders, and Ruby's YAML beside them."""
 
 from datetime import UTC, datetime
-from pathlib import Path
 
 from tests.files import lay
 from tests.grader.batch.find.exports import NODE, content, noted
@@ -53,7 +52,7 @@ submission_105:
 """.replace(", *deep2", "")
 
 
-def export(root: Path, metadata: str = METADATA) -> Path:
+def export(root, metadata=METADATA):
     return lay(
         root,
         {
@@ -104,7 +103,7 @@ def test_no_tag_of_a_stranger_is_followed(tmp_path, finder):
 def test_a_member_of_a_group_is_in_his_newest_hand_in_alone(tmp_path, finder):
     ann, bob = "  - :name: Ann\n    :sid: s1\n", "  - :name: Bob\n    :sid: s2\n"
 
-    def told(number: int, people: str, day: int) -> str:
+    def told(number, people, day):
         at = f"2026-11-0{day} 12:30:00 Z"
         return f"submission_{number}:\n  :submitters:\n{people}  :created_at: {at}\n"
 

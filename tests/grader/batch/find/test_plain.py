@@ -1,5 +1,3 @@
-"""Folders that no course system has made: one file or folder a student."""
-
 import os
 import re
 import unicodedata

@@ -1,12 +1,9 @@
-"""Who is in a class: tables as spreadsheets and course systems write them."""
-
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 
 from grader.batch.find.joining import UNCLEAR
-from grader.batch.find.roster import Roster, read_roster
+from grader.batch.find.roster import read_roster
 from grader.errors import UsageError
 from grader.message import NOTHING
 from tests.files import lay
@@ -15,11 +12,11 @@ from tests.grader.batch.find.exports import NODE, noted
 FILES = {"alice.py": NODE, "bob.py": NODE}
 
 
-def roster(tmp_path: Path, content: str | bytes) -> Roster:
+def roster(tmp_path, content):
     return read_roster(lay(tmp_path, {"list.csv": content}) / "list.csv")
 
 
-def who(found: Roster) -> list[tuple[str, str]]:
+def who(found):
     return [(member.person.id, member.person.name) for member in found.members]
 
 

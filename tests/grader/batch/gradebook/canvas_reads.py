@@ -10,7 +10,6 @@ import csv
 import io
 import re
 import zipfile
-from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 
@@ -24,7 +23,7 @@ class Imported:
     unknown: list[str] = field(default_factory=list)
 
 
-def gradebook(content: bytes, users: Mapping[int, Mapping[str, str]]) -> Imported:
+def gradebook(content, users):
     """Read a gradebook: users by their id, each with name, sis and login."""
     text = content.decode("utf-8")
     assert delimiter(text) == ","
@@ -47,7 +46,7 @@ def gradebook(content: bytes, users: Mapping[int, Mapping[str, str]]) -> Importe
     return found
 
 
-def delimiter(text: str) -> str:
+def delimiter(text):
     """A semicolon where the first three lines have more, and equally many, columns with it."""
     lines = list(io.StringIO(text, newline="\n"))[:3]
     sizes = {}
@@ -60,7 +59,7 @@ def delimiter(text: str) -> str:
     return ";" if sizes[";"] > sizes[","] else ","
 
 
-def _student_columns(header: list[str]) -> int:
+def _student_columns(header):
     assert len(header) > 3
     assert "Student" in header[0]
     assert "ID" in header[1]
@@ -71,7 +70,7 @@ def _student_columns(header: list[str]) -> int:
     return columns
 
 
-def _user(row: list[str], users: Mapping[int, Mapping[str, str]]) -> int | None:
+def _user(row, users):
     if row[1] and int(row[1]) in users:
         return int(row[1])
     for place, name in ((2, "sis"), (3, "login"), (0, "name")):
@@ -81,7 +80,7 @@ def _user(row: list[str], users: Mapping[int, Mapping[str, str]]) -> int | None:
     return None
 
 
-def _decimal(text: str) -> str:
+def _decimal(text):
     """A comma or a point is the sign before decimals; those before it are not."""
     if not re.fullmatch(r"-?[0-9.,]+%?", text):
         return text
@@ -89,9 +88,7 @@ def _decimal(text: str) -> str:
     return f"{''.join(whole)}.{last}" if whole else last
 
 
-def feedback_zip(
-    content: bytes, submissions: Mapping[int, Collection[int]]
-) -> tuple[dict[int, tuple[str, bytes]], list[str]]:
+def feedback_zip(content, submissions):
     """Comments by user, each a file; and the names that are ignored.
 
     Args:

@@ -10,7 +10,6 @@ import csv
 import io
 import posixpath
 import zipfile
-from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 HIDDEN_USER = "Participant "
@@ -22,7 +21,7 @@ class Graded:
     comment: str
 
 
-def rows(content: bytes) -> list[list[str]]:
+def rows(content):
     """As csv_import_reader: without a mark, one kind of line break, equally many columns."""
     text = content.decode("utf-8").removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     found = list(csv.reader(io.StringIO(text), strict=True))
@@ -30,7 +29,7 @@ def rows(content: bytes) -> list[list[str]]:
     return found
 
 
-def worksheet(content: bytes, participants: Collection[int], maximum: float) -> dict[int, Graded]:
+def worksheet(content, participants, maximum):
     """The grades and comments that the upload of a grading worksheet changes, by participant."""
     header, *lines = rows(content)
     identifier, grade, _modified, comment = (
@@ -46,21 +45,19 @@ def worksheet(content: bytes, participants: Collection[int], maximum: float) -> 
     return found
 
 
-def unformat_float(text: str) -> float | None:
+def unformat_float(text):
     """In a language with a decimal point, and in one with a comma: both take a point."""
     return float(text.replace(" ", "").replace(",", ".")) if text else None
 
 
-def grade_import(
-    content: bytes, key: str, grade: str, users: Mapping[str, int]
-) -> dict[int, float]:
+def grade_import(content, key, grade, users):
     """The grades that the import into the course's gradebook sets, by user.
 
     An unknown user ends all of it; an empty one is taken for the one of the row before.
     """
     header, *lines = rows(content)
     mapped, points = header.index(key), header.index(grade)
-    found: dict[int, float] = {}
+    found = {}
     student = None
     for line in lines:
         if line[mapped].strip():
@@ -72,9 +69,9 @@ def grade_import(
     return found
 
 
-def feedback_zip(content: bytes, participants: Collection[int]) -> dict[int, dict[str, bytes]]:
+def feedback_zip(content, participants):
     """The feedback files that students get, by participant and name."""
-    found: dict[int, dict[str, bytes]] = {}
+    found = {}
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         for name in archive.namelist():
             match = _matched("/import/" + name, participants)
@@ -84,7 +81,7 @@ def feedback_zip(content: bytes, participants: Collection[int]) -> dict[int, dic
     return found
 
 
-def _matched(path: str, participants: Collection[int]) -> tuple[int, str] | None:
+def _matched(path, participants):
     if posixpath.basename(path).startswith((".", "~")):
         return None
     parts = path.split("/")

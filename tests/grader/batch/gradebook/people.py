@@ -1,8 +1,6 @@
 """A class as several course systems know it, with names as they are."""
 
 from datetime import UTC, datetime
-from pathlib import Path
-from typing import Any
 
 from PIL import Image
 
@@ -31,12 +29,11 @@ NAMES = (
 )
 
 
-def person(number: int, **columns: str) -> Person:
+def person(number, **columns):
     return Person(f"s{number}", NAMES[number % len(NAMES)], columns)
 
 
-def in_worksheet(number: int, **more: str) -> Person:
-    """As Moodle's grading worksheet has him."""
+def in_worksheet(number, **more):
     columns = {
         "Identifier": f"Participant {1000 + number}",
         "Full name": NAMES[number % len(NAMES)],
@@ -52,7 +49,7 @@ def in_worksheet(number: int, **more: str) -> Person:
     return person(number, **(columns | more))
 
 
-def in_canvas(number: int, **more: str) -> Person:
+def in_canvas(number, **more):
     """As Canvas's exported gradebook has him, with what he has handed in."""
     columns = {
         "Student": NAMES[number % len(NAMES)],
@@ -66,7 +63,7 @@ def in_canvas(number: int, **more: str) -> Person:
     return person(number, **(columns | more))
 
 
-def judged(folder: Path, *people: Person, deducted: float = 0.0, **more: Any) -> Entry:
+def judged(folder, *people, deducted=0.0, **more):
     """Somebody, or a group, with 18.33 of 40 points, and a picture."""
     hand_in = HandIn(people[0].id, people, attempt=2, at=datetime(2026, 11, 2, 9, 15, tzinfo=UTC))
     own = folder / hand_in.id
@@ -81,5 +78,5 @@ def judged(folder: Path, *people: Person, deducted: float = 0.0, **more: Any) ->
     return Entry(hand_in, "judged", MAXIMUM, result=result, folder=own)
 
 
-def without_result(state: Any, *people: Person, message: str = "") -> Entry:
+def without_result(state, *people, message=""):
     return Entry(HandIn(people[0].id, people), state, MAXIMUM, message=plain_text(message))

@@ -1,10 +1,7 @@
-"""What Canvas reads in what we write for it."""
-
 import io
 import zipfile
 from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 
@@ -54,7 +51,7 @@ def test_an_assignment_is_known_by_title_or_number(wanted):
     assert imported([entry], "Another").assignment == "Another"
 
 
-def feedback(folder: Path, entries, submissions):
+def feedback(folder, entries, submissions):
     write(folder, entries, plain_text("Spiral"))
     content = (folder / "export" / CANVAS_FEEDBACK).read_bytes()
     return canvas_reads.feedback_zip(content, submissions)

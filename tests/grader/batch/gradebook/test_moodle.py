@@ -1,5 +1,3 @@
-"""What Moodle reads in what we write for it."""
-
 import io
 import zipfile
 from dataclasses import replace

@@ -1,10 +1,7 @@
-"""The files of a gradebook: which there are, that they stay the same, what is said of them."""
-
 import csv
 import io
 import json
 import zipfile
-from pathlib import Path
 
 import pytest
 
@@ -26,7 +23,7 @@ from tests.grader.reports.samples import MIXED, run, verdict
 TITLE = plain_text("Spiral")
 
 
-def written(out: Path) -> dict[str, bytes]:
+def written(out):
     found = [*out.glob("gradebook.*"), *out.glob("export/*")]
     return {path.relative_to(out).as_posix(): path.read_bytes() for path in found}
 

@@ -1,15 +1,12 @@
 """Classes to be shown, without a run."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
-from typing import Any
 
-from grader.batch.entry import Entry, HandIn, Person, State
+from grader.batch.entry import Entry, HandIn, Person
 from grader.batch.page import html
-from grader.batch.page.html import Student, students
-from grader.message import Message, as_message, msg
+from grader.batch.page.html import students
+from grader.message import as_message, msg
 from grader.result.result import Result
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
@@ -17,7 +14,7 @@ from tests.grader.reports.samples import verdict
 OFF = msg("It is {metres} m off.", metres=1)
 
 
-def result(points: Mapping[str, float], rationale: str | Message = OFF, **more: Any) -> Result:
+def result(points, rationale=OFF, **more):
     """Ten points a check; what has less failed, what is negative was not judged."""
     listed = [
         verdict(check, "passed")
@@ -34,26 +31,24 @@ def result(points: Mapping[str, float], rationale: str | Message = OFF, **more: 
 
 
 def entry(
-    id: str,
-    judged: Result | None = None,
+    id,
+    judged=None,
     *,
-    name: str = "",
-    state: State = "judged",
-    message: str | Message = "",
-    at: datetime | None = None,
-    folder: Path = Path("/nowhere"),
-) -> Entry:
+    name="",
+    state="judged",
+    message="",
+    at=None,
+    folder=Path("/nowhere"),
+):
     """A hand-in; judged where there is a result."""
     hand_in = HandIn(id, (Person(id, name),), at=at)
     return Entry(hand_in, state, 20.0, message=as_message(message), result=judged, folder=folder)
 
 
-def student(judged: Result | None = None, **more: Any) -> Student:
-    """The only one of a class."""
+def student(judged=None, **more):
     (only,) = students([entry("zoe", judged, **more)])
     return only
 
 
-def first_page(*of_class: Any) -> str:
-    """The first page of a class, which is the only one of most."""
+def first_page(*of_class):
     return html.render_all(*of_class)[html.PAGE]

@@ -1,5 +1,3 @@
-"""The table of checks: how many passed, the mean, and what is said most often to the others."""
-
 from dataclasses import replace
 
 import pytest
@@ -13,7 +11,6 @@ BAD, GOOD = {"a": 0.0, "b": 10.0}, {"a": 10.0, "b": 10.0}
 
 
 def row(*results):
-    """That of the check a."""
     return check_rows(results, {"a": 10.0, "b": 10.0})[0]
 
 

@@ -1,5 +1,3 @@
-"""The class page: complete, alone, safe, bounded, and the same for the same class."""
-
 import base64
 import hashlib
 import re

@@ -1,8 +1,4 @@
-"""The class page as a browser shows it."""
-
 from datetime import UTC, datetime
-from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -22,8 +18,7 @@ def browser():
         yield opened
 
 
-def shown(browser: Any, folder: Path, *entries: Any) -> Any:
-    """The first page of a class."""
+def shown(browser, folder, *entries):
     for name, content in html.render_all(list(entries), EXERCISE).items():
         (folder / name).write_text(content, encoding="utf-8")
     page = browser.new_page()

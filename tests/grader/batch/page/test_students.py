@@ -1,5 +1,3 @@
-"""A hand-in as a page may show it."""
-
 from dataclasses import replace
 from datetime import UTC, datetime
 

@@ -1,5 +1,3 @@
-"""A run made small: the same bytes each time, bounded, and read back as from a stranger."""
-
 import base64
 import io
 import json
@@ -108,7 +106,6 @@ def test_what_is_no_json_or_not_there_or_too_long_is_not_shown(tmp_path):
 
 
 def off(points, line):
-    """How far the farthest point is from a line."""
     starts, ways = line[:-1], np.diff(line, axis=0)
     squared = np.maximum((ways**2).sum(axis=1), 1e-300)
     along = ((points[:, None] - starts) * ways).sum(axis=2) / squared

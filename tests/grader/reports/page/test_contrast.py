@@ -21,7 +21,6 @@ SCHEMES = {"light": variables(_light), "dark": {**variables(_light), **variables
 
 
 def luminance(color):
-    """Relative luminance, as WCAG 2.2 defines it."""
     digits = color[1:] if len(color) == 7 else "".join(2 * digit for digit in color[1:])
     parts = [part / 255 for part in bytes.fromhex(digits)]
     red, green, blue = (p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts)

@@ -1,5 +1,3 @@
-"""The page as a browser shows and prints it."""
-
 import re
 import subprocess
 

@@ -1,5 +1,3 @@
-"""Templates are compiled once; where that cannot be kept, or was spoiled, each time."""
-
 import sys
 
 import jinja2
