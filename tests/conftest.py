@@ -90,6 +90,15 @@ def pytest_xdist_auto_num_workers() -> int:
     return cores + cores // 2
 
 
+@pytest.fixture(scope="module")
+def browser():
+    """A real one, for tests that are marked with `needs_browser`."""
+    from tests.browser import open_browser
+
+    with open_browser() as opened:
+        yield opened
+
+
 @pytest.fixture(scope="session")
 def ros():
     """ROS is up in this process; whoever needs a node in it asks for this."""

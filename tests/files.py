@@ -14,6 +14,12 @@ def lay(root: Path, files: Mapping[str, str | bytes]) -> Path:
     return root
 
 
+def contents(folder: Path) -> dict[str, bytes]:
+    """What files there are below a folder, by their paths in it."""
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
 def lay_too_deep(top: Path) -> None:
     """Lay a file so deep in a folder that no system call takes its whole path: 12,000 letters."""
     at = os.open(top, os.O_RDONLY)

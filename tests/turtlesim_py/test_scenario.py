@@ -15,28 +15,12 @@ STRAIGHT = {
 }
 
 
-@pytest.fixture(scope="module")
-def replayed():
-    kept = {}
-
-    def get(name):
-        if name not in kept:
-            kept[name] = replay(golden_runs.load(name)["scenario"])
-        return kept[name]
-
-    return get
-
-
 @pytest.mark.parametrize("name", golden_runs.NAMES)
-def test_every_recorded_value_is_reproduced(name, replayed):
-    recorded, ours = golden_runs.load(name), replayed(name).result
+def test_every_recorded_value_and_pixel_is_reproduced(name):
+    recorded = golden_runs.load(name)
+    ours = replay(recorded["scenario"])
     for part, expected in recorded.items():
-        assert ours[part] == expected, part
-
-
-@pytest.mark.parametrize("name", golden_runs.NAMES)
-def test_every_recorded_pixel_is_reproduced(name, replayed):
-    ours = replayed(name)
+        assert ours.result[part] == expected, part
     drawings = {name: ours.arena.canvas}
     drawings |= {f"{name}.{snapshot}": canvas for snapshot, canvas in ours.snapshots.items()}
     for drawing, canvas in drawings.items():

@@ -16,6 +16,7 @@ from grader.errors import ExerciseError, UsageError
 from grader.exercise.loading import load_exercise
 from grader.judging import judge, load_recordings
 from grader.message import msg
+from tests.files import contents
 from tests.grader.batch.conftest import QUICK
 from tests.tiers import others_are_more
 
@@ -64,11 +65,6 @@ def expected(graded, rubric):
     found = {key: load_recordings(Store(graded).run(key) / RECORDING) for key in {*keys.values()}}
     scores = {key: judge(each, load_exercise(rubric)).score for key, each in found.items()}
     return {id: scores[key] for id, key in keys.items()}
-
-
-def tree(folder):
-    paths = (path for path in folder.rglob("*") if path.is_file())
-    return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
 
 
 def test_who_changes_and_by_which_check_is_what_judging_in_memory_finds(
@@ -131,9 +127,9 @@ def test_what_cannot_be_judged_again_is_told_and_stays_as_it_is(out, new, capsys
     bag = Store(out).run(leaves.key) / RECORDING / "recording.mcap"
     bag.unlink()  # it is linked with that of the hand-in
     bag.write_bytes(b"no bag")
-    before = tree(leaves.folder)
+    before = contents(leaves.folder)
     assert call(out, new, apply=True) == GRADER_FAILED
-    assert tree(leaves.folder) == before
+    assert contents(leaves.folder) == before
     said = capsys.readouterr()
     assert rows(said.out)["leaves"]["after"] == ""
     assert "not judged again: leaves: " in said.err
@@ -144,14 +140,14 @@ def test_what_cannot_be_judged_again_is_told_and_stays_as_it_is(out, new, capsys
 def test_nobody_is_changed_unless_applied_and_the_way_back_leads_to_the_old_results(
     out, graded, old, new, tmp_path, capsys
 ):
-    files, before = tree(out), {entry.id: entry.result for entry in entries(out)}
+    files, before = contents(out), {entry.id: entry.result for entry in entries(out)}
     (out / "changes.csv").symlink_to(tmp_path / "elsewhere")
     assert call(out, new) == 0
     said = capsys.readouterr()
     assert (out / "changes.csv").read_text() == said.out
     assert "The class was not changed." in said.err
     (out / "changes.csv").unlink()
-    assert tree(out) == files
+    assert contents(out) == files
     assert not (tmp_path / "elsewhere").exists()
 
     assert call(out, new, apply=True) == 0

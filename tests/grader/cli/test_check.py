@@ -8,6 +8,7 @@ import yaml
 from grader import grading
 from grader.cli import main
 from tests import archive
+from tests.files import contents
 from tests.grader.testing import exercises
 
 
@@ -40,10 +41,6 @@ def edited(tmp_path, **changes):
 
 def result(folder):
     return json.loads((folder / "result.json").read_text())
-
-
-def contents(folder):
-    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def test_the_result_is_judged_by_the_new_exercise_and_so_is_its_page(graded, tmp_path, capsys):

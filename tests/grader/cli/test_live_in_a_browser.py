@@ -3,21 +3,14 @@ import re
 
 import numpy as np
 import PIL.Image
-import pytest
 
-from tests.browser import clipped, needs_browser, obstacles, open_browser
+from tests.browser import clipped, needs_browser, obstacles
 from tests.grader.cli.test_live import ONE_RUN, QUICK
 from tests.programs import DEADLINE_S, Program
 from tests.turtlesim_py.live.test_in_a_browser import PIXELS, pixels_of
 
 pytestmark = needs_browser
 WIDTH = 375
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_path, browser):

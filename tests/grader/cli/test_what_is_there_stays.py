@@ -8,6 +8,7 @@ from grader.cli import main
 from grader.recording import saving
 from grader.recording.recording import Recordings
 from grader.result.result import Result
+from tests.files import contents
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 
@@ -28,10 +29,6 @@ def here(tmp_path, monkeypatch):
     (tmp_path / "error.json").write_text(json.dumps(error))
     saving.save_all(Recordings(drive(Spiral(), ticks=10)), tmp_path / "recording")
     return tmp_path
-
-
-def contents(folder):
-    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 @pytest.mark.parametrize(

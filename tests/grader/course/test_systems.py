@@ -77,7 +77,6 @@ def on_github(machine, given):
     asked = (machine.folder / "gh.txt").read_text()
     title = re.search(r"output\[title\]=(.*)", asked)
     conclusion = re.search(r"conclusion=(.*)", asked)
-    assert title and conclusion
     if code in ("0", "1"):
         junit_score(temp / "graded" / "junit.xml")
         assert "<html" in (temp / "graded" / "report.html").read_text()
@@ -170,7 +169,6 @@ def on_classroom50(machine, given):
 
 def junit_score(file):
     suite = ElementTree.parse(file).getroot().find("testsuite")
-    assert suite is not None
     (score,) = (p.get("value") for p in suite.iter("property") if p.get("name") == "score")
     return float(str(score))
 

@@ -24,6 +24,7 @@ from grader.recording.saving import BAG, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.saving import CIRCUMSTANCES_FILE as CIRCUMSTANCES
 from grader.scenes.turtlesim.trace import Log
 from grader.strict_json import to_json
+from tests.files import contents
 from tests.grader.driving import Spiral, drive
 from turtlesim_py.world.events import RotateAbsolute, SetParameter, SetPen
 from turtlesim_py.world.trajectory import Trajectory
@@ -55,11 +56,6 @@ def saved(recorded, tmp_path_factory):
 @pytest.fixture
 def folder(saved, tmp_path):
     return shutil.copytree(saved, tmp_path / "recording")
-
-
-def contents(folder):
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
 def change(path, **values):

@@ -200,6 +200,10 @@ def balanced(content):
     return page
 
 
+def elements(content, name):
+    return [attrs for tag, attrs in balanced(content).tags if tag == name]
+
+
 def html(content):
     assert len(content.encode()) < 2_000_000
     page = balanced(content)

@@ -190,6 +190,7 @@ def test_a_file_is_read_as_what_it_is(tmp_path):
     path.write_text(json.dumps({"schema": "turtlesim-grader/error/v1"}))
     with pytest.raises(UsageError, match=r"x\.json is no error of"):
         read(path)
-    path.write_text("[]")
-    with pytest.raises(UsageError, match=r"x\.json is no result of"):
-        read(path)
+    for text in ("[]", '{"score": 100}'):
+        path.write_text(text)
+        with pytest.raises(UsageError, match=r"x\.json is no result of"):
+            read(path)

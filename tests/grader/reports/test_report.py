@@ -1,13 +1,11 @@
-import json
 import os
 import re
 from dataclasses import replace
 
 import pytest
 
-from grader.errors import UsageError
 from grader.recording.recording import Recordings
-from grader.reports import Report, load, render
+from grader.reports import Report, render
 from grader.reports import read as read_report
 from grader.result.result import Result
 from tests.grader.driving import Spiral, drive
@@ -49,11 +47,6 @@ def test_evidence_is_numbered_over_all_verdicts_and_names_its_run():
         (3, 1, 0, "z"),
     ]
     assert str(report.points[1]) == "varied run 2, at 1.60 s, at (5.50, 7.25): y"
-
-
-def test_a_check_that_is_not_judged_waits_for_those_that_did_not_pass_only():
-    report = samples.report()
-    assert report.waited_for(report.verdicts[3]) == ("stops",)
 
 
 def test_checks_that_look_the_same_or_have_no_name_can_be_told_apart():
@@ -116,16 +109,3 @@ def test_only_files_below_the_results_folder_are_opened(tmp_path, path):
     report = samples.report_in(folder, result)
     assert report.beside.canvas_path is None
     assert report.output == ""
-
-
-def test_what_is_no_result_is_refused_with_its_name(tmp_path):
-    path = tmp_path / "other.json"
-    path.write_text(json.dumps({"score": 100}))
-    with pytest.raises(UsageError, match=r"other\.json is no result"):
-        read_report(path)
-
-
-def test_one_format_takes_several_results_and_the_others_say_so():
-    assert [name for name in FORMATS if load(name).render_all is not None] == ["csv"]
-    with pytest.raises(UsageError, match=r"markdown shows one result, found 2; .*: csv"):
-        render("markdown", [samples.report(), samples.report()])

@@ -17,7 +17,6 @@ from tests.browser import (
     moving,
     needs_browser,
     obstacles,
-    open_browser,
 )
 from tests.programs import DEADLINE_S, Program
 from tests.turtlesim_py.live.conftest import Page
@@ -38,12 +37,6 @@ PIXELS = """
   return btoa(text);
 }
 """
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 class Person:
@@ -170,7 +163,7 @@ def test_turtles_are_turned_and_laid_over_as_the_simulator_does(browser, page):
     places = [(x, y) for x in (-10.0, 0.3, 250.0, 499.9) for y in (17.25, 480.5)]
     canvas = Canvas()
     canvas.draw_line(20.0, 30.0, 400.5, 310.25, Pen(10, 200, 30, 12))
-    first = canvas.copy()
+    PIL.Image.fromarray(canvas.rgba()).save(png := BytesIO(), format="PNG")
     turtles = [
         Sprite(*places[n % len(places)], float(heading), name)
         for n, heading in enumerate(headings)
@@ -206,7 +199,7 @@ def test_turtles_are_turned_and_laid_over_as_the_simulator_does(browser, page):
           view.show();
           return pixels(canvas);
         }""",
-        [png_of(first), runs, told],
+        [base64.b64encode(png.getvalue()).decode(), runs, told],
     )
     assert np.array_equal(pixels_of(drawn)[..., :3], expected)
     person.leave()
@@ -214,12 +207,6 @@ def test_turtles_are_turned_and_laid_over_as_the_simulator_does(browser, page):
 
 def told_number(value):
     return value if np.isfinite(value) else str(value)
-
-
-def png_of(canvas):
-    file = BytesIO()
-    PIL.Image.fromarray(canvas.rgba()).save(file, format="PNG")
-    return base64.b64encode(file.getvalue()).decode()
 
 
 def test_what_there_is_can_be_explored_and_nobody_is_kept_out(browser, page):

@@ -23,7 +23,7 @@ def test_who_asks_for_help_gets_it_and_nothing_starts(name, word, monkeypatch, c
     assert "turtle" in about or "robot" in about
 
 
-@pytest.mark.parametrize("module", ["turtlesim_py.ros.node"])
-def test_a_parameter_s_value_is_no_cry_for_help(module):
-    with Program(module, "--ros-args", "-r", "__ns:=/helped", "-p", "turtle_image:=-h") as program:
+def test_a_parameter_s_value_is_no_cry_for_help():
+    words = ("--ros-args", "-r", "__ns:=/helped", "-p", "turtle_image:=-h")
+    with Program("turtlesim_py.ros.node", *words) as program:
         assert program.wait() == 2

@@ -15,7 +15,6 @@ def test_it_says_where_the_page_is_and_opens_it(tmp_path, monkeypatch):
     arguments = ("--ros-args", "-p", "view_port:=0", "-r", "__ns:=/desk")
     with Program("turtlesim_py.programs.turtlesim", *arguments, cwd=tmp_path) as program:
         program.wait_for_line("This turtlesim shows no window")
-        assert program.process.stdout is not None
         said = [program.process.stdout.readline() for _ in range(4)]
         address = re.search(r"The turtles: (http://127\.0\.0\.1:(\d+)/)", said[1])
         assert re.search(r"add to its address: /\?token=\S{16}", said[2])

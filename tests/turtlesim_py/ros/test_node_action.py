@@ -5,11 +5,10 @@ from typing import Any
 import pytest
 from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
-from geometry_msgs.msg import Twist
 from rclpy.task import Future
 from turtlesim.action import RotateAbsolute
 from turtlesim.msg import Pose
-from turtlesim.srv import Kill, Spawn, TeleportAbsolute
+from turtlesim.srv import Kill, Spawn
 
 
 @dataclass
@@ -105,17 +104,6 @@ def test_a_second_goal_aborts_the_first(simulator, rotation):
     assert rotation.outcome(second)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
-def test_a_command_aborts_a_goal(graph, simulator, turtle, rotation):
-    publisher = graph.publisher(Twist, f"/{turtle}/cmd_vel")
-    begin = len(simulator.lines)
-    goal = rotation.send(3.0)
-    graph.until(lambda: goal.remaining, "a rotation")
-    publisher.publish(Twist())
-    assert rotation.outcome(goal)[0] == GoalStatus.STATUS_ABORTED
-    line = simulator.wait_for_line("Velocity command received during rotation goal.", begin)
-    assert line.startswith("[WARN]")
-
-
 def test_a_canceled_goal_stops_the_turtle(graph, simulator, turtle, rotation):
     poses = graph.listen(Pose, f"/{turtle}/pose")
     begin = len(simulator.lines)
@@ -145,12 +133,6 @@ def test_a_killed_turtles_goal_is_canceled(graph, simulator):
     # the action goes right after the result, which who hears of the former first does not take
     outcomes = (of_a_killed_one(f"victim{number}") for number in range(10))
     assert next(filter(None, outcomes)) == (GoalStatus.STATUS_CANCELED, 0.0)
-
-
-def test_a_teleport_does_not_stop_a_goal(graph, turtle, rotation):
-    goal = rotation.send(0.3)
-    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=2.0, y=2.0, theta=0.2)
-    assert rotation.outcome(goal)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_goals_of_two_turtles_run_beside_each_other(graph, turtle, rotation):

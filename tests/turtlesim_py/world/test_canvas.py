@@ -43,14 +43,6 @@ def test_a_dot_is_painted_opaque_in_the_pens_colour():
     assert painted(canvas) == 9
 
 
-def test_a_pen_of_width_0_draws_like_one_of_width_1():
-    one, zero = Canvas(), Canvas()
-    one.draw_line(10.0, 20.0, 300.0, 222.0, Pen(width=1))
-    zero.draw_line(10.0, 20.0, 300.0, 222.0, Pen(width=0))
-    assert painted(one) > 0
-    assert (one.rgba() == zero.rgba()).all()
-
-
 def test_a_later_stroke_covers_an_earlier_one():
     canvas = Canvas()
     canvas.draw_line(100.0, 100.0, 200.0, 100.0, RED)

@@ -12,6 +12,7 @@ from grader.recording.recording import Recordings
 from tests.grader.batch.page.classes import entry, first_page, result
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers
+from tests.grader.reports.readers import elements
 
 EXERCISE = load_exercise("turtlesim_challenge")
 BAD, GOOD = {"moves": 10.0, "spiral": 2.5}, {"moves": 10.0, "spiral": 10.0}
@@ -37,10 +38,6 @@ def some(tmp_path_factory):
 @pytest.fixture(scope="module")
 def page(some):
     return first_page(some, EXERCISE, {"Gradebook": "gradebook.csv"})
-
-
-def elements(page, name):
-    return [attrs for tag, attrs in readers.balanced(page).tags if tag == name]
 
 
 def test_it_is_well_formed_and_loads_nothing(page):

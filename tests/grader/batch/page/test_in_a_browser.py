@@ -1,21 +1,13 @@
 from datetime import UTC, datetime
 
-import pytest
-
 from grader.batch.page import html
 from grader.exercise.loading import load_exercise
-from tests.browser import clipped, needs_browser, open_browser
+from tests.browser import clipped, needs_browser
 from tests.grader.batch.page.classes import entry, result
 
 pytestmark = needs_browser
 EXERCISE = load_exercise("turtlesim_challenge")
 TOLD = ("Zoë", "Müller", "zoe17", "bob18", "Bob", "Brown", "kim19", "Kim")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 def shown(browser, folder, *entries):

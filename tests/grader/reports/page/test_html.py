@@ -16,6 +16,7 @@ from grader.reports.page import html
 from grader.result.result import Result
 from tests.grader.driving import Spiral, drive, pen, twist
 from tests.grader.reports import readers, samples
+from tests.grader.reports.readers import elements
 from tests.grader.reports.samples import evidence, verdict
 from turtlesim_py.world.trajectory import Trajectory
 
@@ -45,10 +46,6 @@ def page(tmp_path_factory, good):
     folder = tmp_path_factory.mktemp("graded")
     path = samples.graded(folder, good, *verdicts, varied=(good,), output="one\ntwo\n")
     return html.render(read_report(path))
-
-
-def elements(content, name):
-    return [attrs for tag, attrs in readers.balanced(content).tags if tag == name]
 
 
 def classes(content, tag):

@@ -5,7 +5,7 @@ import pytest
 
 from grader.reports import read as read_report
 from grader.reports.page import html
-from tests.browser import clipped, needs_browser, open_browser
+from tests.browser import clipped, needs_browser
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
@@ -30,11 +30,10 @@ def page(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def shown(page):
-    with open_browser() as browser:
-        opened = browser.new_page()
-        opened.goto(page.as_uri())
-        yield opened
+def shown(browser, page):
+    opened = browser.new_page()
+    opened.goto(page.as_uri())
+    return opened
 
 
 def test_it_opens_at_the_run_and_the_moment_of_the_first_fault(shown):
