@@ -1,6 +1,5 @@
 import shutil
 import subprocess
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +13,6 @@ from tests.files import lay
 from tests.grader.batch.classes import CONTROLLER, ENV, batch, command, rows
 from tests.grader.batch.conftest import QUICK
 
-Call = Callable[..., tuple[int, str]]
 NOT_RUN = "1 hand-in not run: the same content has been run already."
 
 

@@ -1,6 +1,5 @@
 import json
 import shutil
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +12,6 @@ from grader.cli import main
 from tests.grader.batch import classes
 from tests.grader.batch.classes import Class, rows, told
 from tests.grader.batch.named_class import with_text
-
-Call = Callable[..., int]
 
 
 @pytest.fixture

@@ -29,12 +29,6 @@ def test_the_challenge_s_starter_comes_by_itself(tmp_path, capsys):
     ]
 
 
-def commands_of(sheet):
-    """The commands on a sheet, which are indented, but for those that need ROS."""
-    lines = [line[4:] for line in sheet.splitlines() if line.startswith("    ")]
-    return [line for line in lines if not line.startswith(("ros2 ", "colcon "))]
-
-
 @pytest.mark.parametrize(
     ("called", "exercise"),
     others_are_more(
@@ -46,7 +40,8 @@ def commands_of(sheet):
 def test_the_commands_on_the_sheet_start_the_student_s_own_file(tmp_path, called, exercise):
     mine = tmp_path / called
     assert main(["new", str(mine), "--exercise", exercise]) == 0
-    simulator, by_hand, grade = commands_of((mine / "README.md").read_text())
+    commands = re.findall("(?m)^ {4}(?!ros2 |colcon )(.*)", (mine / "README.md").read_text())
+    simulator, by_hand, grade = commands
     assert shutil.which(simulator, path=BIN), simulator
     (program,) = (path for path in mine.rglob("*.py") if b"TODO" in path.read_bytes())
     program.write_text("import sys\nprint('my own')\nsys.exit()\n" + program.read_text())

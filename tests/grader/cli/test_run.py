@@ -21,11 +21,9 @@ import yaml
 
 from grader import scratch
 from grader.cli import main
-from grader.scenes.turtlesim.interfaces import adapted
 from grader.strict_json import first_error
 from tests import once
 from tests.programs import ROOT
-from turtlesim_py.ros.interfaces import installed
 
 QUICK = (ROOT / "tests" / "submissions" / "quick_spiral.py").read_text()
 ENV = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200"}
@@ -127,18 +125,6 @@ def test_a_right_solution_gets_full_marks():
     assert run.code == 0, run.stderr
     assert (run.result["score"], run.result["max_score"]) == (100, 100)
     assert (run.result["run"]["outcome"], run.result["run"]["time"]) == ("finished", "virtual")
-
-
-@pytest.mark.more("both the clock and the interfaces are tested, not together")
-@pytest.mark.applies(len(installed()) == 2, reason="beside a sourced ROS there is one")
-def test_a_solution_for_newer_releases_of_ros_is_graded_in_real_time_as_well(tmp_path):
-    (tmp_path / "turtle_controller.py").write_text(adapted(QUICK, "lyrical"))
-    (tmp_path / "short.yaml").write_text(SHORT)
-    words = ("--exercise", tmp_path / "short.yaml", "--time", "real", "--out", tmp_path / "out")
-    code, _, messages = called(tmp_path / "turtle_controller.py", *words)
-    result = json.loads((tmp_path / "out" / "result.json").read_text())
-    assert (code, result["score"]) == (0, 100), messages
-    assert result["run"]["interfaces"] == "turtlesim_msgs"
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,6 @@ def here(tmp_path, monkeypatch):
     [
         ("report rr.json --error-json rr.json", READ),
         ("report rr.json --error-json ../{here}/rr.json", READ),
-        ("report error.json --error-json error.json", READ),
         ("report rr.json --format csv --out rr.json", READ),
         ("report error.json --format csv --out error.json", READ),
         ("report rr.json --format csv --out recording/run.json", READ),
@@ -51,7 +50,6 @@ def here(tmp_path, monkeypatch):
         ("run package --json package/node.py", FOREIGN),
         ("check recording --json recording/run.json", FOREIGN),
         ("check recording --error-json recording/run.json", FOREIGN),
-        ("check recording --error-json rr.json", FOREIGN),
         ("new mine --error-json notes.txt", FOREIGN),
     ],
 )

@@ -12,7 +12,6 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -26,13 +25,11 @@ from tests.grader.course.machine import EXERCISES, FOR_THE_REAL_ONE, Machine, an
 from tests.programs import ROOT
 from tests.tiers import others_are_more
 
-PACKAGE = ROOT / "turtlesim_challenge" / "starter"
 SPIRAL = ROOT / "tests" / "submissions" / "quick_spiral.py"
 
 # Each function runs what the system would run, and returns what became of it: 0 points or more,
 # None where there is no judgement; and what the student can read.
 
-Outcome = tuple[float | None, str]
 UNUSABLE = an_error("submission", 'hand in <one> "file".')
 
 
@@ -173,7 +170,6 @@ def junit_score(file):
     return float(str(score))
 
 
-System = Callable[[Machine, HandIn], Outcome]
 SYSTEMS = [on_github, on_gitlab, on_gradescope, on_classroom50]
 
 
@@ -183,22 +179,17 @@ def by_systems(*kept, reason):
     return pytest.mark.parametrize("system", systems, ids=lambda system: system.__name__)
 
 
-def worth(system):
-    """17.5 points, as that system writes them."""
-    return 18 if system is on_classroom50 else 17.5  # which has whole points
-
-
 @by_systems(*SYSTEMS, reason="")
 @pytest.mark.parametrize("is_passed", others_are_more("less is told", [True, False], False))
 def test_the_points_arrive_of_the_exercise_that_the_staff_has_set(machine, system, is_passed):
     """Whatever the hand-in names, and whatever file of a rubric's name lies in it."""
     other, exercise = EXERCISES
     student = machine.submission(f"exit {int(not is_passed)}")
-    text = (PACKAGE / "package.xml").read_text()
+    text = (ROOT / "turtlesim_challenge" / "starter" / "package.xml").read_text()
     (student / "package.xml").write_text(naming(text, other, is_manifest=True))
     (student / "rubric.yaml").write_bytes(installed(other).description.read_bytes())
     points, _ = system(machine, HandIn(student, exercise))
-    assert points == worth(system)
+    assert points == (18 if system is on_classroom50 else 17.5)  # which has whole points
     (rubric,) = machine.seen.iterdir()
     assert yaml.safe_load(rubric.read_text())["exercise"] == exercise
 

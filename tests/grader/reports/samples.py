@@ -107,14 +107,7 @@ def report_in(folder, data):
     return Report(made, Beside(made, folder))
 
 
-def graded(
-    folder,
-    recording,
-    *verdicts,
-    varied=(),
-    output="",
-    **more,
-):
+def graded(folder, recording, *verdicts, varied=(), output="", **more):
     """A result file with a recording, a picture and an output beside it, as `grader run` leaves."""
     saving.save_all(Recordings(recording, tuple(varied)), folder / "recording")
     if recording.canvas:

@@ -10,7 +10,7 @@ import pytest
 from std_srvs.srv import Empty
 from turtlesim.msg import Pose
 
-from tests.programs import DEADLINE_S, Program
+from tests.programs import Program
 
 #: In the words of turtlesim 1.8.4.
 GREETING = [
@@ -66,13 +66,6 @@ def teleop(*arguments):
         yield running
     finally:
         running.close()
-
-
-def wait_until(condition):
-    deadline = time.monotonic() + DEADLINE_S
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
 
 
 def test_keys_drive_and_turn_the_turtle(graph, simulator):
@@ -145,7 +138,8 @@ def test_the_terminal_is_restored_however_it_ends_and_for_a_pause(end):
             driver.program.wait_for_line("stopped", begin)
             assert driver.attributes() == driver.found
             driver.program.process.send_signal(signal.SIGUSR1)
-            wait_until(lambda: not driver.shows_keys())
+            while driver.shows_keys():
+                time.sleep(0.005)
         begin = len(driver.program.lines)
         end(driver)
         assert driver.program.wait() == 0

@@ -55,18 +55,6 @@ def test_the_graph_shows_the_originals_services_and_one_for_pictures(graph, turt
     assert of_the_node == of_every_node | {"/turtlesim/save_canvas"}
 
 
-def test_simultaneous_requests_of_one_service_are_executed_one_a_tick(graph, turtle):
-    poses = graph.listen(Pose, f"/{turtle}/pose")
-    graph.until(lambda: poses, "a pose")
-    places = [1.0, 2.0, 3.0, 4.0]
-    asked = [
-        graph.ask(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=x, y=5.0) for x in places
-    ]
-    graph.until(lambda: all(future.done() for future in asked), "all answers")
-    graph.until(lambda: poses[-1].x == places[-1], "the last place")
-    assert [pose.x for pose in poses if pose.y == 5.0][: len(places)] == places
-
-
 def test_of_many_requests_of_one_service_the_last_ten_are_kept(graph):
     node = TurtlesimNode(["--ros-args", "-r", "__ns:=/crowded"])
     name = "/crowded/spawn"

@@ -28,20 +28,6 @@ def wall(monkeypatch):
     return WallClock(monkeypatch)
 
 
-def wall_ticks(wall, durations_ms):
-    """When the ticks come [ms], the first at 0, if each takes so long."""
-    begin, times = wall.now_ns, []
-    durations = iter([*durations_ms, 0.0])
-
-    def tick():
-        times.append((wall.now_ns - begin) / MS)
-        wall.now_ns += round(next(durations) * MS)
-        return len(times) <= len(durations_ms)
-
-    program.follow_wall_clock(tick)
-    return times
-
-
 @pytest.mark.parametrize(
     ("durations_ms", "times"),
     [
@@ -51,7 +37,15 @@ def wall_ticks(wall, durations_ms):
     ],
 )
 def test_the_wall_clock_ticks_in_its_grid(wall, durations_ms, times):
-    assert wall_ticks(wall, durations_ms) == times
+    begin, found, durations = wall.now_ns, [], iter([*durations_ms, 0.0])
+
+    def tick():
+        found.append((wall.now_ns - begin) / MS)
+        wall.now_ns += round(next(durations) * MS)
+        return len(found) <= len(durations_ms)
+
+    program.follow_wall_clock(tick)
+    assert found == times
 
 
 class RosClock:

@@ -43,14 +43,6 @@ def test_a_dot_is_painted_opaque_in_the_pens_colour():
     assert painted(canvas) == 9
 
 
-def test_a_later_stroke_covers_an_earlier_one():
-    canvas = Canvas()
-    canvas.draw_line(100.0, 100.0, 200.0, 100.0, RED)
-    canvas.draw_line(150.0, 50.0, 150.0, 150.0, BLUE)
-    assert canvas.color_at(150.0, 100.0) == (0, 0, 255)
-    assert canvas.color_at(120.0, 100.0) == (255, 0, 0)
-
-
 def test_the_colour_under_a_point_is_that_of_the_nearest_pixel_number_halves_up():
     canvas = Canvas()
     canvas.draw_line(7.0, 9.0, 7.0, 9.0, Pen(9, 8, 7, 1))  # pixel 7, 9 alone

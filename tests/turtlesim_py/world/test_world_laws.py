@@ -60,16 +60,6 @@ def test_the_order_of_spawning_does_not_change_the_order_of_updates(names):
     assert list(arena.tick()) == ["Zoe", "alice", "bob", "turtle1", "turtle10"]
 
 
-@given(commands)
-def test_a_lifted_pen_leaves_the_canvas_empty(steps):
-    arena = Arena(sprite="rolling")
-    arena.set_pen("turtle1", 1, 2, 3, 4, 1)
-    for x, _, turn in steps:
-        arena.command("turtle1", (x, 0.0, 0.0), (0.0, 0.0, turn))
-        arena.tick()
-    assert not arena.canvas.rgba()[..., 3].any()
-
-
 @given(finite)
 def test_a_normalised_angle_differs_by_whole_turns(angle):
     turns = (angle - normalize_angle(angle)) / (2 * PI)

@@ -31,14 +31,7 @@ def result(points, rationale=OFF, **more):
 
 
 def entry(
-    id,
-    judged=None,
-    *,
-    name="",
-    state="judged",
-    message="",
-    at=None,
-    folder=Path("/nowhere"),
+    id, judged=None, *, name="", state="judged", message="", at=None, folder=Path("/nowhere")
 ):
     """A hand-in; judged where there is a result."""
     hand_in = HandIn(id, (Person(id, name),), at=at)

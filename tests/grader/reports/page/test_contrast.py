@@ -51,13 +51,14 @@ def test_a_pin_s_focus_ring_is_seen_on_whatever_is_drawn_below():
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_every_other_focus_ring_is_seen_on_the_page(scheme):
+def test_every_other_focus_ring_and_the_chosen_path_are_seen_on_the_page(scheme):
     colors = SCHEMES[scheme]
     assert re.search(
         r"a:focus-visible, button:focus-visible.*?outline: 3px solid var\(--link\)", CSS, re.DOTALL
     )
     for ground in ("paper", "card", "open-wash"):
         assert contrast(colors["link"], colors[ground]) >= OTHER, ground
+    assert contrast(colors["bad"], colors["paper"]) >= OTHER  # the chosen path of a class
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -65,9 +66,9 @@ def test_text_can_be_read(scheme):
     colors = SCHEMES[scheme]
     for text, ground in [
         *product(("ink", "soft", "link"), ("paper", "card")),
-        ("ink", "open-wash"),
+        # in every row of a class, and in the chosen one
+        *product(("ink", "link", "good", "bad", "open"), ("card", "open-wash")),
         *((name, f"{name}-wash") for name in ("good", "bad", "open")),
-        ("open", "card"),
     ]:
         assert contrast(colors[text], colors[ground]) >= TEXT, (text, ground)
 
