@@ -4,9 +4,10 @@ No test looks at a clock: what falls back into computing for minutes, or into ta
 killed, and the test fails by that.
 """
 
-import subprocess
 import sys
 from pathlib import Path
+
+from tests.programs import ran
 
 ROOT = Path(__file__).parents[1]
 _LIMITS = """
@@ -22,13 +23,6 @@ def limit(cpu_s, memory_bytes):
 
 def printed_by(code: str, *words: object) -> str:
     """What a piece of Python prints, which can say `limit(seconds, bytes)`; it must not fail."""
-    done = subprocess.run(
-        [sys.executable, "-c", _LIMITS + code, *map(str, words)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        errors="replace",
-        check=False,
-    )
+    done = ran([sys.executable, "-c", _LIMITS + code, *map(str, words)], cwd=ROOT, errors="replace")
     assert done.returncode == 0, f"ended with {done.returncode}: {done.stderr[-2000:]}"
     return done.stdout

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, Self
@@ -27,6 +28,11 @@ def last_lines() -> str:
         + "".join(program.lines[-20:])
         for program in _running
     )
+
+
+def ran(command: Iterable[object], **options: Any) -> subprocess.CompletedProcess[str]:
+    """A program that has ended, with what it has said."""
+    return subprocess.run([*map(str, command)], capture_output=True, text=True, **options)
 
 
 class Program:

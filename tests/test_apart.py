@@ -2,13 +2,12 @@
 
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from tests.programs import ROOT
+from tests.programs import ROOT, ran
 
 OWN = f"/dev/shm/left-{os.getpid()}"
 LEAVING = {
@@ -24,12 +23,10 @@ def test_what_a_test_leaves_behind_fails_the_session(tmp_path):
     (tmp_path / "test_it.py").write_text("".join(tests))
     command = [sys.executable, "-m", "pytest", "-p", "xdist", "-p", "tests.apart", "-n", "1", "-q"]
     try:
-        done = subprocess.run(
+        done = ran(
             [*command, "-c", "/dev/null", f"--basetemp={tmp_path / 'its'}", str(tmp_path)],
             cwd=ROOT,
             env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
-            capture_output=True,
-            text=True,
         )
     finally:
         Path(OWN).unlink(missing_ok=True)

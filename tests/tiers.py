@@ -1,6 +1,6 @@
-"""What of a parametrized test is for `make test-all` only."""
+"""What of a parametrized test is for `make test-all` only, or for some systems."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import pytest
@@ -17,3 +17,11 @@ def others_are_more(reason: str, values: Iterable[Any], *kept: Any) -> list[Any]
     told = [each if isinstance(each, tuple) else (each,) for each in values]
     assert set(kept) <= {first for first, *_ in told}, f"{kept}: not among {told}"
     return [pytest.param(*each, marks=() if each[0] in kept else more) for each in told]
+
+
+def that_apply(reason: str, values: Mapping[Any, bool]) -> list[Any]:
+    """The parameters of a test, of which those are left out that are nothing to this system."""
+    return [
+        pytest.param(each, marks=pytest.mark.applies(is_there, reason=reason))
+        for each, is_there in values.items()
+    ]

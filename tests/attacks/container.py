@@ -15,12 +15,13 @@ import json
 import os
 import socket
 import struct
-import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from tests.programs import ran
 
 ROOT = Path(__file__).parents[2]
 CLONE_NEWNS, CLONE_NEWUTS, CLONE_NEWIPC = 0x00020000, 0x04000000, 0x08000000
@@ -48,12 +49,9 @@ def run(job: dict[str, Any]) -> Any:
         RuntimeError: it has died.
     """
     with tempfile.TemporaryDirectory() as folder:  # the mounts in it are not seen from here
-        done = subprocess.run(
+        done = ran(
             [sys.executable, "-P", "-m", "tests.attacks.container", folder],
             input=json.dumps(job),
-            capture_output=True,
-            text=True,
-            check=False,
             cwd=ROOT,
             env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"},
         )

@@ -12,6 +12,7 @@ import pytest
 from ament_index_python.packages import get_package_prefix
 
 from grader.run.processes.network import reserve_domain
+from tests.programs import ran
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -54,7 +55,7 @@ class System:
 
     def check(self) -> subprocess.CompletedProcess[str]:
         script = ROOT / "scripts" / "check_setup.sh"
-        return subprocess.run(["/bin/sh", script], env=self.env, capture_output=True, text=True)
+        return ran(["/bin/sh", script], env=self.env)
 
     def complaint(self) -> str:
         result = self.check()

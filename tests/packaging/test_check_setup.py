@@ -1,11 +1,12 @@
 """scripts/check_setup.sh: one line says what to install, and the build does not start."""
 
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from tests.programs import ran
 
 from .conftest import ROOT, System
 
@@ -132,9 +133,7 @@ def test_says_it_through_make(system):
     copy = system.folder / "project"
     shutil.copytree(ROOT / "scripts", copy / "scripts")
     shutil.copy(ROOT / "Makefile", copy)
-    result = subprocess.run(
-        [make, "-C", copy, "demo", f"SHELL={bash}"], env=system.env, capture_output=True, text=True
-    )
+    result = ran([make, "-C", copy, "demo", f"SHELL={bash}"], env=system.env)
     assert result.returncode != 0
     assert "Cannot install: ROS 2 humble is sourced" in result.stderr
     assert not (copy / ".venv").exists()

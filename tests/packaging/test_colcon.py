@@ -5,12 +5,13 @@ No ROS is needed for it: `ROS_DISTRO` is what tells, and rclpy comes from this P
 
 import os
 import shutil
-import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+
+from tests.programs import ran
 
 from .conftest import ROOT, Environment
 from .rosdep import KEYS, hide_all_but
@@ -43,12 +44,8 @@ def workspace(request, tmp_path_factory):
         "https_proxy": "http://127.0.0.1:9",
     }
     env.pop("ROS_DOMAIN_ID", None)
-    build = subprocess.run(
-        [colcon, "build", "--base-paths", ROOT, *filter(None, [request.param])],
-        cwd=folder,
-        env=env,
-        capture_output=True,
-        text=True,
+    build = ran(
+        [colcon, "build", "--base-paths", ROOT, *filter(None, [request.param])], cwd=folder, env=env
     )
     assert build.returncode == 0, build.stdout + build.stderr
     return Workspace(folder / "install", sourced(folder / "install" / "setup.bash"))
@@ -57,12 +54,7 @@ def workspace(request, tmp_path_factory):
 def sourced(script: Path) -> Environment:
     """The environment of a shell that has sourced `script`."""
     env = {name: value for name, value in os.environ.items() if name != "AMENT_PREFIX_PATH"}
-    lines = subprocess.run(
-        ["bash", "-c", 'source "$1" && env -0', "-", script],
-        env=env,
-        capture_output=True,
-        text=True,
-    )
+    lines = ran(["bash", "-c", 'source "$1" && env -0', "-", script], env=env)
     assert lines.returncode == 0, lines.stderr
     return dict(line.split("=", 1) for line in lines.stdout.split("\0") if line)
 
@@ -88,18 +80,14 @@ def test_the_grader_starts_with_what_rosdep_gets_from_apt(workspace, ros2_run, t
     path = os.pathsep.join([hiding, workspace.env["PYTHONPATH"]])
     env = workspace.env | {"PYTHONPATH": path, "ROS_DISTRO": "jazzy"}
     for arguments in (["--help"], ["run", "--help"], ["new", "my_solution"]):
-        call = subprocess.run(
-            [program, *arguments], cwd=tmp_path, env=env, capture_output=True, text=True
-        )
+        call = ran([program, *arguments], cwd=tmp_path, env=env)
         assert call.returncode == 0, call.stderr
     assert (tmp_path / "my_solution" / "package.xml").exists()
 
 
 def test_python_imports_from_the_workspace(workspace):
     code = "import turtlesim_py, turtlesim; print(turtlesim_py.__file__, turtlesim.__file__)"
-    files = subprocess.run(
-        [sys.executable, "-P", "-c", code], env=workspace.env, capture_output=True, text=True
-    )
+    files = ran([sys.executable, "-P", "-c", code], env=workspace.env)
     ours, interfaces = map(Path, files.stdout.split())
     assert ours.is_relative_to(workspace.install.parent)
     assert not interfaces.is_relative_to(workspace.install.parent)
@@ -110,9 +98,7 @@ def test_the_tf2_of_ros_is_not_hidden(workspace):
     ours = {"tf2_py", "tf2_ros", "tf2_msgs"}
     assert [path for path in workspace.installed if not ours.isdisjoint(path.parts)] == []
     code = "import tf2_py, tf2_ros, tf2_msgs; print(tf2_py, tf2_ros, tf2_msgs)"
-    found = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, env=workspace.env, capture_output=True, text=True
-    )
+    found = ran([sys.executable, "-c", code], cwd=ROOT, env=workspace.env)
     assert found.stdout.count("<module") == 3, found.stderr
     assert f"{ROOT}/tf2/" not in found.stdout
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.grader_robots.packages import FOLDER, REFERENCE, looked_at
+from tests.programs import ran
 
 #: What colcon adds by itself.
 OF_COLCON = ("hook", "package.bash", "package.ps1", "package.sh", "package.zsh", "package.dsv")
@@ -25,14 +26,7 @@ def built(package: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     colcon = colcon or shutil.which("colcon", path=str(Path(os.__file__).parents[2] / "bin"))
     assert colcon, "colcon is one of the `test` requirements"
     env = os.environ | {"COLCON_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    return subprocess.run(
-        [colcon, "build", "--merge-install", "--base-paths", "src"],
-        cwd=folder,
-        env=env,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    return ran([colcon, "build", "--merge-install", "--base-paths", "src"], cwd=folder, env=env)
 
 
 @pytest.mark.more("builds with colcon; what setup() says is installed is known of each package")

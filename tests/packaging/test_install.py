@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.programs import ran
+
 from .conftest import ROOT
 
 PROGRAMS = [
@@ -20,7 +22,8 @@ PROGRAMS = [
     ("robot_py", "robot_state_publisher"),
     ("robot_py", "joint_state_publisher"),
 ]
-#: The tutorials' `ros2 run turtlesim ...`. A sourced ROS has the original's.
+without_ros = pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="ROS has its own")
+#: The tutorials' `ros2 run turtlesim ...`.
 TUTORIALS = ["turtlesim_node", "turtle_teleop_key", "draw_square", "mimic"]
 
 
@@ -42,14 +45,14 @@ def test_ros2_run_starts_the_simulator(ros2_run, run_until_started, shell):
     assert "Starting turtlesim" in run_until_started(path, shell)
 
 
-@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own turtlesim")
+@without_ros
 def test_ros2_run_turtlesim_finds_the_programs_of_the_tutorials(ros2_run, run_until_started, shell):
     found = {program: ros2_run("turtlesim", program, shell) for program in TUTORIALS}
     assert all(path.is_relative_to(sys.prefix) for path in found.values())
     assert "Starting turtlesim" in run_until_started(found["turtlesim_node"], shell)
 
 
-@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own")
+@without_ros
 def test_ros2_run_finds_the_nodes_of_robots_by_the_names_of_ros_s_packages(
     ros2_run, run_until_started, shell
 ):
@@ -59,7 +62,7 @@ def test_ros2_run_finds_the_nodes_of_robots_by_the_names_of_ros_s_packages(
     run_until_started(node, shell, sign="Waiting for robot_description")
 
 
-@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own turtlesim")
+@without_ros
 def test_ros2_launch_turtlesim_finds_multisim():
     """PyPI has no launch; what the file would start is tested in test_multisim."""
     ours, theirs = (
@@ -71,7 +74,7 @@ def test_ros2_launch_turtlesim_finds_multisim():
 
 def test_programs_get_their_arguments(ros2_run, shell):
     path = ros2_run("grader", "grader", shell)
-    help_ = subprocess.run([path, "run", "--help"], env=shell, capture_output=True, text=True)
+    help_ = ran([path, "run", "--help"], env=shell)
     assert help_.returncode == 0, help_.stderr
     assert "submission" in help_.stdout
 
@@ -85,7 +88,7 @@ def test_each_package_has_a_manifest_with_its_name_and_version(package):
     assert f"<version>{version('turtlesim_py')}</version>" in manifest
 
 
-@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own tf2")
+@without_ros
 def test_a_tf2_is_installed_module_by_module():
     for package in ("tf2_py", "tf2_ros"):
         ours = {path.name for path in (ROOT / "tf2" / package).glob("*.py")}
@@ -95,19 +98,19 @@ def test_a_tf2_is_installed_module_by_module():
         assert spec and spec.origin == str(installed / "__init__.py")
 
 
-@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")
+@without_ros
 def test_python_finds_installed_packages_without_any_setup(shell):
     code = "from ament_index_python import get_package_prefix as g; print(g('turtlesim'))"
     env = {name: value for name, value in shell.items() if name != "AMENT_PREFIX_PATH"}
-    prefix = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    prefix = ran([sys.executable, "-c", code], env=env)
     assert prefix.stdout.strip() == sys.prefix, prefix.stderr
 
 
-@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")
+@without_ros
 def test_a_sourced_workspace_goes_before_the_environment(shell):
     code = "import os; print(os.environ['AMENT_PREFIX_PATH'])"
     env = shell | {"AMENT_PREFIX_PATH": "/workspace/install"}
-    path = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    path = ran([sys.executable, "-c", code], env=env)
     assert path.stdout.strip() == f"/workspace/install{os.pathsep}{sys.prefix}"
 
 
@@ -151,7 +154,7 @@ print("looked at", len(files), "compiled", [
 """
 
 
-@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="the packages of apt are apt's to compile")
+@without_ros
 def test_a_confined_run_compiles_no_module_of_the_environment(shell, tmp_path):
     (tmp_path / "probe.py").write_text(PROBE)
     grader = Path(sys.prefix, "bin", "grader")

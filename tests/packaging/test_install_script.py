@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.programs import ran
+
 from .conftest import ROOT, System
 
 PYTHON = str(Path(sys.executable).resolve())
@@ -47,9 +49,7 @@ class Install:
         (self.folder / ".venv" / "made-in").write_text(f"{self.folder} {ros}\n")
 
     def run(self, target: str = "install") -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            ["make", "-C", self.folder, target], env=self.env, capture_output=True, text=True
-        )
+        return ran(["make", "-C", self.folder, target], env=self.env)
 
     def calls(self, target: str = "install") -> list[str]:
         """What is asked of pip, uv and Python, but for the requirements' names."""
@@ -148,11 +148,8 @@ def test_only_tests_and_linters_get_what_they_need_besides(install):
 def test_what_the_tests_need_holds_all_that_the_project_needs():
     """So pip changes nothing of it for their sake."""
     few, all_ = (
-        subprocess.run(
-            [sys.executable, ROOT / "scripts" / "requirements.py", *level],
-            check=True,
-            capture_output=True,
-            text=True,
+        ran(
+            [sys.executable, ROOT / "scripts" / "requirements.py", *level], check=True
         ).stdout.splitlines()
         for level in ([], ["test"])
     )

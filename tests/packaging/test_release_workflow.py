@@ -1,11 +1,11 @@
 """.github/workflows/release.yml, as far as it can be seen without GitHub."""
 
 import re
-import subprocess
 
 import yaml
 
 from tests.needs import needs
+from tests.programs import ran
 
 from .conftest import ROOT
 
@@ -35,5 +35,5 @@ def test_actions_are_pinned_to_commits():
 @needs("shellcheck")
 def test_the_scripts_are_good_shell():
     scripts = sorted((ROOT / "scripts").glob("*.sh"))
-    check = subprocess.run(["shellcheck", *scripts], capture_output=True, text=True)
+    check = ran(["shellcheck", *scripts])
     assert check.returncode == 0, check.stdout

@@ -14,12 +14,13 @@ import pytest
 
 from grader.reports import names
 from grader.requirements import OPTIONAL
+from tests.programs import ran
 
 from .conftest import ROOT
 from .rosdep import KEYS, dependencies, depends, hide_all_but, imported, keys
 
-pytestmark = pytest.mark.skipif(
-    "ROS_DISTRO" in os.environ, reason="there the packages are apt's, which this imitates"
+pytestmark = pytest.mark.applies(
+    "ROS_DISTRO" not in os.environ, reason="there the packages are apt's, which this imitates"
 )
 ONE_RUN = "exercise: turtlesim_challenge\nvaried_runs: {count: 0}\n"
 CLASSROOM_50 = {
@@ -64,12 +65,8 @@ class Shell:
         self.env = os.environ | CLASSROOM_50 | {"PYTHONPATH": path, "ROS_DISTRO": "jazzy"}
 
     def grader(self, *arguments: str | Path, code: int = 0) -> subprocess.CompletedProcess[str]:
-        call = subprocess.run(
-            [sys.executable, "-P", "-m", "grader", *arguments],
-            cwd=self.folder,
-            env=self.env,
-            capture_output=True,
-            text=True,
+        call = ran(
+            [sys.executable, "-P", "-m", "grader", *arguments], cwd=self.folder, env=self.env
         )
         assert call.returncode == code, call.stdout + call.stderr
         return call
@@ -77,7 +74,7 @@ class Shell:
     def graders(self, *calls: tuple[str, ...]) -> list[str]:
         """What several calls say, in one process: its start is most of what they take."""
         words = [sys.executable, "-P", "-c", CALLS, json.dumps(calls)]
-        call = subprocess.run(words, cwd=self.folder, env=self.env, capture_output=True, text=True)
+        call = ran(words, cwd=self.folder, env=self.env)
         assert call.returncode == 0, call.stdout + call.stderr
         return list(json.loads(call.stdout))
 
@@ -153,9 +150,7 @@ def test_what_is_not_in_package_xml_is_hidden_from_these_tests(shell):
         "for name in ('pytest', 'rosbags', 'backports.zstd'):\n"
         "    try: __import__(name)\n    except ImportError: print('hidden')"
     )
-    call = subprocess.run(
-        [sys.executable, "-P", "-c", code], env=shell.env, capture_output=True, text=True
-    )
+    call = ran([sys.executable, "-P", "-c", code], env=shell.env)
     assert call.stdout == "hidden\n" * 3, call.stderr
 
 

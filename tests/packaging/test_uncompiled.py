@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.programs import ran
 from turtlesim_py.ros import source
 
 from .conftest import ROOT, SOURCES, Environment, copy_environment
@@ -51,7 +52,7 @@ def environment(tmp_path_factory):
 def run(prefix: Path, *words: str | Path, env: Environment) -> subprocess.CompletedProcess[str]:
     """Run `grader run` in an environment."""
     command = [prefix / "bin" / "python", "-P", "-m", "grader", "run", *words]
-    return subprocess.run(command, env=env, capture_output=True, text=True)
+    return ran(command, env=env)
 
 
 @pytest.mark.parametrize("exercise", REFERENCES)
@@ -77,12 +78,7 @@ def test_a_grading_is_the_same(environment, shell, tmp_path, exercise):
 def test_what_needs_compiled_ones_says_so_in_one_line(environment, shell):
     sentence = "turtlesim's interfaces are installed as definitions only"
     start = "import sys; from turtlesim_py import commands; sys.exit(commands.turtlesim_node())"
-    node = subprocess.run(
-        [environment / "bin" / "python", "-P", "-c", start],
-        env=shell,
-        capture_output=True,
-        text=True,
-    )
+    node = ran([environment / "bin" / "python", "-P", "-c", start], env=shell)
     real = run(environment, REFERENCES["turtlesim_challenge"], "--time", "real", env=shell)
     for command, done in (("turtlesim_node", node), ("grader run", real)):
         assert done.returncode == 2

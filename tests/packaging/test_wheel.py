@@ -5,7 +5,6 @@ That it installs and works in an empty environment, scripts/release.sh proves.
 
 import json
 import re
-import subprocess
 import sys
 import tempfile
 import tomllib
@@ -18,6 +17,7 @@ from xml.etree import ElementTree
 import pytest
 
 from interfaces.build import PACKAGES
+from tests.programs import ran
 
 from .conftest import ROOT, Environment
 
@@ -32,13 +32,7 @@ def call_hook(checkout: Path, env: Environment, name: str, *arguments: Path) -> 
         "import json, sys; from setuptools import build_meta; _, name, *arguments = sys.argv; "
         "print('\\n' + json.dumps(getattr(build_meta, name)(*arguments)))"
     )
-    call = subprocess.run(
-        [sys.executable, "-c", code, name, *arguments],
-        cwd=checkout,
-        env=env,
-        capture_output=True,
-        text=True,
-    )
+    call = ran([sys.executable, "-c", code, name, *arguments], cwd=checkout, env=env)
     assert call.returncode == 0, call.stderr
     return json.loads(call.stdout.splitlines()[-1])
 
@@ -46,9 +40,7 @@ def call_hook(checkout: Path, env: Environment, name: str, *arguments: Path) -> 
 def refusal(folder: Path, env: Environment) -> str:
     """The one line in which a build refuses to say what it needs."""
     code = "from setuptools import build_meta; build_meta.get_requires_for_build_wheel()"
-    call = subprocess.run(
-        [sys.executable, "-c", code], cwd=folder, env=env, capture_output=True, text=True
-    )
+    call = ran([sys.executable, "-c", code], cwd=folder, env=env)
     assert call.returncode != 0
     (line,) = call.stderr.splitlines()
     return line
@@ -171,12 +163,10 @@ def test_where_ros_is_sourced_nothing_of_ours_stands_for_a_package_of_ros(
     for path in (path for folder in sys.path for path in Path(folder).glob("*")):
         if path.name.startswith(needed) and not (beside / path.name).exists():
             (beside / path.name).symlink_to(path)
-    call = subprocess.run(
+    call = ran(
         [sys.executable, "-S", "-c", FIND, tmp_path / "wheel", *OF_ROS],
         cwd=tmp_path,
         env=ros_sourced | {"PYTHONPATH": str(beside), "ROS_DISTRO": "jazzy"},
-        capture_output=True,
-        text=True,
     )
     assert call.stdout == "[] []\n", call.stderr
 
@@ -267,12 +257,10 @@ def test_each_ros_has_a_build_folder_of_its_own(checkout, none_sourced):
         "runpy.run_path('setup.py')"
     )
     folders = [
-        subprocess.run(
+        ran(
             [sys.executable, "-c", code],
             cwd=checkout / "interfaces" / release,
             env=none_sourced,
-            capture_output=True,
-            text=True,
             check=True,
         ).stdout
         for release in RELEASES

@@ -6,10 +6,11 @@ A copy of the checkout lacks the folder, a copy of the environment its entry poi
 import os
 import re
 import shutil
-import subprocess
 import tempfile
 
 import pytest
+
+from tests.programs import ran
 
 from .conftest import ROOT, copy_environment
 
@@ -48,12 +49,8 @@ def test_the_core_does_without_robots(environment, tmp_path, shell):
     for name in ("EXAMPLES", "PYTEST_DEBUG_TEMPROOT"):
         shell.pop(name, None)
     with tempfile.TemporaryDirectory(prefix="t") as place:  # short, as sockets have it
-        done = subprocess.run(
-            [environment / "bin/python", *words],
-            cwd=checkout,
-            env=shell | {"TMPDIR": place},
-            capture_output=True,
-            text=True,
+        done = ran(
+            [environment / "bin/python", *words], cwd=checkout, env=shell | {"TMPDIR": place}
         )
     assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
     assert not re.search(r"SKIPPED.*robot", done.stdout)

@@ -1,10 +1,11 @@
 """Scripts and benchmarks, which hardly anything else runs, fit the code that they use."""
 
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from tests.programs import ran
 
 ROOT = Path(__file__).parents[2]
 #: One prints when it is imported, one needs what `make mutate` installs.
@@ -23,5 +24,5 @@ for name in sys.argv[2:]:
 def test_every_tool_finds_what_it_imports(folder):
     names = sorted({path.stem for path in (ROOT / folder).glob("*.py")} - LEFT_OUT)
     command = [sys.executable, "-c", IMPORT, str(ROOT / folder), *names]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    done = ran(command, cwd=ROOT)
     assert done.returncode == 0, done.stderr

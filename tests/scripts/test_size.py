@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from tests.files import lay
+from tests.programs import ran
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "size.py"
 FILES = {
@@ -33,7 +34,7 @@ def test_what_git_tracks_of_the_product_is_counted_and_class_names_that_stand_tw
     subprocess.run(["git", "add", "."], cwd=folder, check=True)
     (folder / "untracked.py").write_text("class Run:\n    pass\n")
     command = [sys.executable, str(SCRIPT), str(folder)]
-    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    printed = ran(command, check=True).stdout
     counts = {row.split()[0]: row.split()[1:] for row in printed.splitlines()[1:9]}
     assert counts == {
         "all": ["24", "8"],

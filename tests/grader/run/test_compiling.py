@@ -10,7 +10,6 @@ import pytest
 import yaml
 
 from grader import scratch
-from grader.errors import NotOffered
 from grader.message import msg
 from grader.recording.recording import OwnInterfaces
 from grader.rosidl import compiler
@@ -23,6 +22,7 @@ from grader.run.processes import levels
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.grader.rosidl.comparing import differences
+from tests.grader.run.conftest import at_levels
 from turtlesim_py.ros import interfaces
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
@@ -61,7 +61,7 @@ def test_dds_carries_messages_services_and_actions_of_ones_own():
 
 
 @compiles
-@pytest.mark.parametrize("level", levels.LEVELS)
+@pytest.mark.parametrize("level", at_levels(*levels.LEVELS))
 def test_they_can_be_imported_not_written_into_and_are_kept(level, sends, monkeypatch):
     is_lowest = level == levels.LIMITS
     package = "lowest_interfaces" if is_lowest else "demo_interfaces"
@@ -73,8 +73,6 @@ def test_they_can_be_imported_not_written_into_and_are_kept(level, sends, monkey
         if not is_lowest:  # where nothing is kept for another run
             monkeypatch.setattr(compiling, "_built", None)
             outputs.append(run(sends, OwnInterfaces(texts)).output)
-    except NotOffered:
-        pytest.skip(f"no {level} here")
     finally:
         levels.only("")
     for output in outputs:

@@ -3,6 +3,7 @@
 import errno
 import mmap
 import os
+import resource
 import signal
 import threading
 from contextlib import suppress
@@ -15,8 +16,6 @@ from grader.run import limits
 from grader.run.limits import GIB, LIMITS, MIB, RunLimits
 from grader.run.processes import supervisor
 from tests.children import NOBODYS_UID, error_of, in_child
-
-resource = pytest.importorskip("resource")
 
 
 def apply(chosen: RunLimits = LIMITS, *, is_alone: bool = True) -> None:

@@ -14,25 +14,19 @@ import yaml
 from grader import scratch
 from grader.errors import NotNow
 from grader.recording.recording import Recording
-from grader.run import environment, real_time, virtual_time
+from grader.run import environment, virtual_time
 from grader.run.finish import SimulatorLost
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.run.processes import levels, network
 from grader.run.run_context import RunContext
 from grader.scenes.scene import Limits
-from tests.tiers import others_are_more
+from tests.grader.run.conftest import CLOCKS, either_clock
 from turtlesim_py.world.events import CmdVel
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 ROOT = Path(__file__).parents[3]
-
-
-CLOCKS = {"virtual": virtual_time.run, "real": real_time.run}
-either_clock = pytest.mark.parametrize(
-    "clock", others_are_more("the same surroundings, some seconds", CLOCKS, "virtual")
-)
 
 
 def recorded(

@@ -7,16 +7,15 @@ import yaml
 
 from grader.errors import SubmissionError
 from grader.recording.recording import Recording
-from grader.run import real_time, virtual_time
+from grader.run import virtual_time
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
 from grader.run.processes import levels
-from grader.run.processes.levels import LANDLOCK, LIMITS
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.files import lay
-from tests.grader.run import conftest
+from tests.grader.run.conftest import CLOCKS, LIMITS, at_levels, either_clock
 from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen
@@ -24,12 +23,6 @@ from turtlesim_py.world.events import CmdVel, SetPen
 LAUNCHED = SUBMISSIONS / "launched"
 TEXTS: dict[str, str] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=6))
-
-
-CLOCKS = {"virtual": virtual_time.run, "real": real_time.run}
-either_clock = pytest.mark.parametrize(
-    "clock", others_are_more("the same launch file, for seconds", CLOCKS, "virtual")
-)
 
 
 def recorded(
@@ -249,20 +242,18 @@ def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_p
 
 
 @pytest.mark.more("tests/attacks run one of several at each level")
-@pytest.mark.parametrize("level", [LANDLOCK, LIMITS])
+@pytest.mark.parametrize("level", at_levels("landlock", "limits"))
 def test_they_run_at_a_lower_level_of_isolation_too(level):
     levels.only(level)
     try:
         run = recorded(LAUNCHED / "spiral").run  # its launch file is evaluated at that level, too
-    except levels.NotOffered:
-        pytest.skip("not offered here")
     finally:
         levels.only("")
     assert [(each.outcome, each.exit_code) for each in run.programs] == [("time_limit", None)] * 2
 
 
 def test_a_program_alone_is_in_the_result_too():
-    (program,) = runs.recorded("quick_spiral", Plan(conftest.LIMITS)).run.programs
+    (program,) = runs.recorded("quick_spiral", Plan(LIMITS)).run.programs
     told = (program.name, program.package, program.executable)
     assert told == ("quick_spiral.py", "", "quick_spiral.py")
 

@@ -1,7 +1,6 @@
 """What a program draws is the same in every run, whichever way it draws it."""
 
 import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -12,6 +11,7 @@ from grader.run.handover import Plan
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.needs import needs
+from tests.programs import ran
 
 TESTS = Path(__file__).parents[3]
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=2))
@@ -32,7 +32,7 @@ def drawn() -> list[str]:
         f"for way in {WAYS!r}: print(way, eval(way), eval(way), sep='\\t')"
     )
     command = [sys.executable, "-c", code]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    return ran(command, check=True).stdout.splitlines()
 
 
 def test_two_processes_draw_the_same_and_never_twice():
@@ -86,5 +86,5 @@ def test_ten_gradings_at_each_level_draw_what_the_first_at_the_best_drew(user, f
         if os.geteuid() == 0:
             more = ["--root"] if user == "root" else []
             words = [sys.executable, TESTS / "as_user.py", *more, *words]
-        done = subprocess.run(words, cwd=TESTS.parent, capture_output=True, text=True)
+        done = ran(words, cwd=TESTS.parent)
         assert done.stdout.splitlines() == [f"{level} time_limit {expected}"] * 10, done.stderr

@@ -4,7 +4,6 @@ import json
 import os
 import resource
 import site
-import subprocess
 import sys
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from grader.run.processes.started_process import SubmissionProcess
 from grader.run.sandbox import view
 from tests.children import in_child
 from tests.grader.run.processes.test_fork_server import COMMAND, ENV
+from tests.programs import ran
 from tests.tiers import others_are_more
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
@@ -150,12 +150,8 @@ def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(refused
         "-c",
         TEXTS["tells"],
     ]
-    done = subprocess.run(
-        [*words, "", "limits", "namespaces"],
-        env={**os.environ, "PYTHONPATH": str(TESTS.parent)},
-        capture_output=True,
-        text=True,
-        check=False,
+    done = ran(
+        [*words, "", "limits", "namespaces"], env={**os.environ, "PYTHONPATH": str(TESTS.parent)}
     )
     best, lower, same = json.loads(done.stdout)
     assert best == [level, why], done.stderr

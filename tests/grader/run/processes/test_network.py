@@ -4,7 +4,7 @@ import errno
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
@@ -16,7 +16,8 @@ from grader import scratch
 from grader.errors import NotNow
 from grader.run.processes import network, refusal
 from grader.run.run_context import RunContext, open_context
-from tests.tiers import others_are_more
+from tests.programs import ran
+from tests.tiers import others_are_more, that_apply
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
@@ -26,12 +27,18 @@ PIPES = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
 DOMAIN = "ROS domain"
 
 
-def is_private() -> bool:
+def is_private(way: Callable[[], network.Namespaces | None] = network.private_network) -> bool:
     """Whether a run has a network of its own here."""
-    namespaces = network.private_network()
+    try:
+        namespaces = way()
+    except OSError:
+        return False
     for namespace in (namespaces or {}).values():
         os.close(namespace)
     return namespaces is not None
+
+
+WAYS = {way: is_private(way) for way in (network._as_root, network._as_user)}
 
 
 @pytest.fixture(
@@ -68,18 +75,10 @@ def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind):
 
 
 @pytest.mark.more("which of them there are depends on the machine")
-@pytest.mark.parametrize("way", [network._as_root, network._as_user])
-def test_both_ways_to_a_private_network(way, tmp_path):
-    try:
-        namespaces = way()
-    except OSError:
-        pytest.skip("this system does not allow it")
-    shown = subprocess.run(
-        [*inside(namespaces), "cat", "/proc/net/dev"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+@pytest.mark.parametrize("way", that_apply("this system allows it", WAYS))
+def test_both_ways_to_a_private_network(way):
+    namespaces = way()
+    shown = ran([*inside(namespaces), "cat", "/proc/net/dev"], check=True)
     for namespace in namespaces.values():
         os.close(namespace)
     assert [line.split(":")[0].strip() for line in shown.stdout.splitlines()[2:]] == ["lo"]
@@ -121,12 +120,9 @@ def test_what_is_refused_for_good_is_not_asked_for_again_and_the_rest_is(
     [("0", "None"), ("1", "net): No space left on device"), ("9", "{'")],
 )
 def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most, told):
-    done = subprocess.run(
+    done = ran(
         [sys.executable, "-c", TEXTS["few_networks"], most],
         env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[4])},
-        capture_output=True,
-        text=True,
-        check=False,
     )
     assert told in done.stdout, done.stdout + done.stderr
 

@@ -18,6 +18,7 @@ from grader.run.processes import supervisor
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess, await_ends
 from tests.children import in_child
+from tests.programs import ran
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
@@ -140,5 +141,5 @@ for _ in range(2):
 print(set(os.listdir("/proc/self/fd")) - before)
 """
     words = [sys.executable, "-c", looks]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
+    done = ran(words, cwd=ROOT, check=True)
     assert done.stdout == "set()\n"

@@ -20,8 +20,8 @@ from typing import Any
 import pytest
 import yaml
 
-from grader.run.processes import levels
-from grader.run.sandbox import landlock
+from tests.grader.run.conftest import LEVELS, at_levels
+from tests.programs import ran
 from tests.tiers import others_are_more
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
@@ -32,11 +32,6 @@ OURSELVES = "root" if os.geteuid() == 0 else "user"
 #: "root, open": others may read what root's Python is made of.
 USERS = ["root", "root, open", "user"] if OURSELVES == "root" else ["user"]
 OTHERS = "whoever runs the tests stands for the others"
-#: What there is here.
-LEVELS = {
-    "namespaces": levels.here().level == "namespaces",
-    "landlock": landlock.abi() > 0,
-}
 
 
 @dataclass
@@ -123,11 +118,10 @@ def run():
                     more = ["--root"] if user == "root, open" else []
                     words = [TESTS / "as_user.py", *more, sys.executable, *words]
                 env = {**os.environ, "TMPDIR": str(outer / "scratch"), "HOME": str(outer / "home")}
-                done = subprocess.run(
-                    [sys.executable, *map(str, words)], env=env, capture_output=True, text=True
-                )
+                done = ran([sys.executable, *map(str, words)], env=env)
                 name, _, rest = done.stdout.partition("\n")
                 if done.returncode == 0 and name.split(" ")[0] != level:
+                    assert user != OURSELVES
                     pytest.skip(f"{level} is not to be had here: {name} {done.stderr[-500:]}")
                 assert rest.startswith("{"), rest + done.stderr
                 names = {path.name for path in (outer / "submission").iterdir()}
@@ -138,12 +132,7 @@ def run():
         yield run
 
 
-@pytest.fixture(
-    params=[
-        pytest.param(level, marks=pytest.mark.applies(LEVELS[level], reason="there is that level"))
-        for level in LEVELS
-    ]
-)
+@pytest.fixture(params=at_levels("namespaces", "landlock"))
 def level(request):
     return str(request.param)
 

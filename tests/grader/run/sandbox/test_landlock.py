@@ -15,6 +15,7 @@ import pytest
 
 from grader.run.sandbox import landlock
 from tests.children import error_of, in_child
+from tests.programs import ran
 
 EACCES, EPERM, EXDEV = errno.EACCES, errno.EPERM, errno.EXDEV
 #: Of /dev/urandom: asks how good it is. Any process may.
@@ -151,9 +152,7 @@ def test_what_is_open_stays_open_and_what_is_started_is_confined_too(places):
 
     def act(at: Path) -> list[Any]:
         command = f"cat {at}/hidden/file || cat {at}/read/file"
-        told = subprocess.run(
-            ["/bin/sh", "-c", command], capture_output=True, text=True, check=False
-        )
+        told = ran(["/bin/sh", "-c", command])
         return [os.read(file, 10).decode(), told.stdout]
 
     assert confined(places, act) == ["hidden", "read"]

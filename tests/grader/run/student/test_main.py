@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.run.student import main
+from tests.programs import ran
 
 MAIN = main.__file__
 PROGRAMS = """
@@ -77,9 +78,7 @@ def start(
 ) -> subprocess.CompletedProcess[str]:
     (folder / f"{module}.py").write_text(PROGRAMS)
     words = [json.dumps([[], [], arguments, []]), "-1", str(folder), f"{module}:{name}"]
-    return subprocess.run(
-        [sys.executable, MAIN, *words], capture_output=True, text=True, check=False
-    )
+    return ran([sys.executable, MAIN, *words])
 
 
 @pytest.mark.parametrize("name", ["says", "Node.main"])
