@@ -5,7 +5,6 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -18,27 +17,14 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # Everything that an installation is made of.
 SOURCES = (
-    "LICENSE",
-    "MANIFEST.in",
-    "README.md",
-    "grader",
-    "grader_robots",
-    "interfaces",
-    "launch",
-    "package.xml",
-    "pyproject.toml",
-    "robot_py",
-    "setup.py",
-    "tf2",
-    "turtlesim_challenge",
+    *("LICENSE", "MANIFEST.in", "README.md", "grader", "grader_robots", "interfaces", "launch"),
+    *("package.xml", "pyproject.toml", "robot_py", "setup.py", "tf2", "turtlesim_challenge"),
     "turtlesim_py",
 )
 
 STARTED = "Starting turtlesim with node name /turtlesim"
 
 Environment = dict[str, str]
-FindProgram = Callable[[str, str, Environment], Path]
-RunNode = Callable[..., str]
 
 
 class System:
@@ -56,13 +42,6 @@ class System:
     def check(self) -> subprocess.CompletedProcess[str]:
         script = ROOT / "scripts" / "check_setup.sh"
         return ran(["/bin/sh", script], env=self.env)
-
-    def complaint(self) -> str:
-        result = self.check()
-        assert result.returncode == 1
-        assert result.stdout == ""
-        (line,) = result.stderr.splitlines()
-        return line
 
 
 def copy_environment(folder: Path, *left_out: str) -> Path:
@@ -91,18 +70,31 @@ def shell():
         yield env | {"ROS_DOMAIN_ID": str(number)}
 
 
+def copy_sources(folder: Path) -> None:
+    for name in SOURCES:
+        if (ROOT / name).is_dir():
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(ROOT / name, folder / name, ignore=ignored, symlinks=True)
+        else:
+            shutil.copy(ROOT / name, folder)
+
+
 @pytest.fixture
 def checkout(tmp_path):
     """A copy of the sources: a build writes beside them."""
     copy = tmp_path / "checkout"
     copy.mkdir()
-    for name in SOURCES:
-        if (ROOT / name).is_dir():
-            ignored = shutil.ignore_patterns("__pycache__")
-            shutil.copytree(ROOT / name, copy / name, ignore=ignored, symlinks=True)
-        else:
-            shutil.copy(ROOT / name, copy)
+    copy_sources(copy)
     return copy
+
+
+def colcon_build(folder: Path, *options: object, **env: str) -> subprocess.CompletedProcess[str]:
+    """`colcon build` in a folder."""
+    places = (Path(sys.executable).parent, Path(os.__file__).parents[2] / "bin")
+    colcon = shutil.which("colcon", path=os.pathsep.join([*map(str, places), os.environ["PATH"]]))
+    assert colcon, "colcon is one of the `test` requirements"
+    env |= {"COLCON_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    return ran([colcon, "build", *options], cwd=folder, env=os.environ | env)
 
 
 @pytest.fixture

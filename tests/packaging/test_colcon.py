@@ -4,7 +4,6 @@ No ROS is needed for it: `ROS_DISTRO` is what tells, and rclpy comes from this P
 """
 
 import os
-import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ import pytest
 
 from tests.programs import ran
 
-from .conftest import ROOT, Environment
+from .conftest import ROOT, Environment, colcon_build
 from .rosdep import KEYS, hide_all_but
 
 pytestmark = pytest.mark.more("builds with colcon, in three ways")
@@ -32,21 +31,10 @@ class Workspace:
 @pytest.fixture(params=["", "--merge-install", "--symlink-install"], scope="module")
 def workspace(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("workspace")
-    colcon = shutil.which("colcon", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
-    assert colcon, "colcon is one of the `test` requirements"
-    env = os.environ | {
-        "ROS_DISTRO": "jazzy",
-        "COLCON_HOME": str(folder),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        # whoever asks for a package from somewhere fails
-        "PIP_NO_INDEX": "1",
-        "http_proxy": "http://127.0.0.1:9",
-        "https_proxy": "http://127.0.0.1:9",
-    }
-    env.pop("ROS_DOMAIN_ID", None)
-    build = ran(
-        [colcon, "build", "--base-paths", ROOT, *filter(None, [request.param])], cwd=folder, env=env
-    )
+    # whoever asks for a package from somewhere fails
+    nowhere = dict.fromkeys(("http_proxy", "https_proxy"), "http://127.0.0.1:9")
+    words = ["--base-paths", ROOT, *filter(None, [request.param])]
+    build = colcon_build(folder, *words, ROS_DISTRO="jazzy", PIP_NO_INDEX="1", **nowhere)
     assert build.returncode == 0, build.stdout + build.stderr
     return Workspace(folder / "install", sourced(folder / "install" / "setup.bash"))
 

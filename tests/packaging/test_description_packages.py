@@ -1,15 +1,14 @@
 """What a recording setup() says is installed is what `colcon build` installs."""
 
-import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from tests.grader_robots.packages import FOLDER, REFERENCE, looked_at
-from tests.programs import ran
+
+from .conftest import colcon_build
 
 #: What colcon adds by itself.
 OF_COLCON = ("hook", "package.bash", "package.ps1", "package.sh", "package.zsh", "package.dsv")
@@ -22,18 +21,13 @@ PACKAGES = {
 
 def built(package: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     shutil.copytree(package, folder / "src")
-    colcon = shutil.which("colcon", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
-    colcon = colcon or shutil.which("colcon", path=str(Path(os.__file__).parents[2] / "bin"))
-    assert colcon, "colcon is one of the `test` requirements"
-    env = os.environ | {"COLCON_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    return ran([colcon, "build", "--merge-install", "--base-paths", "src"], cwd=folder, env=env)
+    return colcon_build(folder, "--merge-install", "--base-paths", "src")
 
 
 @pytest.mark.more("builds with colcon; what setup() says is installed is known of each package")
 @pytest.mark.parametrize("name", PACKAGES)
 def test_the_same_files_are_installed_as_by_colcon(name, tmp_path):
     setup = looked_at(PACKAGES[name]).setup
-    assert setup is not None
     build = built(PACKAGES[name], tmp_path)
     assert build.returncode == 0, build.stdout + build.stderr
     share = tmp_path / "install" / "share" / setup.name
@@ -49,19 +43,19 @@ def test_the_same_files_are_installed_as_by_colcon(name, tmp_path):
     assert {each.name for each in setup.scripts} == {path.name for path in programs.glob("*")}
 
 
-def without_its_marker(folder: Path) -> Path:
-    shutil.copytree(REFERENCE, folder)
-    (folder / "resource" / "walker_description").unlink()
-    return folder
+@pytest.fixture
+def without_its_marker(tmp_path):
+    shutil.copytree(REFERENCE, tmp_path / "package")
+    (tmp_path / "package/resource/walker_description").unlink()
+    return tmp_path / "package"
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path):
-    setup = looked_at(without_its_marker(tmp_path / "package")).setup
-    assert setup is not None and setup.absent == ("resource/walker_description",)
+def test_a_file_that_is_not_there_is_told(without_its_marker):
+    assert looked_at(without_its_marker).setup.absent == ("resource/walker_description",)
 
 
 @pytest.mark.more("builds with colcon; what is not there is told without it")
-def test_it_stops_colcon(tmp_path):
-    build = built(without_its_marker(tmp_path / "package"), tmp_path / "workspace")
+def test_it_stops_colcon(without_its_marker, tmp_path):
+    build = built(without_its_marker, tmp_path / "workspace")
     assert build.returncode != 0
     assert "resource/walker_description" in build.stdout + build.stderr

@@ -104,12 +104,6 @@ def test_what_is_compiled_is_installed_anew_only_where_it_has_changed(install):
     assert packages(install.calls()) == [JAZZY]
 
 
-def test_another_release_of_ros_is_chosen_by_its_name(install):
-    (install.folder / ".venv").rename(install.folder / ".venv-kilted")
-    install.env["ROS"] = "kilted"
-    assert packages(install.calls()) == ["pip needs", "pip . ./interfaces/kilted"]
-
-
 @pytest.mark.parametrize("target", ["install", "tools"])
 def test_with_nothing_to_do_nothing_is_done(install, target):
     install.calls(target)
@@ -157,22 +151,23 @@ def test_what_the_tests_need_holds_all_that_the_project_needs():
     assert not [line for line in few if line.startswith(("pytest", "mypy", "ruff", "playwright"))]
 
 
-def test_uv_is_used_where_it_is(install):
+@pytest.mark.parametrize(
+    ("env", "own"),
+    [
+        ({}, ["uv needs", ALL.replace("pip", "uv")]),
+        ({"UV": ""}, ["pip needs", ALL]),
+        ({"ROS_DISTRO": "jazzy"}, ["pip needs", "pip ."]),
+        ({"UV": "", "ROS": "kilted"}, ["pip needs", "pip . ./interfaces/kilted"]),
+    ],
+)
+def test_uv_is_used_where_it_is_and_wanted_and_no_ros_is_sourced(install, env, own):
     install.commands.add("uv", UV)
-    assert packages(install.calls()) == ["uv needs", ALL.replace("pip", "uv")]
-
-
-def test_who_wants_pip_beside_uv_gets_it(install):
-    install.commands.add("uv", UV)
-    install.env["UV"] = ""
-    assert packages(install.calls()) == ["pip needs", ALL]
-
-
-def test_beside_a_sourced_ros_uv_is_not_used(install):
-    install.commands.add("uv", UV)
-    install.made_for("jazzy")
-    install.env["ROS_DISTRO"] = "jazzy"
-    assert packages(install.calls()) == ["pip needs", "pip ."]
+    install.env |= env
+    if "ROS_DISTRO" in env:
+        install.made_for("jazzy")
+    if "ROS" in env:
+        (install.folder / ".venv").rename(install.folder / ".venv-kilted")
+    assert packages(install.calls()) == own
 
 
 def test_without_a_compiler_definitions_are_installed_and_the_last_lines_say_so(install):

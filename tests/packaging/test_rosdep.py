@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import subprocess
 import sys
 from itertools import filterfalse
 from pathlib import Path
@@ -22,32 +21,12 @@ from .rosdep import KEYS, dependencies, depends, hide_all_but, imported, keys
 pytestmark = pytest.mark.applies(
     "ROS_DISTRO" not in os.environ, reason="there the packages are apt's, which this imitates"
 )
+STARTS = pytest.mark.more("starts the grader; what is imported is read from the sources")
 ONE_RUN = "exercise: turtlesim_challenge\nvaried_runs: {count: 0}\n"
 CLASSROOM_50 = {
     **dict.fromkeys(("CLASSROOM", "ASSIGNMENT", "COMMIT_URL", "RELEASE_URL", "OWNER"), "x"),
     "SUBMISSION_TAG": "submit/x",
 }
-
-
-#: `grader` with each list of words in turn; prints what each of them says. What is hidden is so for
-#: all of them: one does not bring it to the next.
-CALLS = """
-import io, json, sys
-from contextlib import redirect_stdout
-from grader.cli import main
-
-said = []
-for words in json.loads(sys.argv[1]):
-    with redirect_stdout(io.TextIOWrapper(io.BytesIO(), "utf-8")) as out:
-        try:
-            code = main(words)
-        except SystemExit as end:  # of --help
-            code = end.code
-    assert not code, words
-    out.flush()
-    said.append(out.buffer.getvalue().decode())
-print(json.dumps(said))
-"""
 
 
 class Shell:
@@ -64,19 +43,11 @@ class Shell:
         # ROS_DISTRO: as beside a sourced ROS, PYTHONPATH reaches all processes of a run
         self.env = os.environ | CLASSROOM_50 | {"PYTHONPATH": path, "ROS_DISTRO": "jazzy"}
 
-    def grader(self, *arguments: str | Path, code: int = 0) -> subprocess.CompletedProcess[str]:
-        call = ran(
-            [sys.executable, "-P", "-m", "grader", *arguments], cwd=self.folder, env=self.env
-        )
-        assert call.returncode == code, call.stdout + call.stderr
-        return call
-
-    def graders(self, *calls: tuple[str, ...]) -> list[str]:
-        """What several calls say, in one process: its start is most of what they take."""
-        words = [sys.executable, "-P", "-c", CALLS, json.dumps(calls)]
-        call = ran(words, cwd=self.folder, env=self.env)
+    def python(self, *words: object) -> str:
+        """What a Python prints, which must not fail."""
+        call = ran([sys.executable, "-P", *words], cwd=self.folder, env=self.env)
         assert call.returncode == 0, call.stdout + call.stderr
-        return list(json.loads(call.stdout))
+        return call.stdout
 
 
 @pytest.fixture(scope="module")
@@ -85,15 +56,6 @@ def shell(tmp_path_factory):
     folder = tmp_path_factory.mktemp("rosdep")
     names = [name for name, key in KEYS.items() if not key.startswith("lib")]
     return Shell(hide_all_but(folder / "hiding", names), folder)
-
-
-@pytest.fixture(scope="module")
-def graded(shell):
-    """The folder of a graded run of the reference controller."""
-    controller = ROOT / "turtlesim_challenge" / "turtle_controller.py"
-    (shell.folder / "one_run.yaml").write_text(ONE_RUN)
-    shell.grader("run", controller, "--exercise", "one_run.yaml", "--out", "graded")
-    return shell.folder / "graded"
 
 
 def test_package_xml_asks_for_what_pip_is_asked_for():
@@ -143,46 +105,32 @@ def test_a_package_that_is_missing_is_named_with_the_bounds_of_pyproject():
         assert dependencies("test")[name] == wanted
 
 
-@pytest.mark.more("starts the grader; what is imported is read from the sources")
+@STARTS
 def test_what_is_not_in_package_xml_is_hidden_from_these_tests(shell):
     code = (
         "import numpy, rclpy\n"
         "for name in ('pytest', 'rosbags', 'backports.zstd'):\n"
         "    try: __import__(name)\n    except ImportError: print('hidden')"
     )
-    call = ran([sys.executable, "-P", "-c", code], env=shell.env)
-    assert call.stdout == "hidden\n" * 3, call.stderr
+    assert shell.python("-c", code) == "hidden\n" * 3
 
 
-@pytest.mark.more("starts the grader; what is imported is read from the sources")
-def test_every_verb_has_help(shell):
-    verbs = ("run", "check", "report", "new")
-    common, *own = shell.graders(("--help",), *((verb, "--help") for verb in verbs))
-    assert [verb for verb, said in zip(verbs, own, strict=True) if verb in said] == [*verbs]
-    assert all(verb in common for verb in verbs)
-
-
-@pytest.mark.more("starts the grader; what is imported is read from the sources")
+@STARTS
 def test_new_makes_a_solution(shell):
-    shell.grader("new", "my_solution")
+    shell.python("-m", "grader", "new", "my_solution")
     assert (shell.folder / "my_solution" / "package.xml").exists()
 
 
-@pytest.mark.more("starts the grader; what is imported is read from the sources")
-def test_run_and_check_judge_the_reference_alike(shell, graded):
-    shell.grader("check", graded, "--json", "again.json", "--exercise", "one_run.yaml")
-    results = [graded / "result.json", shell.folder / "again.json"]
+@STARTS
+def test_run_check_and_report_do_their_work(shell):
+    controller = ROOT / "turtlesim_challenge" / "turtle_controller.py"
+    (shell.folder / "one_run.yaml").write_text(ONE_RUN)
+    one_run = ("--exercise", "one_run.yaml")
+    shell.python("-m", "grader", "run", controller, *one_run, "--out", "graded")
+    shell.python("-m", "grader", "check", "graded", "--json", "again.json", *one_run)
+    results = [shell.folder / "graded/result.json", shell.folder / "again.json"]
     assert [json.loads(path.read_text())["score"] for path in results] == [100, 100]
-
-
-@pytest.mark.more("starts the grader; what is imported is read from the sources")
-def test_every_other_format_is_written(shell, graded):
-    forms = sorted(set(names()) - {"html"})
-    result = str(graded / "result.json")
-    said = shell.graders(*(("report", result, "--format", form) for form in forms))
-    assert [form for form, text in zip(forms, said, strict=True) if text] == forms
-
-
-@pytest.mark.more("starts the grader; what is imported is read from the sources")
-def test_the_page_is_written(shell, graded):
-    assert "<svg" in shell.grader("report", graded / "result.json", "--format", "html").stdout
+    for form in names():
+        report = shell.python("-m", "grader", "report", results[0], "--format", form)
+        assert ("<svg" if form == "html" else "") in report
+        assert report

@@ -13,7 +13,7 @@ import pytest
 from tests.programs import ran
 from turtlesim_py.ros import source
 
-from .conftest import ROOT, SOURCES, Environment, copy_environment
+from .conftest import ROOT, Environment, copy_environment, copy_sources
 
 pytestmark = [
     pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="ROS's are compiled"),
@@ -33,11 +33,7 @@ def environment(tmp_path_factory):
     """A copy of this one, but for what is compiled of ours."""
     folder = tmp_path_factory.mktemp("uncompiled")
     place = copy_environment(folder)
-    for name in SOURCES:
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, folder / name, symlinks=True)
-        else:
-            shutil.copy(ROOT / name, folder)
+    copy_sources(folder)
     (release,) = source._brought()
     pip = ["-m", "pip", "install", "--no-build-isolation", "--no-deps", "--force-reinstall"]
     subprocess.run(

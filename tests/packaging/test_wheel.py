@@ -37,15 +37,6 @@ def call_hook(checkout: Path, env: Environment, name: str, *arguments: Path) -> 
     return json.loads(call.stdout.splitlines()[-1])
 
 
-def refusal(folder: Path, env: Environment) -> str:
-    """The one line in which a build refuses to say what it needs."""
-    code = "from setuptools import build_meta; build_meta.get_requires_for_build_wheel()"
-    call = ran([sys.executable, "-c", code], cwd=folder, env=env)
-    assert call.returncode != 0
-    (line,) = call.stderr.splitlines()
-    return line
-
-
 def requirements(checkout: Path, env: Environment) -> dict[str, list[str]]:
     """What a build asks for, and what the installed package asks for."""
     out = Path(tempfile.mkdtemp(dir=checkout))
@@ -57,11 +48,10 @@ def requirements(checkout: Path, env: Environment) -> dict[str, list[str]]:
     }
 
 
-def wheel_names(checkout: Path, env: Environment) -> list[str]:
-    """Build a wheel, and list what is in it."""
+def built(checkout: Path, env: Environment) -> zipfile.ZipFile:
+    """A wheel."""
     name = call_hook(checkout, env, "build_wheel", checkout.parent)
-    with zipfile.ZipFile(checkout.parent / name) as wheel:
-        return wheel.namelist()
+    return zipfile.ZipFile(checkout.parent / name)
 
 
 @pytest.fixture
@@ -105,7 +95,11 @@ def test_the_project_asks_for_nothing_of_ros_and_for_the_same_everywhere(
 
 
 def test_where_ros_is_sourced_a_second_one_is_refused_in_one_line(checkout, ros_sourced):
-    line = refusal(checkout / "interfaces" / "jazzy", ros_sourced)
+    code = "from setuptools import build_meta; build_meta.get_requires_for_build_wheel()"
+    folder = checkout / "interfaces" / "jazzy"
+    call = ran([sys.executable, "-c", code], cwd=folder, env=ros_sourced)
+    assert call.returncode != 0
+    (line,) = call.stderr.splitlines()
     assert line.startswith("Cannot install: ROS 2 jazzy is sourced")
 
 
@@ -119,7 +113,7 @@ def test_every_file_of_the_packages_is_in_the_wheel_and_nothing_that_ros_has(
         for path in (checkout / package).rglob("*")
         if path.is_file()
     }
-    names = wheel_names(checkout, none_sourced)
+    names = built(checkout, none_sourced).namelist()
     assert list(checkout.parent.glob("turtlesim_py-*-py3-none-any.whl"))
     assert files - set(names) == set()
     assert {"grader/py.typed", "turtlesim_py/py.typed"} <= files
@@ -153,9 +147,7 @@ def test_where_ros_is_sourced_nothing_of_ours_stands_for_a_package_of_ros(
     checkout, ros_sourced, tmp_path
 ):
     """As far as Python finds it: this environment's packages and ROS's are out of sight."""
-    name = call_hook(checkout, ros_sourced, "build_wheel", checkout.parent)
-    with zipfile.ZipFile(checkout.parent / name) as wheel:
-        wheel.extractall(tmp_path / "wheel")
+    built(checkout, ros_sourced).extractall(tmp_path / "wheel")
     # what the finder needs of others
     needed = ("numpy", "rosidl_parser", "rosidl_adapter", "rosidl_cli", "em", "lark", "ament_index")
     beside = tmp_path / "beside"
@@ -174,41 +166,31 @@ def test_where_ros_is_sourced_nothing_of_ours_stands_for_a_package_of_ros(
 def test_a_deleted_module_is_not_in_the_next_wheel(checkout, ros_sourced):
     module = checkout / "grader" / "deleted_later.py"
     module.touch()
-    assert "grader/deleted_later.py" in wheel_names(checkout, ros_sourced)
+    assert "grader/deleted_later.py" in built(checkout, ros_sourced).namelist()
     module.unlink()
-    assert "grader/deleted_later.py" not in wheel_names(checkout, ros_sourced)
+    assert "grader/deleted_later.py" not in built(checkout, ros_sourced).namelist()
 
 
 def test_every_program_is_where_ros2_run_looks(checkout, ros_sourced):
     scripts = PYPROJECT["project"]["scripts"]
     expected = {f"lib/{re.split('[.:]', function)[0]}/{name}" for name, function in scripts.items()}
-    name = call_hook(checkout, ros_sourced, "build_wheel", checkout.parent)
-    with zipfile.ZipFile(checkout.parent / name) as wheel:
-        found = {
-            entry.filename.partition("/data/")[2]: entry
-            for entry in wheel.infolist()
-            if "/data/lib/" in entry.filename
-        }
-        assert found.keys() == expected
-        assert {wheel.read(entry).splitlines()[0] for entry in found.values()} == {b"#!/bin/sh"}
+    wheel = built(checkout, ros_sourced)
+    found = {
+        entry.filename.partition("/data/")[2]: entry
+        for entry in wheel.infolist()
+        if "/data/lib/" in entry.filename
+    }
+    assert found.keys() == expected
+    assert {wheel.read(entry).splitlines()[0] for entry in found.values()} == {b"#!/bin/sh"}
     assert {entry.external_attr >> 16 & 0o777 for entry in found.values()} == {0o755}
 
 
 def test_all_packages_have_one_version():
-    versions = {
-        path: ElementTree.parse(ROOT / path).findtext("version")
-        for path in (
-            "package.xml",
-            "grader/package.xml",
-            "turtlesim_challenge/package.xml",
-            "robot_py/package.xml",
-            "grader_robots/package.xml",
-        )
-    }
-    for path in sorted(ROOT.glob("interfaces/*/pyproject.toml")):
-        versions[str(path)] = tomllib.loads(path.read_text())["project"]["version"]
-    assert len(versions) == 5 + len(RELEASES)
-    assert versions == dict.fromkeys(versions, PYPROJECT["project"]["version"])
+    manifests = [ROOT / "package.xml", *ROOT.glob("*/package.xml")]
+    versions = [ElementTree.parse(path).findtext("version") for path in manifests]
+    for path in ROOT.glob("interfaces/*/pyproject.toml"):
+        versions.append(tomllib.loads(path.read_text())["project"]["version"])
+    assert versions == [PYPROJECT["project"]["version"]] * (5 + len(RELEASES))
 
 
 @pytest.fixture
@@ -219,7 +201,7 @@ def no_compiler(shell):
 
 
 def test_the_project_needs_no_compiler(checkout, no_compiler):
-    assert call_hook(checkout, no_compiler, "build_wheel", checkout.parent).endswith("-any.whl")
+    assert built(checkout, no_compiler).filename.endswith("-any.whl")
 
 
 @pytest.fixture(params=["no_compiler", "none_wanted"])
@@ -234,11 +216,10 @@ def uncompiled(request, shell):
 def test_interfaces_that_are_not_compiled_are_installed_as_their_definitions(checkout, uncompiled):
     folder = checkout / "interfaces" / "jazzy"
     assert call_hook(folder, uncompiled, "get_requires_for_build_wheel") == []
-    wheel = call_hook(folder, uncompiled, "build_wheel", checkout.parent)
-    assert wheel.endswith("-py3-none-any.whl")
-    with zipfile.ZipFile(checkout.parent / wheel) as file:
-        shared = {name.partition(".data/data/share/")[2] for name in file.namelist()}
-        modules = {name.partition("/")[0] for name in file.namelist()}
+    wheel = built(folder, uncompiled)
+    assert wheel.filename.endswith("-py3-none-any.whl")
+    shared = {name.partition(".data/data/share/")[2] for name in wheel.namelist()}
+    modules = {name.partition("/")[0] for name in wheel.namelist()}
     packages = ROOT / "interfaces" / "packages"
     for name, source in PACKAGES.items():
         index = "ament_index/resource_index"
@@ -250,19 +231,13 @@ def test_interfaces_that_are_not_compiled_are_installed_as_their_definitions(che
     assert modules == {"tf2_py", "tf2_ros", "turtlesim_py_ament_prefix.pth"}
 
 
-def test_each_ros_has_a_build_folder_of_its_own(checkout, none_sourced):
+@pytest.mark.parametrize("release", RELEASES)
+def test_each_ros_has_a_build_folder_of_its_own(checkout, none_sourced, release):
     code = (
         "import runpy, setuptools; "
         "setuptools.setup = lambda options, **_: print(options['build']['build_base']); "
         "runpy.run_path('setup.py')"
     )
-    folders = [
-        ran(
-            [sys.executable, "-c", code],
-            cwd=checkout / "interfaces" / release,
-            env=none_sourced,
-            check=True,
-        ).stdout
-        for release in RELEASES
-    ]
-    assert folders == ["../../build/jazzy\n", "../../build/kilted\n"]
+    folder = checkout / "interfaces" / release
+    said = ran([sys.executable, "-c", code], cwd=folder, env=none_sourced, check=True).stdout
+    assert said == f"../../build/{release}\n"

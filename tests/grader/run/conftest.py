@@ -1,5 +1,6 @@
 """Runs for the tests of this folder: how long each submission is watched, and waited for."""
 
+import socket
 from pathlib import Path
 from typing import Any
 
@@ -64,3 +65,16 @@ def recorded():
         return runs.recorded(name, Plan(limits, start), patience, number=number)
 
     return recorded
+
+
+@pytest.fixture
+def ends():
+    """Both ends of a link."""
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with ours, theirs:
+        yield ours, theirs
+
+
+@pytest.fixture
+def theirs(ends):
+    return ends[1]

@@ -16,20 +16,12 @@ from tests.grader.driving import Spiral, drive
 REASONS = get_args(Reason)
 #: (why the simulator stopped, exit code of the submission's process or None) -> outcome
 EXPECTED = {
+    **{(reason, None): "time_limit" for reason in REASONS},
+    **{(reason, 0): "exited" for reason in REASONS},
     ("rest", None): "finished",
-    ("no_motion", None): "time_limit",
-    ("time_limit", None): "time_limit",
-    ("gone", None): "time_limit",
-    ("", None): "time_limit",
     ("rest", 0): "finished",
-    ("no_motion", 0): "exited",
-    ("time_limit", 0): "exited",
-    ("gone", 0): "exited",
-    ("", 0): "exited",
-    **{(reason, 1): "crashed" for reason in REASONS},
-    **{(reason, 255): "crashed" for reason in REASONS},
-    **{(reason, -9): "killed" for reason in REASONS},
-    **{(reason, -11): "killed" for reason in REASONS},
+    **{(reason, code): "crashed" for reason in REASONS for code in (1, 255)},
+    **{(reason, code): "killed" for reason in REASONS for code in (-9, -11)},
 }
 A, B, C = msg("a"), plain_text("b"), msg("c {n}", n=1)
 RUN = Run("virtual", "crashed", -11, wall_s=1.23456, isolation="ROS domain 77", flags=(A, B))
@@ -45,8 +37,7 @@ def test_the_outcome_follows_from_the_reason_and_the_exit_code(reason, exit_code
     assert outcome(reason, exit_code) == EXPECTED[reason, exit_code]
 
 
-def test_every_reason_is_covered_and_all_but_stalled_comes_of_them():
-    assert {reason for reason, _ in EXPECTED} == set(REASONS)
+def test_all_outcomes_but_two_come_of_them():
     assert set(EXPECTED.values()) == set(get_args(Outcome)) - {"stalled", "not_run"}
 
 
@@ -82,14 +73,3 @@ def test_what_the_run_itself_says_stands_before_what_was_known_before(trace):
     repeated = replace(PLAN, flags=(A, B))
     made = record(repeated, trace, TOPICS, ENDING.with_flags(C))
     assert made.run.flags == (C, A, B)
-
-
-def test_from_the_usual_place_there_is_no_start_and_no_seed(trace):
-    made = record(Plan(PLAN.limits), trace, (), ENDING)
-    assert (made.start, made.run.seed, made.topics) == (None, None, ())
-
-
-def test_the_hash_is_the_trace_s_whatever_else_differs(trace):
-    other = Ending(Run("real", "finished", None, wall_s=9.0, isolation="private network"))
-    made = record(Plan(Limits(9, 9, 9)), trace, (), other)
-    assert made.run.trace_sha256 == record(PLAN, trace, TOPICS, ENDING).run.trace_sha256

@@ -18,7 +18,7 @@ from grader.recording.recording import Recording
 from grader.run import fork_servers, real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
-from grader.run.processes import FORK_SERVER, levels, network
+from grader.run.processes import levels, network
 from grader.scenes.scene import Limits
 from tests.tiers import others_are_more
 
@@ -270,21 +270,6 @@ def test_in_real_time_the_simulator_alone_is_forked(tmp_path):
     with open_submission(tmp_path / "submitted.py") as submission:
         assert real_time.run(submission, PLAN).output == "here\n"
     assert forks() == (before[0], before[1] + 1)
-
-
-REACHES = f"""
-import errno
-import os
-for name in os.listdir("/proc"):
-    if name.isdigit():
-        print(open(f"/proc/{{name}}/cmdline").read().count({FORK_SERVER!r}))
-"""
-
-
-@pytest.mark.applies(os.geteuid() == 0, reason="only root is sure to get one")
-def test_a_submission_with_a_namespace_of_its_own_sees_no_server_but_itself(tmp_path):
-    # the namespace's first process, and itself: both are forks
-    assert graded(REACHES, tmp_path).output == "1\n1\n"
 
 
 def test_no_thread_of_ours_stays_behind(tmp_path):

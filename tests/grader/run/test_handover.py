@@ -46,10 +46,6 @@ def file():
 def left(file, scene, trace):
     """What lies in the file when it was left."""
     leave(Path(f"/proc/self/fd/{file}"), scene, trace, PUBLISHED)
-    return contents(file)
-
-
-def contents(file: int) -> bytes:
     return os.pread(file, 100_000_000, 0)
 
 
@@ -77,43 +73,21 @@ def test_it_can_be_fetched_again_and_the_file_stays_open(file, left, scene):
     assert os.fstat(file).st_size == len(left)
 
 
-def test_a_submission_that_published_nothing_has_no_topics(file, scene, trace):
-    leave(Path(f"/proc/self/fd/{file}"), scene, trace, {})
-    assert fetch(file, scene)[1] == ()
-
-
-def test_what_every_node_publishes_on_is_left_out(file, scene, trace):
+@pytest.mark.parametrize(("published", "topics"), [({}, ()), (PUBLISHED, TOPICS)])
+def test_what_every_node_publishes_on_is_left_out(file, scene, trace, published, topics):
     every = {"/rosout": "rcl_interfaces/msg/Log", "/parameter_events": "x"}
-    leave(Path(f"/proc/self/fd/{file}"), scene, trace, {**PUBLISHED, **every})
-    assert fetch(file, scene)[1] == TOPICS
+    leave(Path(f"/proc/self/fd/{file}"), scene, trace, {**published, **every})
+    assert fetch(file, scene)[1] == topics
 
 
-@given(data=st.binary(max_size=200))
-def test_garbage_is_a_failure_and_nothing_else(file, scene, data):
-    put(file, data)
-    failure(file, scene)
+class Trap:
+    def __reduce__(self):
+        return os._exit, (1,)
 
 
-def test_a_pickle_is_not_unpickled(file, scene, trace):
-    class Trap:
-        def __reduce__(self):
-            return os._exit, (1,)
-
-    data = pickle.dumps(Trap())
-    for found in (data, pack("<Q", 2) + b"{}" + data, pack("<Q", len(data)) + data):
-        put(file, found)
-        failure(file, scene)
-
-
-@pytest.mark.parametrize("part", [0.0, 0.00001, 0.01, 0.5, 0.99, 0.99999])
-def test_a_file_that_is_cut_off_is_a_failure(file, left, scene, part):
-    put(file, left[: int(len(left) * part)])
-    failure(file, scene)
-
-
-def test_topics_that_are_none_are_a_failure(file, scene, trace):
-    data = transfer.pack(trace, scene)
-    for topics in (
+def test_what_is_none_is_a_failure_and_nothing_else(file, left, scene, trace):
+    data, trap = transfer.pack(trace, scene), pickle.dumps(Trap())
+    no_topics = (
         b"",
         b"{",
         b"3",
@@ -122,15 +96,21 @@ def test_topics_that_are_none_are_a_failure(file, scene, trace):
         b"[3]",
         b'{"/a": 3}',
         b'{"/a": [""]}',
+    )
+    for found in (
+        *(left[: int(len(left) * part)] for part in (0.0, 0.00001, 0.01, 0.5, 0.99, 0.99999)),
+        *(pack("<Q", length) + left[8:] for length in (1, 2**40, 2**64 - 1)),
+        *(pack("<Q", len(topics)) + topics + data for topics in no_topics),
+        *(trap, pack("<Q", 2) + b"{}" + trap, pack("<Q", len(trap)) + trap),
     ):
-        put(file, pack("<Q", len(topics)) + topics + data)
+        put(file, found)
         failure(file, scene)
 
 
-def test_a_wrong_length_is_a_failure(file, left, scene):
-    for length in (1, 2**40, 2**64 - 1):
-        put(file, pack("<Q", length) + left[8:])
-        failure(file, scene)
+@given(data=st.binary(max_size=200))
+def test_garbage_is_a_failure_and_nothing_else(file, scene, data):
+    put(file, data)
+    failure(file, scene)
 
 
 def test_the_failure_does_not_repeat_the_file(file, scene):

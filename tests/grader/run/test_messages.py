@@ -6,7 +6,6 @@ virtual time. Where it lost some, or the run could not be made, they are as they
 
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,14 +13,10 @@ import pytest
 import yaml
 
 from grader.message import msg
-from grader.recording.recording import Recording
 from grader.run.clock import executor
 from tests.tiers import others_are_more
 
 OUTPUTS = Path(__file__).parent / "messages"
-
-Recorded = Callable[..., Recording]
-
 
 RUNS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 

@@ -1,7 +1,5 @@
 """What is told of a submission's process: whole runs, most of them in virtual time."""
 
-from collections.abc import Callable
-
 import pytest
 
 from grader.diagnosis import standstill
@@ -15,14 +13,12 @@ from grader.recording.observations import (
     Standstill,
     Wait,
 )
-from grader.recording.recording import Recording
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
 from tests import runs
-from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 
-Recorded = Callable[..., Recording]
+SPINS = "rclpy.spin_until_future_complete(self, answer)"
 PEN = "self.pen.call(SetPen.Request(r=255, width=3))"
 
 
@@ -51,31 +47,18 @@ def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(re
     assert (seen.spun_s, seen.returned_s, seen.raised) == (None, 3.0, None)
 
 
-@pytest.mark.more("the traces of two runs are compared elsewhere")
-def test_the_same_is_told_of_two_runs(recorded):
-    first, second = recorded("observed/wrong_ends"), recorded("observed/wrong_ends", 2)
-    assert first.observations == second.observations
-
-
 def test_a_program_that_spins_once_and_is_through_tells_both(recorded):
     seen = recorded("observed/spins_once").observations
     assert (seen.is_known, seen.spun_s, seen.stop) == (True, 0.0, None)
     assert seen.returned_s < 0.1
 
 
-STUCK = [
-    ("calls_in_callback", ("callback", 1.0, "Client.call", 15, PEN)),
-    ("calls_without_spinning", ("call", 0.0, "Client.call", 10, PEN.removeprefix("self."))),
-    ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
-    ("spins_in_callback",
-     ("callback", 0.48, "spin_until_future_complete", 26,
-      "rclpy.spin_until_future_complete(self, answer)")),
-]  # fmt: skip
-
-
 @pytest.mark.parametrize(
     ("name", "stop"),
-    others_are_more("one of each kind is kept", STUCK, "never_spins", "spins_in_callback"),
+    [
+        ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
+        ("spins_in_callback", ("callback", 0.48, "spin_until_future_complete", 26, SPINS)),
+    ],
 )
 def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(recorded, name, stop):
     found = recorded(f"misbehaving/{name}").observations.stop
@@ -111,23 +94,10 @@ def test_a_loop_without_end_is_told_by_its_line(recorded):
     assert stop == Standstill("loop", 0.096, "", place)
 
 
-WAITS = [
-    ("waits_in_vain", 14, "Controller.__init__",
-     "while not self.pen.wait_for_service(timeout_sec=1.0):"),
-    ("waits_for_an_answer", 10, "",
-     "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("name", "line", "function", "text"),
-    others_are_more("both are diagnosed", WAITS, "waits_for_an_answer"),
-)
-def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
-    recorded, name, line, function, text
-):
-    seen = recorded(f"observed/{name}").observations
-    place = SourceLine(f"{name}.py", line, function, text)
+def test_a_wait_for_what_never_comes_is_told_and_others_are_not(recorded):
+    text = "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"
+    place = SourceLine("waits_for_an_answer.py", 10, "", text)
+    seen = recorded("observed/waits_for_an_answer").observations
     assert seen.waits == (Wait("/set_pen", "turtlesim/srv/SetPen", 0.0, None, place),)
 
 
@@ -182,13 +152,6 @@ def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end():
     assert seen.stop.place == SourceLine("calls_in_callback.py", 15, "on_timer", PEN)
 
 
-@pytest.mark.more("two others tell so in real time, and this one in virtual time")
-def test_in_real_time_a_program_that_comes_to_its_end_tells_so():
-    seen = in_real_time("observed/spins_once")
-    assert seen.returned_s is not None
-    assert (seen.stop, seen.raised) == (None, None)
-
-
 # Numbers of the wrong type --------------------------------------------------------------------
 
 
@@ -217,14 +180,6 @@ def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded):
 
 
 # Loops ----------------------------------------------------------------------------------------
-
-
-@pytest.mark.more("two runs that stall; one is above")
-def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded):
-    place = SourceLine("loops_for_ever.py", 21, "work", "while add(numbers) > 0:")
-    for number in (1, 2):
-        stop = recorded("observed/loops_for_ever", number).observations.stop
-        assert stop == Standstill("loop", 0.096, "", place)
 
 
 def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_on(recorded):

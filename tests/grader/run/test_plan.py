@@ -4,38 +4,14 @@ import json
 from dataclasses import fields
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from grader.message import msg, plain_text
 from grader.recording.subject import Start
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
 
-numbers = st.floats(allow_nan=False)
-flags = st.text().map(plain_text) | st.builds(
-    msg, st.just("{n:,} of {it}"), n=st.integers(), it=st.text()
-)
-plans = st.builds(
-    Plan,
-    limits=st.builds(Limits, numbers, numbers, numbers),
-    start=st.none() | st.builds(Start, numbers, numbers, numbers),
-    scene=st.text(),
-    seed=st.none() | st.integers(),
-    flags=st.lists(flags, max_size=3).map(tuple),
-    interfaces=st.text(),
-)
 
-
-@given(plan=plans)
-def test_a_plan_survives_the_way_to_another_process_as_an_argument_in_one_line(plan):
-    text = plan.to_json()
-    assert Plan.from_json(text) == plan
-    assert text.isascii()
-    assert text.isprintable()
-
-
-def test_every_field_and_its_type_survive():
+def test_every_field_and_its_type_survive_the_way_to_another_process_as_one_line():
     plan = Plan(
         Limits(1.0, 2.0, 3.0),
         Start(0.0, 1 / 3, 5e-324),
@@ -55,15 +31,11 @@ def test_every_field_and_its_type_survive():
     )
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))
-    back = Plan.from_json(plan.to_json())
+    text = plan.to_json()
+    assert text.isascii() and text.isprintable()
+    back = Plan.from_json(text)
     assert back == plan
     assert (type(back.limits), type(back.start), type(back.flags)) == (Limits, Start, tuple)
-
-
-def test_what_is_only_there_if_it_is_needed_has_its_usual_value():
-    plan = Plan(Limits(1.0, 2.0, 3.0))
-    assert (plan.start, plan.scene, plan.seed, plan.flags) == (None, "turtlesim", None, ())
-    assert plan.interfaces == ""
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"limits": {}, "start": null, "flags": []}'])

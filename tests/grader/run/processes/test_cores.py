@@ -3,6 +3,7 @@
 import pytest
 
 from grader.run.processes import cores
+from tests.files import lay
 
 
 @pytest.fixture
@@ -17,27 +18,22 @@ def groups(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_without_quotas_it_is_every_core(groups):
-    assert cores.share() == 8
+V1 = "cpu/cpu.cfs_period_us"
 
 
-@pytest.mark.parametrize(("group", "above", "share"), [("max", "max", 8), ("50000", "max", 0.5)])
-def test_a_quota_of_ours_counts(groups, group, above, share):
-    (groups / "slice" / "ours" / "cpu.max").write_text(f"{group} 100000\n")
-    (groups / "slice" / "cpu.max").write_text(f"{above} 100000\n")
-    assert cores.share() == share
-
-
-def test_so_does_one_of_what_we_are_in(groups):
-    (groups / "slice" / "ours" / "cpu.max").write_text("max 100000\n")
-    (groups / "slice" / "cpu.max").write_text("150000 100000\n")
-    assert cores.share() == 1.5
-
-
-@pytest.mark.parametrize(("quota", "share"), [("-1", 8), ("200000", 2)])
-def test_so_does_one_of_version_1(groups, quota, share):
-    (groups / "cpu" / "cpu.cfs_quota_us").write_text(f"{quota}\n")
-    (groups / "cpu" / "cpu.cfs_period_us").write_text("100000\n")
+@pytest.mark.parametrize(
+    ("files", "share"),
+    [
+        ({}, 8),
+        ({"slice/ours/cpu.max": "max 100000", "slice/cpu.max": "max 100000"}, 8),
+        ({"slice/ours/cpu.max": "50000 100000", "slice/cpu.max": "max 100000"}, 0.5),
+        ({"slice/ours/cpu.max": "max 100000", "slice/cpu.max": "150000 100000"}, 1.5),
+        ({"cpu/cpu.cfs_quota_us": "-1", V1: "100000"}, 8),
+        ({"cpu/cpu.cfs_quota_us": "200000", V1: "100000"}, 2),
+    ],
+)
+def test_quotas_of_ours_and_of_what_we_are_in_count(groups, files, share):
+    lay(groups, {name: f"{text}\n" for name, text in files.items()})
     assert cores.share() == share
 
 

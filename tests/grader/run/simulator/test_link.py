@@ -7,7 +7,6 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from itertools import chain
 
 import pytest
@@ -33,19 +32,6 @@ from grader.run.simulator.link import Refused, StudentLink
 #: Where nobody asks how far a process has got.
 NO_PAGE = -1
 ADVANCE = Advance(5, True, 0, 0)
-Listen = Callable[..., StudentLink]
-
-
-@pytest.fixture
-def ends():
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with ours, theirs:
-        yield ours, theirs
-
-
-@pytest.fixture
-def theirs(ends):
-    return ends[1]
 
 
 @pytest.fixture
