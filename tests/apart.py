@@ -76,7 +76,6 @@ def pytest_sessionfinish() -> None:
 
 
 def pytest_unconfigure() -> None:
-    """Give it back."""
     _open.close()
 
 

@@ -23,8 +23,14 @@ def call(function: str, *words: object) -> None:
         raise OSError(ctypes.get_errno(), f"{function}: {os.strerror(ctypes.get_errno())}")
 
 
-def mount(source: str, target: Path, kind: str, flags: int, data: str = "") -> None:
-    words = (source.encode(), bytes(target), kind.encode(), ctypes.c_ulong(flags), data.encode())
+def mount(source: str | Path, target: Path, kind: str, flags: int = 0, data: str = "") -> None:
+    words = (
+        str(source).encode(),
+        bytes(target),
+        kind.encode(),
+        ctypes.c_ulong(flags),
+        data.encode(),
+    )
     call("mount", *words)
 
 

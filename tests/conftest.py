@@ -51,7 +51,7 @@ def _kill_or_leave(process: subprocess.Popen[Any], kind: Any, *error: Any) -> No
     _leave(process, kind, *error)
 
 
-subprocess.Popen.__exit__ = _kill_or_leave  # type: ignore[method-assign]
+subprocess.Popen.__exit__ = _kill_or_leave
 
 
 @pytest.hookimpl(tryfirst=True)

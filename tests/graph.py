@@ -40,7 +40,6 @@ class Graph:
         self._actions: list[ActionClient] = []
 
     def close(self) -> None:
-        """Leave the graph."""
         self._executor.shutdown()
         self.node.destroy_node()
 
@@ -68,7 +67,6 @@ class Graph:
         return found
 
     def done(self, future: Future, what: str = "an answer") -> Any:
-        """Wait for a future; its result."""
         self.until(future.done, what)
         return future.result()
 

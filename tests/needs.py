@@ -78,7 +78,6 @@ def missing(names: Any) -> list[str]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the mark known."""
     config.addinivalue_line("markers", "needs(*names): left out where one is missing (needs.py)")
     config.addinivalue_line("markers", "more(reason): only in `make test-all`")
 

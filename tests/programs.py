@@ -52,7 +52,6 @@ class Program:
         _running.append(self)
         self.lines: list[str] = []
         self._news = threading.Condition()
-        assert self.process.stderr is not None
         self._reader = threading.Thread(target=self._read, args=(self.process.stderr,))
         self._reader.start()
 
@@ -85,7 +84,6 @@ class Program:
         return found
 
     def wait(self) -> int:
-        """Wait for the end; the exit code."""
         code = self.process.wait(DEADLINE_S)
         self._reader.join()
         return code

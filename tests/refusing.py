@@ -22,18 +22,22 @@ CALLS = {
     "landlock_create_ruleset": (444, 444, errno.ENOSYS),
 }
 KINDS = {"namespaces": ("unshare", "setns", "mount"), "landlock": ("landlock_create_ruleset",)}
-LOAD, JUMP_EQ, RETURN, ALLOW, ERRNO = 0x20, 0x15, 0x06, 0x7FFF0000, 0x00050000
+LOAD, JUMP_EQ, JUMP_SET, RETURN, ALLOW, ERRNO = 0x20, 0x15, 0x45, 0x06, 0x7FFF0000, 0x00050000
 PR_SET_NO_NEW_PRIVS, PR_SET_SECCOMP, SECCOMP_MODE_FILTER = 38, 22, 2
 
 
-def refuse(*kinds: str) -> None:
-    """Let this process, and all that it starts, be refused these."""
-    place = ("x86_64", "aarch64").index(os.uname().machine)
-    names = [name for kind in kinds for name in KINDS.get(kind, (kind,))]
+def answer(errors: dict[int, int], *more: tuple[int, int, int, int]) -> None:
+    """Let this process, and all that it starts, have these errors for system calls.
+
+    Args:
+        errors: a call's number -> the error.
+        more: instructions of classic BPF after those.
+    """
     lines = [(LOAD, 0, 0, 0)]
-    for name in names:
-        lines += [(JUMP_EQ, 0, 1, CALLS[name][place]), (RETURN, 0, 0, ERRNO | CALLS[name][2])]
-    code = b"".join(struct.pack("=HBBI", *line) for line in [*lines, (RETURN, 0, 0, ALLOW)])
+    for number, error in errors.items():
+        lines += [(JUMP_EQ, 0, 1, number), (RETURN, 0, 0, ERRNO | error)]
+    lines += [*more, (RETURN, 0, 0, ALLOW)]
+    code = b"".join(struct.pack("=HBBI", *line) for line in lines)
     memory = ctypes.create_string_buffer(code, len(code))
     program = struct.pack("@HP", len(code) // 8, ctypes.addressof(memory))
     libc = ctypes.CDLL(None, use_errno=True)
@@ -42,6 +46,13 @@ def refuse(*kinds: str) -> None:
             raise OSError(ctypes.get_errno(), "no_new_privs")
         if libc.prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, program) != 0:
             raise OSError(ctypes.get_errno(), "no filter")
+
+
+def refuse(*kinds: str) -> None:
+    """Let this process, and all that it starts, be refused these."""
+    place = ("x86_64", "aarch64").index(os.uname().machine)
+    names = [name for kind in kinds for name in KINDS.get(kind, (kind,))]
+    answer({CALLS[name][place]: CALLS[name][2] for name in names})
 
 
 if __name__ == "__main__":

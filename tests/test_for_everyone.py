@@ -68,17 +68,10 @@ def browser():
         yield opened
 
 
-@pytest.mark.parametrize(
-    "made",
-    [
-        report_of_turtles,
-        report_of_a_crash,
-        report_of_a_package,
-        page_of_a_class,
-        page_without_a_result,
-    ],
-    ids=lambda made: made.__name__,
-)
+PAGES = (report_of_turtles, report_of_a_crash, report_of_a_package, page_of_a_class)
+
+
+@pytest.mark.parametrize("made", [*PAGES, page_without_a_result], ids=lambda made: made.__name__)
 def test_nothing_stands_in_anybodys_way(made, browser, tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made(tmp_path / "of"), encoding="utf-8")

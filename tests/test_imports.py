@@ -27,8 +27,6 @@ STUDENTS = re.compile(
     r"turtlesim_challenge\.starter\b"
     r"|grader(_robots)?\.exercises?(\.\w+)?\.(starter|reference|right)\b"
 )
-#: Doubles of ROS's packages, by whose names they import each other.
-DOUBLES = "grader.inspection.examining.doubles"
 
 
 def below(package: str, *names: str) -> set[str]:
@@ -100,10 +98,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.inspection.answer": {"grader.strict_json", "grader.inspection.trace"},
     "grader.inspection.examining": below("grader", "limited", "linux", "strict_json", "message")
     | below("grader.inspection", "trace", "answer", "__init__"),
-    "grader.inspection.examining.doubles": {
-        "grader.inspection.examining",
-        "grader.message",
-    },
+    "grader.inspection.examining.doubles": below("grader", "inspection.examining", "message"),
     # what an inspection answers, as data; what the source shows, as it is recorded; what CMake
     # would generate, and what of that parses
     "grader.submission": GROUND
@@ -160,8 +155,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"turtlesim_py.world.turtle"},
     # a class is graded by what stands in docs/python-api.md, and shown as single results are
     "grader.batch": GROUND
-    | {"grader.batch"}
-    | {"grader.result"}
+    | {"grader.batch", "grader.result"}
     | below("grader.recording", "recording", "subject", "view")
     | below("grader.exercise", "exercise", "loading", "sentences", "verdict")
     | below("grader.reports", "__init__", "beside", "csv", "wording", "page"),

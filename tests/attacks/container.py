@@ -21,12 +21,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from tests import as_user
+from tests.as_user import CLONE_NEWNS, MS_BIND, MS_PRIVATE, MS_REC
 from tests.programs import ran
 
 ROOT = Path(__file__).parents[2]
-CLONE_NEWNS, CLONE_NEWUTS, CLONE_NEWIPC = 0x00020000, 0x04000000, 0x08000000
+CLONE_NEWUTS, CLONE_NEWIPC = 0x04000000, 0x08000000
 CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x10000000, 0x20000000, 0x40000000
-MS_BIND, MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE, MS_RDONLY = 0x1000, 2, 4, 0x4000, 1 << 18, 1
+MS_NOSUID, MS_NODEV = 2, 4
 MNT_DETACH, PIVOT_ROOT, PR_SET_PDEATHSIG, PR_SET_DUMPABLE = 2, 155, 1, 4
 SIOCSIFFLAGS, IFF_UP, IFF_RUNNING = 0x8914, 0x1, 0x40
 DEVICES = ("null", "zero", "full", "random", "urandom", "tty")
@@ -117,24 +119,17 @@ def _raise_loopback() -> None:
         fcntl.ioctl(any_socket, SIOCSIFFLAGS, words)
 
 
-def _mount(source: Path | str, target: Path, kind: str, flags: int = 0, data: str = "") -> None:
-    words = (str(source).encode(), str(target).encode(), kind.encode(), ctypes.c_ulong(flags))
-    if _libc().mount(*words, data.encode()):
-        error = ctypes.get_errno()
-        raise OSError(error, f"mount of {target}: {os.strerror(error)}")
-
-
 def _enter(folder: Path, needed: Sequence[Path]) -> int:
     """Have files of our own from here on.
 
     Returns:
         a folder with a folder NAME/upper for each folder of /: what is written there.
     """
-    _mount("none", Path("/"), "", MS_REC | MS_PRIVATE)
-    _mount("tmpfs", folder, "tmpfs", 0, f"size={ROOM}")
+    as_user.mount("none", Path("/"), "", MS_REC | MS_PRIVATE)
+    as_user.mount("tmpfs", folder, "tmpfs", 0, f"size={ROOM}")
     root, layers = folder / "root", folder / "layers"
     root.mkdir()
-    _mount("tmpfs", root, "tmpfs", MS_NODEV, "mode=755,size=16m")
+    as_user.mount("tmpfs", root, "tmpfs", MS_NODEV, "mode=755,size=16m")
     for entry in Path("/").iterdir():
         if entry.is_symlink():
             (root / entry.name).symlink_to(entry.readlink())
@@ -155,8 +150,8 @@ def _enter(folder: Path, needed: Sequence[Path]) -> int:
         if not (layers / _layer(place)).exists():
             target.mkdir(parents=True, exist_ok=True)
             _overlay(place, target, layers / _layer(place))
-    _mount("proc", root / "proc", "proc")
-    _mount("/sys", root / "sys", "", MS_BIND | MS_REC)
+    as_user.mount("proc", root / "proc", "proc")
+    as_user.mount("/sys", root / "sys", "", MS_BIND | MS_REC)
     _make_devices(root / "dev")
     layer = os.open(layers, os.O_RDONLY | os.O_DIRECTORY)
     os.chdir(root)
@@ -195,21 +190,21 @@ def _overlay(lower: Path, target: Path, layer: Path) -> None:
     options = f"lowerdir={lower},upperdir={layer}/upper,workdir={layer}/work"
     if os.getuid():
         options += ",userxattr"
-    _mount("overlay", target, "overlay", 0, options)
+    as_user.mount("overlay", target, "overlay", 0, options)
 
 
 def _make_devices(dev: Path) -> None:
-    _mount("tmpfs", dev, "tmpfs", MS_NOSUID, "mode=755,size=64k")
+    as_user.mount("tmpfs", dev, "tmpfs", MS_NOSUID, "mode=755,size=64k")
     for name in DEVICES:
         (dev / name).touch()
-        _mount(Path("/dev", name), dev / name, "", MS_BIND)
+        as_user.mount(Path("/dev", name), dev / name, "", MS_BIND)
     for name, kind, options in (
         ("shm", "tmpfs", f"mode=1777,size={SHARED}"),
         ("pts", "devpts", "newinstance,mode=620,ptmxmode=666"),
         ("mqueue", "mqueue", ""),
     ):
         (dev / name).mkdir()
-        _mount(kind, dev / name, kind, MS_NOSUID, options)
+        as_user.mount(kind, dev / name, kind, MS_NOSUID, options)
     (dev / "ptmx").symlink_to("pts/ptmx")
     (dev / "fd").symlink_to("/proc/self/fd")
     for number, name in enumerate(("stdin", "stdout", "stderr")):

@@ -13,11 +13,13 @@ import struct
 from dataclasses import dataclass
 from typing import Any
 
+from tests import refusing
+
 #: The ordinary user of the container; has a line in its /etc/passwd.
 USER = 60001
 NAMES = {USER: "teacher"}
 
-PR_SET_SECCOMP, PR_CAPBSET_DROP, SECCOMP_MODE_FILTER = 22, 24, 2
+PR_CAPBSET_DROP = 24
 #: What docker leaves to root in a container (its default profile).
 DOCKERS_CAPABILITIES = (0, 1, 3, 4, 5, 6, 7, 8, 10, 13, 18, 27, 29, 31)
 CAPABILITY_VERSION = 0x20080522
@@ -35,6 +37,13 @@ REFUSED_BY_DOCKER = (
 )
 CLONE, CLONE3 = 56, 435
 LANDLOCK = (444, 445, 446)
+#: Looks at the first argument of clone: these flags are refused.
+NO_NAMESPACES = (
+    (refusing.JUMP_EQ, 0, 3, CLONE),
+    (refusing.LOAD, 0, 0, 16),
+    (refusing.JUMP_SET, 0, 1, CLONE_NEW_ANY),
+    (refusing.RETURN, 0, 0, refusing.ERRNO | EPERM),
+)
 
 
 @dataclass(frozen=True)
@@ -86,7 +95,8 @@ def become(level: Level) -> None:
         OSError: it has no right to, or the system lacks something.
     """
     if level.is_confined:
-        _install_filter(level)
+        errors = dict.fromkeys(level.refused, EPERM) | dict.fromkeys(level.lacking, ENOSYS)
+        refusing.answer(errors | {CLONE3: ENOSYS}, *NO_NAMESPACES)
     if level.is_confined and level.is_root:
         for capability in range(64):
             if capability not in DOCKERS_CAPABILITIES:
@@ -111,31 +121,3 @@ def _keep_capabilities(kept: tuple[int, ...]) -> None:
     data = ctypes.create_string_buffer(struct.pack("6I", low, low, 0, high, high, 0))
     if _libc().syscall(CAPSET, header, data):
         raise OSError(ctypes.get_errno(), "capset")
-
-
-def _install_filter(level: Level) -> None:
-    """A program for the kernel (classic BPF) that looks at the number of each system call."""
-
-    def load(offset: int) -> bytes:
-        return struct.pack("HBBI", 0x20, 0, 0, offset)
-
-    def unless(code: int, value: int) -> bytes:
-        return struct.pack("HBBI", code, 0, 1, value)
-
-    def answer(what: int) -> bytes:
-        return struct.pack("HBBI", 0x06, 0, 0, what)
-
-    is_equal, has_bits, fails, passes = 0x15, 0x45, 0x00050000, 0x7FFF0000
-    program = load(0)
-    errors = {**dict.fromkeys(level.refused, EPERM), **dict.fromkeys(level.lacking, ENOSYS)}
-    for number, error in {**errors, CLONE3: ENOSYS}.items():
-        program += unless(is_equal, number) + answer(fails | error)
-    program += struct.pack("HBBI", is_equal, 0, 3, CLONE) + load(16)
-    program += unless(has_bits, CLONE_NEW_ANY) + answer(fails | EPERM)
-    program += answer(passes)
-    code = ctypes.create_string_buffer(program, len(program))
-    words = ctypes.create_string_buffer(
-        struct.pack("HxxxxxxP", len(program) // 8, ctypes.addressof(code))
-    )
-    if _libc().prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, words, 0, 0):
-        raise OSError(ctypes.get_errno(), "no filter")

@@ -269,7 +269,6 @@ class _Trial:
             )
         )
         held.callback(process.kill)
-        assert process.stdout is not None
         self._address = int(process.stdout.readline())
         return process
 
@@ -345,7 +344,7 @@ class _Trial:
             if graded[name] > most:
                 harm.append(f"took too much: {name} {graded[name]}")
         if graded.get("size", 0) > MOST_RESULTS:
-            harm.append(f"results of {graded['size']} bytes: {graded['largest']}")
+            harm.append(f"results of {graded['size']} bytes")
         harm += self._heard()
         harm += self._changed(before)
         if text := self._runner.terminal.written():
@@ -365,7 +364,6 @@ class _Trial:
     def _asked_bystander(self) -> Iterator[str]:
         """Whether it still answers: what was sent to it may reach it after the grading's end."""
         process = self._bystander
-        assert process.stdin is not None and process.stdout is not None
         with suppress(BrokenPipeError):
             os.write(process.stdin.fileno(), b"?\n")
         while not select.select((process.stdout,), (), (), LOOK_S)[0]:
@@ -414,14 +412,12 @@ class _Trial:
     def _is_ours(self, path: str, after: dict[str, Any]) -> bool:
         """Whether a grading may leave this: results, and empty files for locks."""
         class_ = self._place.class_
-        if path.startswith((f"{class_}/graded/attacker", f"{class_}/graded/honest")):
+        ours = [f"{class_}/graded/attacker", f"{class_}/graded/honest"]
+        ours.append("/dev/shm/lttng-ust-wait-")  # of every process with rclpy in it
+        if self._attack.out:
+            ours.append(f"{class_}/attacker/{self._attack.out}")
+        if path.startswith(tuple(ours)) or path in (f"{class_}/honest.py", f"{class_}/honest.yaml"):
             return True
-        if path in (f"{class_}/honest.py", f"{class_}/honest.yaml"):
-            return True
-        if self._attack.out and path.startswith(f"{class_}/attacker/{self._attack.out}"):
-            return True
-        if path.startswith("/dev/shm/lttng-ust-wait-"):
-            return True  # of every process with rclpy in it
         parts = Path(path).parts
         if parts[:2] == ("/", "tmp") and len(parts) > 2 and parts[2].startswith("turtlesim-grader"):
             kind = after.get(path, (stat.S_IFREG,))[0]
@@ -470,12 +466,7 @@ def _result(out: Path) -> dict[str, Any]:
             "passed": [each["check"] for each in result["verdicts"] if each["status"] == "passed"],
             "outcome": run["outcome"],
             "isolation": run["isolation"],
-            "flags": run["flags"],
-            "rationale": [each["rationale"] for each in result["verdicts"]][:1],
             "size": sum(each.stat().st_size for each in out.rglob("*") if each.is_file()),
-            "largest": max(
-                (each.stat().st_size, each.name) for each in out.rglob("*") if each.is_file()
-            ),
         }
     except (ValueError, KeyError) as error:
         return {**nothing, "outcome": f"no result: {error!r}"}

@@ -123,7 +123,6 @@ def run_until_started():
             [program], env=env, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         )
         said = ""
-        assert process.stderr is not None
         try:
             for line in process.stderr:
                 said += line

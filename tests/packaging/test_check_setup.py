@@ -49,11 +49,7 @@ def test_the_python_that_is_asked_for_goes_first(system):
 
 #: What the commands are, the variables that are set, and what is complained of.
 COMPLAINTS = [
-    (
-        {"python3": without("ensurepip")},
-        {},
-        f"apt install python3.{sys.version_info.minor}-venv",
-    ),
+    ({"python3": without("ensurepip")}, {}, f"apt install python3.{sys.version_info.minor}-venv"),
     ({"python3": "echo 3.10"}, {}, "no Python 3.11, 3.12 or 3.13 found (python3 is 3.10"),
     ({"python3": "echo 3.14"}, {}, "python3 is 3.14"),
     ({"python3": "echo"}, {}, "python3 is missing"),
@@ -66,8 +62,10 @@ COMPLAINTS = [
         {"python3.12": "echo 'pyenv: python3.12: command not found' >&2; exit 127"},
         *({"PYTHON": "python3.12"}, "PYTHON=python3.12 does not start"),
     ),
-    ({"uname": '[ "$1" = -s ] && echo Darwin || echo arm64'}, {}, "this is Darwin arm64"),
-    ({"uname": '[ "$1" = -s ] && echo Darwin || echo arm64'}, {}, "install ROS 2 Jazzy"),
+    (
+        *({"uname": '[ "$1" = -s ] && echo Darwin || echo arm64'}, {}),
+        "this is Darwin arm64, but ROS 2 is on PyPI for Linux x86_64 only: install ROS 2 Jazzy",
+    ),
     ({"python3": without("rclpy")}, {"ROS_DISTRO": "jazzy"}, "cannot import its rclpy"),
     *(
         ({}, {"ROS_DISTRO": name}, f"ROS 2 {name} is sourced, needed is Jazzy, Kilted or Lyrical")

@@ -78,3 +78,20 @@ def ends():
 @pytest.fixture
 def theirs(ends):
     return ends[1]
+
+
+class WallClock:
+    """Time that passes in sleeps alone."""
+
+    now_s = 0.0
+
+    def monotonic(self) -> float:
+        return self.now_s
+
+    def sleep(self, seconds: float) -> None:
+        self.now_s += seconds
+
+
+@pytest.fixture
+def wall_clock():
+    return WallClock()

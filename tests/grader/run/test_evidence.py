@@ -7,7 +7,6 @@ import signal
 from contextlib import closing
 from dataclasses import replace
 from itertools import count
-from typing import Any
 
 import pytest
 
@@ -66,27 +65,21 @@ def test_what_stands_in_the_account_is_told(submission):
     assert (observations.spun_s, observations.returned_s) == (0.5, 1.0)
 
 
-def test_from_which_lines_was_sent_what_is_told_in_order(submission):
+def test_from_which_lines_was_sent_what_is_told_in_order_if_it_can_have_been_sent_from_there(
+    submission,
+):
     lines = [PLACE, {**PLACE, "line": 1}]
     sent = [{"line": 0, "times": 104}, {"line": 1, "times": 1}]
-    observations = told(submission, say(ends=[{**END, "lines": lines, "sent": sent}]))
-    (end,) = observations.ends
+    (end,) = told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])).ends
     assert [place.line for place in end.lines] == [2, 1]
     assert [(burst.line, burst.times) for burst in end.sent] == [(0, 104), (1, 1)]
-
-
-def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(submission):
-    wrong: list[tuple[object, object]] = [
-        ([PLACE], [{"line": 1, "times": 1}]),
-        ([PLACE], [{"line": 0, "times": -1}]),
-        ([PLACE], [{"line": 0, "times": 1.5}]),
-        ([PLACE], [{"line": True, "times": 1}]),
-        ([PLACE], [{"line": 0, "times": 1}] * 201),
+    for lines, sent in (
+        *(([PLACE], [{"line": line, "times": 1}]) for line in (1, True)),
+        *(([PLACE], [{"line": 0, "times": times}]) for times in (-1, 1.5)),
+        *(([PLACE], wrong) for wrong in (7, [{"line": 0, "times": 1}] * 201)),
         ([{**PLACE, "file": "../b.py"}], []),
         (PLACE, []),
-        ([PLACE], 7),
-    ]
-    for lines, sent in wrong:
+    ):
         assert told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])) == Observations()
 
 
@@ -169,11 +162,10 @@ def page():
     os.close(made)
 
 
-def kept(page: int, told: dict[str, object]) -> dict[str, Any]:
+def kept(page, told):
     """What of an account comes through the page, as a process writes it."""
     account.ProcessAccount(page, lambda: json.loads(json.dumps(told))).write()
-    found: dict[str, Any] = json.loads(account.read(page)[0])
-    return found
+    return json.loads(account.read(page)[0])
 
 
 def test_what_there_is_no_room_for_is_left_out_in_an_order(page):

@@ -18,8 +18,7 @@ REASONS = get_args(Reason)
 EXPECTED = {
     **{(reason, None): "time_limit" for reason in REASONS},
     **{(reason, 0): "exited" for reason in REASONS},
-    ("rest", None): "finished",
-    ("rest", 0): "finished",
+    **{(reason, code): "finished" for reason in ("rest", "seen") for code in (None, 0)},
     **{(reason, code): "crashed" for reason in REASONS for code in (1, 255)},
     **{(reason, code): "killed" for reason in REASONS for code in (-9, -11)},
 }

@@ -25,8 +25,6 @@ LIMITS = Limits(first_motion_s=3, rest_s=2, total_s=5)
 PATIENCE = Patience(run_cpu_s=20, simulator_cpu_s=20, asleep_s=1.0)
 #: For a turtle that moves, and for pens that are not set too often.
 MOST_POINTS = 20
-
-
 #: More than these see to.
 LONG = Limits(first_motion_s=30, rest_s=2, total_s=30)
 BUSY = replace(PATIENCE, simulator_cpu_s=0.2)

@@ -115,7 +115,6 @@ def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path):
 
 def test_an_answer_about_other_folders_is_none(tmp_path, monkeypatch):
     with open_submission(lay(tmp_path, package("spiral"))) as found:
-        assert found.copy is not None
         whole = Submission("a", found.copy.folder, Whole(), "", copy=found.copy)
         asked = (whole, ["."], "turtle_controller", CpuBudget(), None)
         said, _ = inspecting.inspect(*asked)

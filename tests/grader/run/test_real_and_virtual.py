@@ -9,7 +9,6 @@ from grader.run.handover import Plan
 from grader.scenes.scene import Limits
 from tests import runs
 from tests.runs import CHALLENGE
-from tests.tiers import others_are_more
 
 ALONE = replace(CHALLENGE, varied=replace(CHALLENGE.varied, count=0))
 #: Those that do not hang on when discovery ends or on how threads race.
@@ -33,12 +32,9 @@ def test_real_and_virtual_time_give_the_same_verdicts(name):
     assert verdicts(real) == verdicts(runs.graded(name, ALONE))
 
 
-@pytest.mark.parametrize(
-    "time", others_are_more("as in virtual time", ("virtual", "real"), "virtual")
-)
-def test_the_reference_is_not_there_to_be_imported(time):
+def test_the_reference_is_not_there_to_be_imported():
     path = runs.written("import turtlesim_challenge.turtle_controller\n", "without_a_package.py")
     plan = Plan(Limits(first_motion_s=3, rest_s=1, total_s=3))
-    recording = runs.recorded(path, plan, time=time)
+    recording = runs.recorded(path, plan)
     assert recording.run.outcome == "crashed"
     assert "ModuleNotFoundError: No module named 'turtlesim_challenge'" in recording.output

@@ -60,7 +60,7 @@ def test_a_lock_is_handed_over_in_the_order_of_asking(scheduler):
             got.append(name)
 
     for name in "abc":
-        scheduler.spawn(lambda name=name: wanting(name))  # type: ignore[misc]
+        scheduler.spawn(lambda name=name: wanting(name))
     scheduler.sleep(1_000_000)
     assert got == []
     lock.release()

@@ -66,7 +66,7 @@ def test_what_constructors_get_beyond_the_known_is_no_breach(monkeypatch):
     kind = documented(more + " -> None")
     for name in ("take_message", "get_publisher_count", "get_topic_name", "pointer"):
         setattr(kind, name, getattr(_rclpy.Subscription, name))
-    kind.destroy_when_not_in_use = _rclpy.Subscription.destroy_when_not_in_use  # type: ignore[attr-defined]
+    kind.destroy_when_not_in_use = _rclpy.Subscription.destroy_when_not_in_use
     monkeypatch.setattr(_rclpy, "Subscription", kind)
     assert contract.broken(*GROUPS) == NOTHING
 

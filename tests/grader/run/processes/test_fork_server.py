@@ -12,7 +12,6 @@ from typing import Any
 
 import psutil
 import pytest
-import yaml
 
 from grader.errors import GraderFailure
 from grader.run.fork_servers import shadows
@@ -26,24 +25,10 @@ from grader.run.processes.started_process import (
     await_ends,
 )
 from tests.files import lay
+from tests.grader.run.processes.conftest import COMMAND, ENV, ROOT, TEXTS, UNPRIVILEGED
 
-TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
-
-ROOT = Path(__file__).parents[4]
-COMMAND = [sys.executable, "-c", TEXTS["serves"].format(root=str(ROOT))]
-#: The seed is that of a set that becomes a library path, where ROS's wheels start.
-ENV = {"PATH": os.environ["PATH"], "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "0"}
-#: Stands before a command that is not to make namespaces; only root has something to give up.
-UNPRIVILEGED = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
 #: One that dies over its first order.
 DIES = "import socket, sys; s = socket.socket(fileno=int(sys.argv[2])); s.send(b'[]'); s.recv(9)"
-
-
-@pytest.fixture(scope="module")
-def server():
-    made = ForkServer(COMMAND, ENV)
-    yield made
-    made.close()
 
 
 @pytest.fixture
@@ -52,11 +37,6 @@ def fresh():
     made = ForkServer(COMMAND, ENV)
     yield made
     made.close()
-
-
-@pytest.fixture(params=["started", "forked"])
-def warm(request, server):
-    return server if request.param == "forked" else None
 
 
 def python(code: str, warm: ForkServer | None, **more: Any) -> SubmissionProcess:

@@ -15,12 +15,11 @@ from grader.cli import run
 from grader.errors import GraderFailure, NotNow, UsageError
 from grader.run import run_context
 from grader.run.processes import levels, network, refusal
-from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
 from grader.run.sandbox import view
 from tests.children import in_child
-from tests.grader.run.processes.test_fork_server import COMMAND, ENV
+from tests.grader.run.processes.conftest import ENV
 from tests.programs import ran
 from tests.tiers import others_are_more
 
@@ -66,15 +65,10 @@ def test_less_than_is_required_is_refused_with_what_is_missing_and_how_to_get_it
 
 
 @pytest.mark.usefixtures("weak")
-def test_what_is_there_is_enough():
-    levels.require("landlock")
-    levels.require("limits")
+def test_what_is_there_is_enough_and_no_run_is_made_below_what_was_required(monkeypatch):
     with pytest.raises(UsageError):
         levels.require("namespaces")
-
-
-@pytest.mark.usefixtures("weak")
-def test_no_run_is_made_below_what_was_required(monkeypatch):
+    levels.require("limits")
     levels.require("landlock")
     there_is(levels.Level("limits"), monkeypatch)
     with (
@@ -142,17 +136,9 @@ REFUSED = [
     ("refused", "level", "why"), others_are_more("test_refusal tells them apart", REFUSED, "mount")
 )
 def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(refused, level, why):
-    words = [
-        sys.executable,
-        str(TESTS / "refusing.py"),
-        refused,
-        sys.executable,
-        "-c",
-        TEXTS["tells"],
-    ]
-    done = ran(
-        [*words, "", "limits", "namespaces"], env={**os.environ, "PYTHONPATH": str(TESTS.parent)}
-    )
+    words = [sys.executable, TESTS / "refusing.py", refused, sys.executable, "-c", TEXTS["tells"]]
+    env = {**os.environ, "PYTHONPATH": str(TESTS.parent)}
+    done = ran([*words, "", "limits", "namespaces"], env=env)
     best, lower, same = json.loads(done.stdout)
     assert best == [level, why], done.stderr
     assert lower == ["limits", ""]
@@ -160,25 +146,11 @@ def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(refused
     assert same == (best if level == "NotNow" else ["NotOffered", f"{at}{why}"])
 
 
-@pytest.fixture(params=["started", "forked"])
-def warm(request):
-    if request.param == "started":
-        yield None
-        return
-    server = ForkServer(COMMAND, ENV)
-    yield server
-    server.close()
-
-
 @pytest.mark.applies(os.geteuid() == 0, reason="others have no mounts of their own here")
 def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm):
     order = {
-        "level": "namespaces",
-        "uid": 61184,
-        "user": "separate",
-        "rlimits": [],
-        "is_apart": True,
-        "steps": [["folder", "/proc"], ["bind", "/there/is/none"]],
+        **{"level": "namespaces", "uid": 61184, "user": "separate", "rlimits": []},
+        **{"is_apart": True, "steps": [["folder", "/proc"], ["bind", "/there/is/none"]]},
     }
     words = [sys.executable, "-c", "print('it runs')"]
     command = ProcessCommand(words, ENV, Path("/"), confinement=order)

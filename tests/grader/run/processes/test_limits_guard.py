@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from grader import linux
-from grader.run.limits import MIB, RunLimits
+from grader.run.limits import LIMITS, MIB, RunLimits
 from grader.run.processes.limits_guard import Family, LimitsGuard
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
@@ -29,7 +29,6 @@ def family() -> Iterator[int]:
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
     ) as child:
-        assert child.stdout is not None
         assert child.stdout.readline() == b"ready\n"
         yield child.pid
 
@@ -92,21 +91,12 @@ def test_too_much_ends_them(limits, said):
     assert said in str(guard.remark)
 
 
-def test_the_last_look_finds_what_came_after_the_one_before(monkeypatch):
+@pytest.mark.parametrize(("bytes_", "is_much"), [(50 * MIB, True), (LIMITS.family_bytes, False)])
+def test_the_last_look_finds_what_came_after_the_one_before(monkeypatch, bytes_, is_much):
     monkeypatch.setattr("grader.run.processes.limits_guard.EVERY_S", DEADLINE_S)
     ended = threading.Event()
     with family():
-        guard = LimitsGuard(RunLimits(family_bytes=50 * MIB))
+        guard = LimitsGuard(RunLimits(family_bytes=bytes_))
         guard.add(os.getpid(), ended.set)
-        assert guard.measure_last()
-    assert ended.is_set()
-    assert "used more than 50 MiB of memory" in str(guard.remark)
-
-
-def test_the_last_look_lets_be_who_takes_little():
-    ended = threading.Event()
-    with family():
-        guard = LimitsGuard()
-        guard.add(os.getpid(), ended.set)
-        assert not guard.measure_last()
-    assert not ended.is_set()
+        assert guard.measure_last() is ended.is_set() is is_much
+    assert ("used more than 50 MiB of memory" in str(guard.remark)) is is_much

@@ -17,13 +17,10 @@ from grader import linux, scratch
 from grader.run.processes import supervisor
 from grader.run.processes.started_process import await_ends
 from tests.children import in_child
+from tests.grader.run.processes.conftest import ROOT, UNPRIVILEGED
 from tests.programs import ran
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
-
-ROOT = Path(__file__).parents[4]
-#: Stands before a command that is not to make namespaces.
-UNPRIVILEGED = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
 
 
 def sleeper(seconds: int) -> list[psutil.Process]:
@@ -66,7 +63,6 @@ def graded(
         text=True,
         cwd=ROOT,
     )
-    assert grader.stdout is not None
     pid, folder = grader.stdout.readline().split()
     for _ in range(2000):
         if sleeper(seconds):

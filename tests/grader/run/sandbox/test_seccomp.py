@@ -76,7 +76,6 @@ def answer(
     machine: str, number: int | None, *arguments: int, apart: bool = True, arch: int = 0
 ) -> int:
     """The error that a call ends with; 0 where it is allowed."""
-    assert number is not None
     words = {seccomp.NUMBER_AT: number, seccomp.ARCH_AT: arch or seccomp.MACHINES[machine][1]}
     for place, argument in enumerate(arguments):
         words[seccomp.ARGUMENTS_AT + 8 * place] = argument & LOW
@@ -219,15 +218,10 @@ def test_a_pair_of_sockets_leads_nowhere_else(machine, apart):
     assert ask(AF_VSOCK, STREAM) == EAFNOSUPPORT
 
 
-def _as_nobody() -> None:
-    """Without rights: what a call does that the filter has missed is then not the machine's."""
-    if os.getuid() == 0:
+def _call_each(numbers: dict[str, int]) -> dict[str, int]:
+    if os.getuid() == 0:  # what a call does that the filter has missed is then not the machine's
         os.setresgid(*[NOBODYS_UID] * 3)
         os.setresuid(*[NOBODYS_UID] * 3)
-
-
-def _call_each(numbers: dict[str, int]) -> dict[str, int]:
-    _as_nobody()
     seccomp.install()
     libc = ctypes.CDLL(None, use_errno=True)
     found = {}

@@ -19,32 +19,16 @@ def ends():
         yield ours, theirs.detach()
 
 
-class WallClock:
-    """Time that passes in sleeps alone."""
-
-    def __init__(self) -> None:
-        self.now_s = 100.0
-
-    def monotonic(self) -> float:
-        return self.now_s
-
-    def sleep(self, seconds: float) -> None:
-        self.now_s += seconds
-
-
 @pytest.fixture
-def clock(monkeypatch):
-    made = WallClock()
-    monkeypatch.setattr(process.time, "monotonic", made.monotonic)
-    monkeypatch.setattr(process.time, "sleep", made.sleep)
-    return made
+def clock(monkeypatch, wall_clock):
+    wall_clock.now_s = 100.0
+    monkeypatch.setattr(process.time, "monotonic", wall_clock.monotonic)
+    monkeypatch.setattr(process.time, "sleep", wall_clock.sleep)
+    return wall_clock
 
 
-def all_of(ours: socket.socket) -> list[object]:
-    text = b""
-    while chunk := ours.recv(1 << 20):
-        text += chunk
-    return [json.loads(line) for line in text.splitlines()]
+def all_of(ours: socket.socket) -> bytes:
+    return b"".join(iter(lambda: ours.recv(1 << 20), b""))
 
 
 @pytest.mark.parametrize(("speed", "lasts_s"), [(1.0, 16.0), (5.0, 3.2), (None, 0.0)])
@@ -81,7 +65,8 @@ def test_all_that_is_told_arrives_in_order_however_much_it_is(ends):
 
     thread = threading.Thread(target=write)
     thread.start()
-    assert all_of(ours) == [*news, process.END]
+    told = [json.loads(line) for line in all_of(ours).splitlines()]
+    assert told == [*news, process.END]
     thread.join()
 
 
@@ -93,10 +78,8 @@ def test_one_who_takes_nothing_is_waited_for_a_little_and_then_told_no_more(ends
     for tick in range(200):
         feed.write({"tick": tick, "drawn": ["x" * 10_000]})
     feed.close()
-    told = b""
-    while chunk := ours.recv(1 << 20):
-        told += chunk
-    assert not told.endswith(json.dumps(process.END, separators=(",", ":")).encode() + b"\n")
+    end = json.dumps(process.END, separators=(",", ":")).encode()
+    assert not all_of(ours).endswith(end + b"\n")
 
 
 def test_one_who_has_left_is_no_error(ends):

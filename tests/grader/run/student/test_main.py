@@ -28,20 +28,12 @@ class Node:
 
 
 @pytest.fixture
-def clock(monkeypatch):
-    """A clock that only sleeping moves."""
-    clock = types.SimpleNamespace(now_s=0.0)
-    clock.monotonic = lambda: clock.now_s
-
-    def sleep(seconds: float) -> None:
-        clock.now_s += seconds
-
-    clock.sleep = sleep
-    monkeypatch.setattr(main, "time", clock)
-    return clock
+def clock(monkeypatch, wall_clock):
+    monkeypatch.setattr(main, "time", wall_clock)
+    return wall_clock
 
 
-def patched(clock: types.SimpleNamespace, connected_s: float) -> type:
+def patched(clock, connected_s: float) -> type:
     """A node class whose publishers are connected at a time [s]."""
 
     class Node:
