@@ -17,8 +17,6 @@ RULES = {
     },
     "resultTypes": ["violations"],  # half the work: nobody reads what has passed
 }
-
-
 #: Screens [px]: small and smaller phones, one of 1280 at 200 %, one of 1280.
 WIDTHS = (320, 375, 640, 1280)
 

@@ -15,8 +15,6 @@ from typing import IO, Any, Self
 ROOT = Path(__file__).resolve().parents[1]
 #: Only a failing test waits so long [s].
 DEADLINE_S = 90.0
-
-
 #: Those that run now, in the order of their starts.
 _running: list[Program] = []
 

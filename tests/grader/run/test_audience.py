@@ -48,13 +48,11 @@ class Onlooker:
         return picture.render(whole.canvas, tuple(whole.content["background"]), turtles)
 
 
+SEEN = [("services/all_services", None), ("quick_spiral", 8.0)]
+
+
 @pytest.mark.parametrize(
-    ("name", "speed"),
-    others_are_more(
-        "it takes its time",
-        [("services/all_services", None), ("quick_spiral", 8.0)],
-        "services/all_services",
-    ),
+    ("name", "speed"), others_are_more("it takes its time", SEEN, "services/all_services")
 )
 def test_a_run_that_is_seen_is_the_same_run_and_is_seen_to_its_last_pixel(recorded, name, speed):
     unseen = recorded(name)

@@ -106,10 +106,7 @@ def test_a_forked_submission_finds_all_that_a_started_one_does(
     assert forked.run.isolation == started.run.isolation
 
 
-OWN = (
-    *("numpy.py", "std_msgs/__init__.py", "geometry_msgs.py", "lark.py", "zlib.py"),
-    "lib/std_srvs.py",
-)
+OWN = ("numpy.py", "std_msgs/__init__.py", "geometry_msgs.py", "zlib.py", "lib/std_srvs.py")
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ from grader.run.clock import executor
 from tests.tiers import others_are_more
 
 OUTPUTS = Path(__file__).parent / "messages"
-
 RUNS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 STALLED = msg("the node used {seconds} s of processor time without waiting for ROS", seconds="0")
@@ -29,8 +28,6 @@ FLAGS = {
     "raw_messages": (UNREADABLE,),
     "follows_clock": (ITS_OWN_CLOCK,),
 }
-
-
 #: Services, actions, QoS, a graph that changes, threads, bytes, what dies and what hangs.
 KEPT = (
     *("asks_the_dead", "endpoints_come_and_go", "own_action", "own_qos", "own_services"),

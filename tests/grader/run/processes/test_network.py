@@ -22,8 +22,6 @@ from tests.tiers import others_are_more, that_apply
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 
 PIPES = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-
-
 DOMAIN = "ROS domain"
 
 

@@ -66,8 +66,7 @@ def run():
         for name in ("submission", "neighbour", "home", "scratch"):
             (outer / name).mkdir()
             (outer / name / "file.txt").write_text("x")
-        for name in ("scratch", "neighbour", "home"):
-            (outer / name).chmod(0o777)
+            (outer / name).chmod(0o755 if name == "submission" else 0o777)
         (outer / "submission" / "tries.py").write_text(TEXTS["tries"])
         (outer / "submission" / "looks.py").write_text(TEXTS["looks"])
         listener = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
