@@ -100,11 +100,7 @@ def test_a_sourced_ros_is_kept(monkeypatch, tmp_path):
 
 
 MISLEADING = (
-    "turtlesim.py",
-    "numpy.py",
-    "json.py",
-    "grader/run/simulator.py",
-    "grader/__init__.py",
+    *("turtlesim.py", "numpy.py", "json.py", "grader/run/simulator.py", "grader/__init__.py"),
 )
 
 
