@@ -2,7 +2,6 @@
 
 import math
 import re
-from typing import Any
 
 import pytest
 
@@ -15,12 +14,11 @@ NAMES = {
 }
 
 
-def value(text: str) -> Any:
+def value(text):
     return filled(f"={text}", NAMES)
 
 
-def why(template: Any, names: Any = NAMES) -> str:
-    """Why a template cannot be filled in."""
+def why(template, names=NAMES):
     with pytest.raises(ExpressionError) as caught:
         filled(template, names)
     return str(caught.value)
@@ -138,9 +136,6 @@ def test_a_name_that_begins_with_a_line_is_no_way_out():
     assert "there is no value __import__" in why("=__import__")
 
 
-# Texts with holes -----------------------------------------------------------------------------
-
-
 def test_a_text_is_filled_with_values_in_forms():
     assert (
         filled("Hello {text}: {n}, {pose.x:.2f} {n:03d} {n:x}", NAMES) == "Hello abc: 3, 1.00 003 3"
@@ -191,9 +186,9 @@ def test_what_needs_no_value_is_computed_when_it_is_read():
 
 
 def test_a_template_within_itself_or_with_very_many_values_is_refused():
-    endless: list[Any] = []
+    endless = []
     endless.append(endless)
-    many: Any = "x"
+    many = "x"
     for _ in range(40):
         many = [many, many]
     for template in (endless, {"a": many}):

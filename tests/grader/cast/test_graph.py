@@ -4,7 +4,6 @@ from itertools import pairwise
 import pytest
 
 from grader import grading
-from grader.cast.trace import CastTrace
 
 ASKS = """
 import rclpy
@@ -39,7 +38,6 @@ def test_a_message_has_its_own_time_within_a_tick(tmp_path, period_ms):
     file = tmp_path / "sends.py"
     file.write_text(SENDS.format(period=period_ms / 1000))
     trace = grading.record(file, "talker").nominal.trace
-    assert isinstance(trace, CastTrace)
     times_ns = [each.time_ns for each in trace.sent("/topic")]
     assert len(times_ns) > 100
     assert {b - a for a, b in pairwise(times_ns)} == {period_ms * 1_000_000}

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from grader.exercise.loading import load_exercise
-from grader.result.result import Result
 from tests import runs
 from tests.tiers import others_are_more
 
@@ -27,11 +26,11 @@ EARNED = {
 FULL = "of what was exchanged, the first"
 
 
-def graded(name: str) -> Result:
+def graded(name):
     return runs.graded(f"hostile_casts/{name}", EVERYTHING)
 
 
-def said(result: Result, check: str) -> str:
+def said(result, check):
     return next(str(each.rationale) for each in result.verdicts if each.check == check)
 
 

@@ -26,7 +26,7 @@ points: {{it: 1}}
 MISTAKES = yaml.safe_load(Path(__file__).with_name("mistakes.yaml").read_text(encoding="utf-8"))
 
 
-def parsed(cast: str) -> dict[str, script.Peer]:
+def parsed(cast):
     return script.parse(yaml.safe_load(cast))
 
 

@@ -3,7 +3,6 @@
 import base64
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -77,7 +76,7 @@ def visit(browser):
     """Opens pages; whatever fails in one, or is fetched from elsewhere, fails the test."""
     pages, errors = [], list[str]()
 
-    def visited(address: str, width: int = 1200, **settings: Any) -> Any:
+    def visited(address, width=1200, **settings):
         page = browser.new_page(viewport={"width": width, "height": 900}, **settings)
         page.set_default_timeout(DEADLINE_S * 1000)
         pages.append(page)
@@ -99,19 +98,19 @@ def replay(folder, visit):
     return visit((folder / "replay.html").as_uri())
 
 
-def columns(page: Any) -> list[int]:
+def columns(page):
     """The columns of the lanes in which there is a message from before the cursor [px]."""
     width, pixels = page.evaluate(PIXELS)
     shown = np.frombuffer(base64.b64decode(pixels), np.uint8).reshape(-1, width, 4)
     return np.flatnonzero((shown == (0x2B, 0x45, 0xC4, 255)).all(axis=2).any(axis=0)).tolist()
 
 
-def cells(page: Any, rows: str) -> list[str]:
-    found: list[str] = page.locator(f"{rows} td").all_inner_texts()
+def cells(page, rows):
+    found = page.locator(f"{rows} td").all_inner_texts()
     return found
 
 
-def go(page: Any, time_s: float) -> None:
+def go(page, time_s):
     page.locator("#slider").fill(str(round(time_s / 0.016)))
 
 
@@ -167,9 +166,6 @@ def test_nobody_is_kept_from_using_the_replay(folder, visit, width):
     assert clipped(page) == {}
 
 
-# While a run goes on ------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def live():
     served = TimelinePage.serve(0)
@@ -177,7 +173,7 @@ def live():
     served.close()
 
 
-def news(end_s: float, since_s: float = 0.0) -> dict[str, Any]:
+def news(end_s, since_s=0.0):
     found = timeline.items(HOSTILE_RUN, round(since_s * 1e9))
     items = [each for each in found if each["t"] <= end_s]
     return {"t": end_s, "lanes": timeline.lanes(HOSTILE_RUN), "labels": {}, "items": items}

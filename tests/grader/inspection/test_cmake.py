@@ -10,7 +10,7 @@ from grader.inspection.examining import cmake
 FILES = ("launch/a.py", "urdf/a.urdf", "urdf/more/b.urdf", "rviz/a.rviz", "rviz/b.txt")
 
 
-def read(folder, text: str) -> cmake.Read:
+def read(folder, text):
     for name in FILES:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).touch()

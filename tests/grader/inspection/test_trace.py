@@ -49,7 +49,7 @@ TRACE = PackageTrace(
 )
 
 
-def changed(**parts: object) -> bytes:
+def changed(**parts):
     return json.dumps({**json.loads(encode(TRACE)), **parts}).encode()
 
 
@@ -64,11 +64,9 @@ def test_a_trace_comes_back_as_it_was():
     [
         b"",
         b"[]",
-        b"null",
         b"\xff",
         b"NaN",
         b'"' + b"[" * 100_000,
-        b"[" * 100_000,
         b" " * (MOST_BYTES + 1),
         changed(more=1),
         changed(setup=[]),

@@ -1,11 +1,8 @@
 """Compares made classes with those that rosidl_generator_py has written and a compiler built."""
 
 import array
-import random
 from collections import UserList, UserString
-from collections.abc import Iterator
 from functools import partial
-from typing import Any
 
 import numpy as np
 import rosidl_parser.definition as idl
@@ -27,7 +24,7 @@ WRONG = (
 TEXTS = "abcé z\t雪🐢'\"\\"
 
 
-def parts(kind: Any) -> Iterator[tuple[str, Any]]:
+def parts(kind):
     """Everything that is a class of messages in a class of an interface."""
     if hasattr(kind, "SLOT_TYPES"):
         yield "", kind
@@ -42,11 +39,11 @@ def parts(kind: Any) -> Iterator[tuple[str, Any]]:
                 yield f"{name}.{path}", part
 
 
-def random_message(kind: Any, rng: random.Random) -> Any:
+def random_message(kind, rng):
     return kind(**{name: random_value(kind, slot, rng) for name, slot in members(kind)})
 
 
-def random_value(kind: Any, slot: Any, rng: random.Random) -> Any:
+def random_value(kind, slot, rng):
     if isinstance(slot, idl.AbstractNestedType):
         most = min(4, getattr(slot, "maximum_size", 4))
         count = slot.size if isinstance(slot, idl.Array) else rng.randint(0, most)
@@ -73,10 +70,10 @@ def random_value(kind: Any, slot: Any, rng: random.Random) -> Any:
     return rng.choice([*whole_range(slot.typename), rng.randint(*whole_range(slot.typename))])
 
 
-def remade(message: Any, kind: Any) -> Any:
+def remade(message, kind):
     """The message as one of another class with the same fields."""
 
-    def value(found: Any, slot: Any) -> Any:
+    def value(found, slot):
         inner = value_type(slot)
         if isinstance(inner, idl.NamespacedType):
             own = member_class(kind, inner)
@@ -88,7 +85,7 @@ def remade(message: Any, kind: Any) -> Any:
     return kind(**{name: value(getattr(message, name), slot) for name, slot in members(kind)})
 
 
-def outcome(call: Any) -> Any:
+def outcome(call):
     try:
         return repr(call())
     except Exception as error:
@@ -96,12 +93,12 @@ def outcome(call: Any) -> Any:
         return f"{type(error).__name__}: {error}".partition("\n")[0]
 
 
-def assigned(message: Any, name: str, value: Any) -> Any:
+def assigned(message, name, value):
     setattr(message, name, value)
     return getattr(message, name)
 
 
-def _attributes(kind: Any) -> dict[str, Any]:
+def _attributes(kind):
     """Constants and defaults, of the class and of its instances."""
     names = [name for name in dir(type(kind)) if name.isupper() and not name.startswith("_")]
     return {
@@ -111,9 +108,7 @@ def _attributes(kind: Any) -> dict[str, Any]:
     }
 
 
-def differences(
-    real: Any, made: Any, rng: random.Random, compared: set[Any]
-) -> Iterator[tuple[Any, ...]]:
+def differences(real, made, rng, compared):
     """What differs between two classes of an interface, but for those compared before."""
     of_real, of_made = list(parts(real)), list(parts(made))
     yield from unequal("parts", [path for path, _ in of_real], [path for path, _ in of_made])
@@ -125,12 +120,12 @@ def differences(
             yield (path, *each)
 
 
-def unequal(what: str, one: Any, other: Any) -> Iterator[tuple[Any, ...]]:
+def unequal(what, one, other):
     if one != other:
         yield what, str(one)[:300], str(other)[:300]
 
 
-def _differences(real: Any, made: Any, rng: random.Random) -> Iterator[tuple[Any, ...]]:
+def _differences(real, made, rng):
     for name in ("__name__", "__qualname__", "__module__"):
         yield from unequal(name, getattr(real, name), getattr(made, name))
         yield from unequal(f"meta {name}", getattr(type(real), name), getattr(type(made), name))

@@ -1,7 +1,5 @@
 """Draws definitions at random, with all that the language has."""
 
-import random
-from collections.abc import Callable, Sequence
 from functools import partial
 
 WHOLE = {
@@ -16,12 +14,12 @@ OTHERS = ["geometry_msgs/Point", "builtin_interfaces/Time", "std_msgs/Header", "
 TEXTS = ["", "a", " b ", "it's", "c d", "\\t", "x, y", "é雪"]
 
 
-def whole(rng: random.Random, low: int, high: int) -> str:
+def whole(rng, low, high):
     value = rng.choice([low, high, rng.randint(low, high), min(high, 7)])
     return rng.choice([str(value), hex(value)])
 
 
-def value(rng: random.Random, kind: str) -> str:
+def value(rng, kind):
     if kind in WHOLE:
         return whole(rng, *WHOLE[kind])
     if kind == "bool":
@@ -32,11 +30,11 @@ def value(rng: random.Random, kind: str) -> str:
     return f'"{text}"' if "'" in text or rng.random() < 0.5 else f"'{text}'"
 
 
-def field(rng: random.Random, name: str, own: Sequence[str]) -> str:
+def field(rng, name, own):
     kind = rng.choice([*BASIC, *BASIC, *STRINGS, *OTHERS, *own])
     one = partial(value, rng, kind)
     size = rng.choice([0, 0, 0, 1, 2, 3])
-    form: str = rng.choice(["", "", "[]", "[{n}]", "[<={n}]"]) if size else ""
+    form = rng.choice(["", "", "[]", "[{n}]", "[<={n}]"]) if size else ""
     has_default = kind in BASIC + STRINGS and rng.random() < 0.4
     default = ""
     if has_default and form:
@@ -48,14 +46,14 @@ def field(rng: random.Random, name: str, own: Sequence[str]) -> str:
     return f"{kind}{form.format(n=size)}{rng.choice([' ', '  '])}{name}{default}{comment}"
 
 
-def ascii_only(draw: Callable[[], str]) -> str:
+def ascii_only(draw):
     """A text that the generators take in an array."""
     while not (text := draw()).isascii() or "\\" in text:
         pass
     return text
 
 
-def part(rng: random.Random, own: Sequence[str], which: int) -> str:
+def part(rng, own, which):
     lines = [f"# {rng.random()}"] * rng.randint(0, 2)
     for number in range(rng.choice([0, 1, 2, 3, 5, 8])):
         if rng.random() < 0.2:
@@ -69,9 +67,9 @@ def part(rng: random.Random, own: Sequence[str], which: int) -> str:
     return "\n".join(lines)
 
 
-def package(rng: random.Random, name: str, count: int) -> dict[str, str]:
+def package(rng, name, count):
     """Draw so many definitions, of which later ones have earlier ones as fields."""
-    own: list[str] = []
+    own = []
     texts = {}
     for number in range(count):
         kind = rng.choice(["msg", "msg", "msg", "srv", "action"])

@@ -23,9 +23,9 @@ pytestmark = [
 ]
 
 
-def definitions(shares: list[Path]) -> dict[str, dict[str, str]]:
+def definitions(shares):
     """Package -> type's name -> text."""
-    found: dict[str, dict[str, str]] = {}
+    found = {}
     for share in shares:
         for kind in KINDS:
             for file in sorted(share.glob(f"*/{kind}/*.{kind}")):
@@ -35,7 +35,7 @@ def definitions(shares: list[Path]) -> dict[str, dict[str, str]]:
     return found
 
 
-def compare(texts: dict[str, str], shares: list[Path]) -> None:
+def compare(texts, shares):
     """Compare made and imported classes, and the published hashes."""
     made = Definitions(texts)
     print("skipped:", {name: str(error) for name, error in made.errors.items()})

@@ -2,7 +2,6 @@ import importlib
 import sys
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import pytest
 import yaml
@@ -15,24 +14,21 @@ from grader.rosidl.classes import described, parts
 from grader.rosidl.definitions import DEEPEST, LONGEST, LONGEST_LINE, Definitions, parse
 
 
-def fields(text: str) -> dict[str, str]:
+def fields(text):
     members = parse("mine/msg/Num", text).structure.members
     return {member.name: described(member.type) for member in members}
 
 
-def mistake(text: str, name: str = "mine/msg/Num") -> str:
+def mistake(text, name="mine/msg/Num"):
     with pytest.raises(SubmissionError) as error:
         parse(name, text)
     return str(error.value)
 
 
-def errors(**messages: str) -> dict[str, str]:
+def errors(**messages):
     """What is wrong with the messages of a package `mine`."""
     made = Definitions({f"mine/msg/{name}": text for name, text in messages.items()})
     return {name.removeprefix("mine/msg/"): str(error) for name, error in made.errors.items()}
-
-
-# One file --------------------------------------------------------------------------------------
 
 
 def test_all_that_the_language_has():
@@ -88,14 +84,11 @@ def test_a_file_is_called_as_its_type(name):
     assert list(Definitions({name: ""}).errors) == [name]
 
 
-# All together ----------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def importable(monkeypatch):
     """Makes definitions importable."""
 
-    def importable(texts: dict[str, str]) -> None:
+    def importable(texts):
         monkeypatch.setattr(sys, "meta_path", [*sys.meta_path, Definitions(texts)])
 
     before = set(sys.modules)
@@ -124,7 +117,7 @@ def test_programs_import_them(importable):
     assert deserialise(serialise(request), Add_Request) == request
     with pytest.raises(AssertionError, match="The 'num' field must be of type 'int'"):
         Num(num=1.5)
-    scope: dict[str, Any] = {}
+    scope = {}
     exec("from mine_own.msg import *", scope)
     assert scope["Num"] is Num
 

@@ -1,7 +1,6 @@
 """What DDS is shown of a made class; in a run, see `messages/made_classes`."""
 
 from ctypes import CFUNCTYPE, c_bool, c_void_p, string_at
-from typing import Any
 
 import pytest
 
@@ -11,17 +10,17 @@ from grader.rosidl.definitions import Definitions
 TEXTS = {"mine/msg/Num": "int64 num", "mine/srv/Add": "---\n", "mine/action/Count": "---\n---\n"}
 
 
-def found(address: int, form: Any) -> Any:
+def found(address, form):
     """What Fast DDS finds by a handle."""
     find = handles._Find(form.from_address(address).find)
     return form.from_address(find(address, b"rosidl_typesupport_fastrtps_c"))
 
 
-def names(data: Any) -> tuple[bytes, bytes]:
+def names(data):
     return string_at(data.namespace), string_at(data.name)
 
 
-def support(name: str) -> int:
+def support(name):
     return handles._pointer(handles.capsule(Definitions(TEXTS).type(name)), None)
 
 

@@ -1,7 +1,6 @@
 import importlib
 import sys
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
@@ -43,7 +42,7 @@ def folder(monkeypatch, tmp_path):
     """Makes a folder where Python looks for packages."""
     monkeypatch.syspath_prepend(str(tmp_path / "path"))
 
-    def folder(name: str) -> Path:
+    def folder(name):
         made = tmp_path / "path" / name
         made.mkdir(parents=True)
         importlib.invalidate_caches()
@@ -68,7 +67,7 @@ def test_their_classes_are_imported_with_those_of_other_packages():
 def test_only_what_is_imported_is_parsed(monkeypatch):
     parsed = []
 
-    def texts(package: str) -> dict[str, str]:
+    def texts(package):
         parsed.append(package)
         return DEFINITIONS
 

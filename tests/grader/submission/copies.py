@@ -1,41 +1,38 @@
 """Hand-ins, and what is found in them: in a copy that goes, but told as it was handed in."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from grader.errors import SubmissionError, UsageError
 from grader.run.opening import open_submission
-from grader.submission.start import Script, Submission
+from grader.submission.start import Script
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
 GUARDED = NODE + '\n\nif __name__ == "__main__":\n    main()\n'
 
 
-def below(folder: str, files: Mapping[str, str]) -> dict[str, str]:
+def below(folder, files):
     return {f"{folder}/{name}": text for name, text in files.items()}
 
 
-def found_in(path: Path, executable: str | None = None) -> Submission:
+def found_in(path, executable=None):
     with open_submission(path, executable) as submission:
         return in_place(submission)
 
 
-def refused(path: Path, executable: str | None = None) -> str:
+def refused(path, executable=None):
     with pytest.raises((SubmissionError, UsageError)) as error, open_submission(path, executable):
         pass
     assert "Traceback" not in str(error.value)
     return str(error.value)
 
 
-def in_place(submission: Submission) -> Submission:
+def in_place(submission):
     """The same with the paths that were handed in."""
     copy = submission.copy
-    assert copy is not None
 
-    def back(path: Path) -> Path:
+    def back(path):
         return copy.origin / path.relative_to(copy.folder)
 
     start = submission.start

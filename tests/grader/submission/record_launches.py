@@ -17,7 +17,6 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import yaml
 
@@ -38,7 +37,7 @@ WAITS, ENDS = "#!/bin/sh\nexec sleep 60\n", "#!/bin/sh\n"
 LASTS_S = 4.0
 
 
-def lay_out(prefix: Path) -> None:
+def lay_out(prefix):
     for package, programs in PROGRAMS.items():
         (prefix / MARKS).mkdir(parents=True, exist_ok=True)
         (prefix / MARKS / package).touch()
@@ -55,13 +54,14 @@ def lay_out(prefix: Path) -> None:
     (prefix / "bin" / "ros2").chmod(0o755)
 
 
-def told(words: list[str]) -> list[str]:
+def told(words):
     """The arguments of a program, as the test compares them."""
-    found: list[str] = []
+    found = []
     for word in words:
         if found[-1:] == ["--params-file"] and Path(word).name.startswith("launch_params_"):
             found.pop()
-            for name, value in flat(*yaml.full_load(Path(word).read_text()).values()):
+            (node,) = yaml.full_load(Path(word).read_text()).values()
+            for name, value in flat(node["ros__parameters"]):
                 found += ["-p", f"{name}:={json.dumps(value)}"]
         elif found[-1:] == ["-p"]:
             name, _, value = word.partition(":=")
@@ -71,57 +71,40 @@ def told(words: list[str]) -> list[str]:
     return found[:-1] if found[-1:] == ["--ros-args"] else found
 
 
-def flat(node: dict[str, Any]) -> list[tuple[str, Any]]:
-    def inside(values: dict[str, Any], before: str) -> list[tuple[str, Any]]:
-        found = []
-        for name, value in values.items():
-            its = (
-                inside(value, f"{before}{name}.")
-                if isinstance(value, dict)
-                else [(before + name, value)]
-            )
-            found += its
-        return found
-
-    return inside(node["ros__parameters"], "")
+def flat(values, before=""):
+    for name, value in values.items():
+        if isinstance(value, dict):
+            yield from flat(value, f"{before}{name}.")
+        else:
+            yield before + name, value
 
 
-def record(file: str) -> list[Any]:
+def record(file):
     """In a process of its own: what a launch file starts."""
-    from launch import LaunchDescription, LaunchService
-    from launch.actions import (
-        IncludeLaunchDescription,
-        OpaqueFunction,
-        RegisterEventHandler,
-        Shutdown,
-        TimerAction,
-    )
+    from launch import LaunchDescription, LaunchService, actions
     from launch.event_handler import EventHandler
     from launch.events.process import ProcessStarted
     from launch.launch_description_sources import AnyLaunchDescriptionSource
 
-    found: list[Any] = []
+    found = []
     loop = asyncio.new_event_loop()
 
-    def note(context: Any) -> None:
+    def note(context):
         event = context.locals.event
         at_s = loop.time() - began_s
         found.append([event.process_name, round(at_s, 3), told(list(event.cmd[1:]))])
 
     handler = EventHandler(
         matcher=lambda event: isinstance(event, ProcessStarted),
-        entities=OpaqueFunction(function=note),
+        entities=actions.OpaqueFunction(function=note),
     )
     service = LaunchService()
-    service.include_launch_description(
-        LaunchDescription(
-            [
-                RegisterEventHandler(handler),
-                IncludeLaunchDescription(AnyLaunchDescriptionSource(file)),
-                TimerAction(period=LASTS_S, actions=[Shutdown()]),
-            ]
-        )
-    )
+    entities = [
+        actions.RegisterEventHandler(handler),
+        actions.IncludeLaunchDescription(AnyLaunchDescriptionSource(file)),
+        actions.TimerAction(period=LASTS_S, actions=[actions.Shutdown()]),
+    ]
+    service.include_launch_description(LaunchDescription(entities))
     asyncio.set_event_loop(loop)
     began_s = loop.time()
     if loop.run_until_complete(service.run_async()) and not found:
@@ -129,7 +112,7 @@ def record(file: str) -> list[Any]:
     return found
 
 
-def main() -> None:
+def main():
     if len(sys.argv) > 1:
         print(json.dumps(record(sys.argv[1])))
         return

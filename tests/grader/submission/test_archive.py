@@ -5,7 +5,6 @@ import io
 import stat
 import tarfile
 import zipfile
-from pathlib import Path
 
 import pytest
 
@@ -16,9 +15,7 @@ from grader.submission.safe_members import ArchiveLimits, Budget
 LIMITS = ArchiveLimits()
 
 
-def zipped(
-    *members: str | zipfile.ZipInfo, data: str = "x", method: int = zipfile.ZIP_DEFLATED
-) -> bytes:
+def zipped(*members, data="x", method=zipfile.ZIP_DEFLATED):
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", method) as packed:
         for member in members:
@@ -26,15 +23,15 @@ def zipped(
     return buffer.getvalue()
 
 
-def special(name: str, kind: int) -> zipfile.ZipInfo:
+def special(name, kind):
     info = zipfile.ZipInfo(name)
     info.external_attr = (kind | 0o777) << 16
     return info
 
 
-def tarred(*members: str | tarfile.TarInfo, data: bytes = b"x", mode: str = "w") -> bytes:
+def tarred(*members, data=b"x", mode="w"):
     buffer = io.BytesIO()
-    with tarfile.open(fileobj=buffer, mode=mode) as packed:  # type: ignore[call-overload]
+    with tarfile.open(fileobj=buffer, mode=mode) as packed:
         for member in members:
             info = tarfile.TarInfo(member) if isinstance(member, str) else member
             info.size = len(data) if info.isreg() else 0
@@ -42,15 +39,13 @@ def tarred(*members: str | tarfile.TarInfo, data: bytes = b"x", mode: str = "w")
     return buffer.getvalue()
 
 
-def other(
-    name: str, kind: bytes = tarfile.REGTYPE, target: str = "", **pax: str
-) -> tarfile.TarInfo:
+def other(name, kind=tarfile.REGTYPE, target="", **pax):
     info = tarfile.TarInfo(name)
     info.type, info.linkname, info.pax_headers = kind, target, pax
     return info
 
 
-def unpacked(folder: Path, name: str, data: bytes, limits: ArchiveLimits = LIMITS) -> set[str]:
+def unpacked(folder, name, data, limits=LIMITS):
     into = folder / "unpacked"
     into.mkdir()
     (folder / name).write_bytes(data)
@@ -58,7 +53,7 @@ def unpacked(folder: Path, name: str, data: bytes, limits: ArchiveLimits = LIMIT
     return {str(path.relative_to(into)) for path in into.rglob("*") if path.is_file()}
 
 
-def refused(folder: Path, name: str, data: bytes, limits: ArchiveLimits = LIMITS) -> str:
+def refused(folder, name, data, limits=LIMITS):
     with pytest.raises(SubmissionError) as error:
         unpacked(folder, name, data, limits)
     assert {path.name for path in folder.iterdir()} == {name, "unpacked"}
@@ -119,13 +114,13 @@ def test_a_member_that_leaves_the_folder_is_refused(tmp_path, member):
         assert f"a.tar {words}" in refused(tmp_path / "tar", "a.tar", tarred(member))
 
 
-def changed(data: bytes, mark: bytes, at: int, *values: int) -> bytes:
+def changed(data, mark, at, *values):
     """The bytes with others so far behind a mark."""
     start = data.index(mark) + at
     return data[:start] + bytes(values) + data[start + len(values) :]
 
 
-def words_alone(value: object) -> str:
+def words_alone(value):
     """The name of a parameter: bytes of an archive hold the time."""
     return value if isinstance(value, str) else ""
 

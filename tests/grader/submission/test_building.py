@@ -49,13 +49,13 @@ PACKAGE = {
 }
 
 
-def notes(path: Path) -> tuple[str, ...]:
+def notes(path):
     with open_submission(path) as submission:
         assert submission.remarks == submission.notes
         return tuple(map(str, submission.notes))
 
 
-def changed(name: str, old: str, new: str) -> dict[str, str | None]:
+def changed(name, old, new):
     assert old in PACKAGE[name]
     return {name: PACKAGE[name].replace(old, new)}
 

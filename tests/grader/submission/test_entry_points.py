@@ -16,13 +16,10 @@ setup(
     entry_points={{'console_scripts': [{entries}]}},
 )
 """
-
-
 TARGET = "spiral.turtle_controller:main"
 
 
-def package(name: str, *entries: str, module: str = "turtle_controller") -> dict[str, str]:
-    """Write down an ament_python package as `ros2 pkg create` makes it."""
+def package(name, *entries, module="turtle_controller"):
     listed = ", ".join(map(repr, entries or (f"turtle_controller = {name}.{module}:main",)))
     return {
         "package.xml": f"<package format='3'><name>{name}</name></package>",
@@ -33,17 +30,6 @@ def package(name: str, *entries: str, module: str = "turtle_controller") -> dict
         f"{name}/{module}.py": GUARDED,
         "test/test_flake8.py": "def main():\n    pass\n",
     }
-
-
-# packages and workspaces
-
-
-def test_a_package_starts_by_its_console_script(tmp_path):
-    lay(tmp_path / "spiral", package("spiral"))
-    found = found_in(tmp_path / "spiral")
-    assert (found.name, found.root) == ("spiral", tmp_path / "spiral")
-    assert found.start == EntryPoint("spiral.turtle_controller", "main")
-    assert str(found.found) == "console script turtle_controller in setup.py"
 
 
 def test_turtle_controller_is_preferred_and_the_only_script_needs_no_particular_name(tmp_path):
@@ -142,16 +128,11 @@ def test_where_setup_py_cannot_be_evaluated_the_program_is_found_as_without_scri
 
 
 def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_told(tmp_path):
-    files = package("spiral") | {"setup.py": SETUP.format(package="spiral", entries="")}
-    submission = found_in(lay(tmp_path, files))
+    submission = found_in(lay(tmp_path, SPIRAL | NO_SCRIPTS))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
     assert submission.root == tmp_path
-    (note,) = (note for note in map(str, submission.notes) if "names no console script" in note)
-    assert note.startswith("setup.py names no console script")
+    (note,) = (note for note in map(str, submission.notes) if note.startswith("setup.py names no"))
     assert "'turtle_controller = spiral.turtle_controller:main'" in note
-
-
-# the module of a console script
 
 
 def test_a_module_of_another_submission_is_out_of_reach(tmp_path):
@@ -175,12 +156,8 @@ def test_a_missing_init_file_is_added_to_a_copy(tmp_path):
         assert submission.root != tmp_path
         added = submission.root / "turtlesim_challenge"
         assert (added / "__init__.py").read_text() == ""
+        assert submission.with_original_paths(f"{added}") == f"{tmp_path / added.name}"
         assert (added / "turtle_controller.py").read_text() == GUARDED
         assert "with the missing turtlesim_challenge/__init__.py added" in str(submission.found)
     assert not submission.root.exists()
     assert not (tmp_path / "turtlesim_challenge/__init__.py").exists()
-
-
-def test_a_module_that_does_not_parse_is_left_to_the_interpreter(tmp_path):
-    lay(tmp_path, package("s") | {"s/turtle_controller.py": "def main(:\n"})
-    assert found_in(tmp_path).start == EntryPoint("s.turtle_controller", "main")

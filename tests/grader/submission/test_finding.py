@@ -1,6 +1,5 @@
 """What is found, and what is refused, with the system as it is not in an ordinary test."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -22,7 +21,7 @@ def scratch(tmp_path):
     return folder
 
 
-def refused(path: Path, scratch: Path) -> str:
+def refused(path, scratch):
     with pytest.raises(SubmissionError) as error, readable(path):
         find(path, None, scratch)
     return str(error.value)
@@ -46,11 +45,11 @@ def test_an_unreadable_file_of_a_package_is_named(tmp_path, scratch, monkeypatch
         find_inspected(asked.value, Inspection((said,)), "in", None, scratch, "a")
 
 
-def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
+def forbid(monkeypatch, path):
     """Make a file unreadable, also for root."""
-    really_open: Callable[..., object] = Path.open
+    really_open = Path.open
 
-    def open_or_not(self: Path, *args: object, **options: object) -> object:
+    def open_or_not(self, *args, **options):
         if self == path:
             raise PermissionError(13, "Permission denied", str(self))
         return really_open(self, *args, **options)
@@ -59,7 +58,7 @@ def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
 
 
 def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(tmp_path, scratch, monkeypatch):
-    def full(*_: object) -> None:
+    def full(*_):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("grader.submission.archive.unpack", full)

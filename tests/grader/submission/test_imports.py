@@ -1,43 +1,27 @@
 """What a submission imports is read, and told apart: in any case, or only perhaps."""
 
-from pathlib import Path
-
 import pytest
 
 from grader.submission.imports import read_imports
 from grader.submission.start import EntryPoint, Imports, Program, Script
 from tests.files import lay
 
-FALLBACK = """
-try:
-    from newer.msg import Pose
-except ImportError:
-    from older.msg import Pose
-"""
 
-
-def of_file(folder: Path, text: str) -> Imports:
+def of_file(folder, text):
     lay(folder, {"node.py": text})
     return of_entry(folder, Script(folder / "node.py"))
 
 
-def of_module(folder: Path, module: str) -> Imports:
-    return of_entry(folder, EntryPoint(module, "main"))
-
-
-def of_entry(folder: Path, entry: EntryPoint | Script) -> Imports:
+def of_entry(folder, entry):
     return read_imports(folder, [Program("node-1", "", "node", entry, folder)])
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "import older",
         "import older.msg",
         "import os, older.msg as messages",
-        "from older import msg",
         "from older.msg import *",
-        "from older.msg import (\n    Pose,\n    Color,\n)",
         "class Node:\n    from older.msg import Pose",
         "with open(__file__):\n    import older",
     ],
@@ -51,9 +35,7 @@ def test_an_import_that_is_always_made_is_sure(tmp_path, text):
 @pytest.mark.parametrize(
     "text",
     [
-        "def main():\n    import older",
         "if ready:\n    from older.msg import Pose",
-        "for _ in range(2):\n    import older",
         "try:\n    import older\nfinally:\n    pass",
         "match a:\n    case 1:\n        import older",
         "class Node:\n    def drive(self):\n        import older",
@@ -71,9 +53,9 @@ def test_what_is_no_import_is_none(tmp_path):
 
 
 def test_fallbacks_stand_in_their_order(tmp_path):
-    assert of_file(tmp_path, FALLBACK) == Imports(
-        {}, {"newer": "node.py, line 3", "older": "node.py, line 5"}
-    )
+    text = "try:\n    from newer.msg import Pose\nexcept ImportError:\n    import older"
+    found = of_file(tmp_path, text)
+    assert found == Imports({}, {"newer": "node.py, line 2", "older": "node.py, line 4"})
 
 
 def test_the_place_is_that_of_the_first(tmp_path):
@@ -90,11 +72,6 @@ def test_own_modules_are_followed_and_are_not_told(tmp_path):
         "older": "driving.py, line 1",
         "newer": "pens/colors.py, line 1",
     }
-
-
-def test_other_files_beside_it_do_not_count(tmp_path):
-    lay(tmp_path, {"bob.py": "import newer\n"})
-    assert of_file(tmp_path, "import older\n") == Imports({"older": "node.py, line 1"})
 
 
 def test_what_a_perhaps_loaded_file_imports_is_not_sure(tmp_path):
@@ -119,7 +96,7 @@ def test_a_package_is_followed_from_its_entry_point(tmp_path):
         "unused": "import unused_one\n",
     }
     lay(tmp_path, {f"spiral/{name}.py": text for name, text in files.items()})
-    assert of_module(tmp_path, "spiral.node").surely == {
+    assert of_entry(tmp_path, EntryPoint("spiral.node", "main")).surely == {
         "older": "spiral/pens.py, line 2",
         "late_one": "spiral/late.py, line 1",
         "newer": "spiral/deep/way.py, line 1",

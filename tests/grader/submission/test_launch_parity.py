@@ -5,17 +5,13 @@ The files are of the kinds that public courses have; `record_launches` has run t
 """
 
 import json
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from grader.inspection.answer import Inspection
 from grader.run import inspecting
 from grader.submission.launching import LaunchAsked
-from grader.submission.start import Program
 from tests.grader.submission.record_launches import FOLDER, RECORDED
 from tests.grader.submission.test_launching import opened
 from tests.grader_robots.packages import inspected
@@ -30,7 +26,7 @@ SAME_S = 0.2
 
 
 @cache
-def all_of_it(*folders: str) -> Inspection:
+def all_of_it(*folders):
     order = {"set_ups": folders, "program": "turtle_controller", "inspectors": None, "given": {}}
     return inspected(FOLDER, **order)
 
@@ -41,18 +37,18 @@ def inspection(monkeypatch):
     monkeypatch.setattr(inspecting, "inspect", lambda _, folders, *__: (all_of_it(*folders), ()))
 
 
-def in_real_time(programs: tuple[Program, ...]) -> Iterator[tuple[float, Program]]:
+def in_real_time(programs):
     """Each program with its moment: `worker` and scripts end at once, all others never."""
-    at: list[float | None] = []
+    at = []
     for program in programs:
         began = 0.0 if program.after is None else at[program.after]
         at.append(None if began is None else began + program.delay_s)
     return ((moment, p) for moment, p in zip(at, programs, strict=True) if moment is not None)
 
 
-def comparable(words: list[str]) -> list[Any]:
+def comparable(words):
     """Arguments without the order of parameters that are given side by side."""
-    found: list[Any] = []
+    found = []
     for option, word in zip(["", *words], words, strict=False):
         if option == "-p":
             found[-1] = [*found[-1], word] if isinstance(found[-1], list) else found[-1]

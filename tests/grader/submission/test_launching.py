@@ -1,14 +1,11 @@
 """A launch file that plainly starts several nodes of a package says what to start; none is run."""
 
-from pathlib import Path
-from typing import Any
-
 import pytest
 
 from grader.errors import SubmissionError
 from grader.run.opening import open_submission
 from grader.submission.launching import LaunchAsked
-from grader.submission.start import EntryPoint, Launch, Program, Submission
+from grader.submission.start import EntryPoint, Launch, Program
 from tests.files import lay
 from tests.grader.submission.copies import NODE
 from tests.grader.submission.test_building import PACKAGE
@@ -40,53 +37,44 @@ NOT_INSTALLED = (
 )
 
 
-def opened(
-    path: Path,
-    executable: str | None = None,
-    launch: LaunchAsked | None = None,
-    programs: tuple[str, ...] = (),
-) -> Submission:
+def opened(path, executable=None, launch=None, programs=()):
     with open_submission(path, executable, launch, programs=programs) as submission:
         return submission
 
 
-def launched(folder: Path, actions: str, name: str = "a.launch.py", **asked: Any) -> Submission:
-    """The package with a launch file of these actions."""
+def launched(folder, actions, name="a.launch.py", **asked):
     return opened(lay(folder, TWO | {f"launch/{name}": LIST.format(actions)}), **asked)
 
 
-def names(submission: Submission) -> list[str]:
+def names(submission):
     return [program.name for program in submission.programs]
 
 
-def notes(submission: Submission) -> list[str]:
+def notes(submission):
     return [str(note) for note in submission.notes]
 
 
 THIRD = "Node(package='spiral', executable='pen_node'{})"
-EVENT = "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))"
 
 
 @pytest.mark.parametrize(
-    ("more", "third", "note"),
+    ("more", "note"),
     [
-        (THIRD.format(", condition=IfCondition('false')"), "", ""),
+        (THIRD.format(", condition=IfCondition('false')"), ""),
         (
             "ExecuteProcess(cmd=['ls', '-l'])",
-            "",
             "launch/a.launch.py starts programs of other packages, and these were not: ls -l",
         ),
         (
-            EVENT.format(THIRD.format("")),
-            "",
+            f"RegisterEventHandler(OnShutdown(on_shutdown=[{PENS}]))",
             "launch/a.launch.py starts programs after an event, and these were not: pen_node",
         ),
     ],
 )
-def test_what_a_launch_file_does_besides_is_followed_or_named(tmp_path, more, third, note):
+def test_what_a_launch_file_does_besides_is_followed_or_named(tmp_path, more, note):
     submission = launched(tmp_path, f"{DRIVE}, {PENS}, {more}")
-    assert names(submission) == ["turtle_controller-1", "pen_node-2", *([third] if third else [])]
-    assert any(each.startswith(note) for each in notes(submission)) or not note
+    assert names(submission) == ["turtle_controller-1", "pen_node-2"]
+    assert any(each.startswith(note) for each in notes(submission))
 
 
 def test_what_is_started_again_is_said_once(tmp_path):
@@ -129,9 +117,6 @@ def test_several_nodes_of_a_launch_file_are_started(tmp_path):
             ),
             Program("pen_node-2", "spiral", "pen_node", EntryPoint("spiral.pens", "main"), root),
         )
-    )
-    assert (
-        str(submission.found) == "launch/both.launch.py, which starts turtle_controller, pen_node"
     )
     assert notes(submission) == [NOT_INSTALLED.format("both.launch.py")]
     assert "rclpy" in submission.imports.surely
@@ -287,11 +272,3 @@ def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path):
     assert names(submission) == ["turtle_controller-1", "pen_node-2"]
     assert [each.package for each in submission.programs] == ["spiral", "pens"]
     assert [each.root.name for each in submission.programs] == ["spiral", "pens"]
-
-
-def test_a_launch_file_from_somewhere_else_is_not_read(tmp_path):
-    lay(tmp_path / "spiral", TWO | {"launch/README": ""})
-    (tmp_path / "bob.launch.py").write_text(BOTH)
-    (tmp_path / "spiral/launch/a.launch.py").symlink_to("../../bob.launch.py")
-    with pytest.raises(SubmissionError, match="a link to a place outside"):
-        opened(tmp_path / "spiral")

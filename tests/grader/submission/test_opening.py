@@ -4,7 +4,6 @@ import io
 import os
 import tarfile
 import zipfile
-from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -35,7 +34,7 @@ def inspection():
     """Confined, as in a run."""
 
 
-def packed(files: Mapping[str, str | bytes]) -> bytes:
+def packed(files):
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
@@ -43,22 +42,16 @@ def packed(files: Mapping[str, str | bytes]) -> bytes:
     return buffer.getvalue()
 
 
-def pack(archive: Path, files: Mapping[str, str]) -> Path:
+def pack(archive, files):
     archive.write_bytes(packed(files))
     return archive
-
-
-# one file
-
-
-CALLS_MAIN = NODE + "\nimport sys\nsys.exit(main())\n"
 
 
 @pytest.mark.parametrize(
     ("name", "data", "runs"),
     [
         ("turtle_controller.py", GUARDED, "script"),
-        ("a.py", CALLS_MAIN, "script"),
+        ("a.py", NODE + "\nimport sys\nsys.exit(main())\n", "script"),
         ("a.py", "import rospy\nrospy.init_node('x')\n", "script"),
         # what does not parse is left to the interpreter
         *(("a.py", data, "script") for data in (b"def main(:\n", b"\0def main(): pass\n")),
@@ -86,9 +79,6 @@ def test_the_root_is_absolute_where_the_path_is_not(tmp_path, monkeypatch):
     assert found_in(Path("spiral/node.py")).root == tmp_path / "spiral"
     assert found_in(Path()).root == tmp_path
     assert found_in(Path()).name == tmp_path.name
-
-
-# folders without set-up files
 
 
 def test_nothing_of_a_submission_is_executed(tmp_path):
@@ -144,9 +134,6 @@ def test_what_is_not_the_students_node_is_passed_over(tmp_path):
     assert found_in(tmp_path).start == Script(tmp_path / "node.py")
 
 
-# zips
-
-
 def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path):
     archive = pack(tmp_path / "alice.zip", below("hw1/ws/src/spiral", PACKAGE))
     with open_submission(archive) as submission:
@@ -171,10 +158,7 @@ def test_a_single_file_leaves_nothing_to_choose(tmp_path):
     assert "there is nothing to choose" in refused(tmp_path / "node.py", "zz")
 
 
-# archives in folders and archives
-
-
-def nested(levels: int, data: bytes) -> bytes:
+def nested(levels, data):
     for level in range(levels):
         data = packed({f"level{level}.zip": data})
     return data
@@ -236,9 +220,6 @@ def test_an_archive_that_is_a_link_to_somewhere_else_is_not_opened(tmp_path):
     lay(tmp_path / "alice", {"README.md": ""})
     (tmp_path / "alice/mine.zip").symlink_to("../bob.zip")
     assert "mine.zip is a link to a place outside of alice" in refused(tmp_path / "alice")
-
-
-# refusals
 
 
 def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path):

@@ -18,44 +18,27 @@ DECLARED = b"# -*- coding: latin-1 -*-\n" + LATIN_1
 UTF_16 = NODE.decode().encode("utf-16")
 NULL = NODE + b"x = '\0'\n"
 
-REFUSED = {"latin-1": LATIN_1, "utf-16": UTF_16, "null": NULL, "utf-8 to ascii": b"# \xc3\xa9\xff"}
-READ = {
-    "plain": NODE,
-    "declared": DECLARED,
-    "utf-8": "# café\n".encode(),
-    "mark": b"\xef\xbb\xbf" + NODE,
-    "empty": b"",
-}
+#: Bytes, and the line that is told.
+REFUSED = {"latin-1": (LATIN_1, 6), "utf-16": (UTF_16, 1), "null": (NULL, 6)}
+READ = (DECLARED, "# café\n".encode(), b"\xef\xbb\xbf" + NODE)
 
 
-@pytest.mark.parametrize(("data", "is_read"), [(LATIN_1, False), (UTF_16, False), (DECLARED, True)])
-def test_a_file_is_read_or_refused_as_python_does(tmp_path, data, is_read):
+@pytest.mark.parametrize("data", [LATIN_1, UTF_16, *READ])
+def test_a_file_is_read_or_refused_as_python_does(tmp_path, data):
     file = tmp_path / "node.py"
     file.write_bytes(data.replace(b"import rclpy\n", b""))
     run = subprocess.run([sys.executable, file], capture_output=True, check=False)
-    assert (run.returncode == 0) == (not byte_fault(file.read_bytes())) == is_read
+    assert (run.returncode == 0) == (not byte_fault(file.read_bytes())) == (data in READ)
 
 
-@pytest.mark.parametrize("data", REFUSED.values(), ids=REFUSED.keys())
-def test_the_run_of_a_file_that_python_refuses_ends_with_its_line(tmp_path, data):
+@pytest.mark.parametrize(("data", "line"), REFUSED.values(), ids=REFUSED.keys())
+def test_the_run_of_a_file_that_python_refuses_ends_with_its_line(tmp_path, data, line):
     file = tmp_path / "node.py"
     file.write_bytes(data)
     assert byte_fault(data)
     with pytest.raises(SyntaxError, match="save the file as UTF-8") as error:
         loading.run(str(tmp_path), str(file), None)
-    assert (error.value.filename, error.value.lineno) == (str(file), told_line(data))
-
-
-def told_line(data: bytes) -> int:
-    return {LATIN_1: 6, NULL: 6}.get(data, 1)
-
-
-@pytest.mark.parametrize("data", READ.values(), ids=READ.keys())
-def test_what_python_reads_is_not_refused(tmp_path, data):
-    file = tmp_path / "node.py"
-    file.write_bytes(data)
-    assert not byte_fault(data)
-    loading.must_be_text(str(file))
+    assert (error.value.filename, error.value.lineno) == (str(file), line)
 
 
 def test_a_lone_file_is_refused_as_python3_would_and_noted(tmp_path):

@@ -8,7 +8,6 @@ import os
 import socket
 import zipfile
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -47,13 +46,13 @@ except SubmissionError as error:
 """
 
 
-def opened(path: Path) -> tuple[str, str]:
+def opened(path):
     """How the reading of a submission ended: found or refused, and its sentence."""
     how, sentence = json.loads(printed_by(OPEN, path))
     return how, sentence
 
 
-def inspected(path: Path) -> tuple[str, str]:
+def inspected(path):
     """The same of a package, with its notes: what inspects it has limits of its own."""
     try:
         with open_submission(path) as found:
@@ -62,12 +61,12 @@ def inspected(path: Path) -> tuple[str, str]:
         return "refused", str(error)
 
 
-def package(root: Path, setup: str, **more: str) -> Path:
+def package(root, setup, **more):
     files = {"setup.py": setup, "pkg/__init__.py": "", "pkg/node.py": NODE}
     return lay(root, files | more)
 
 
-def doubling(plus: str, times: int = 60) -> str:
+def doubling(plus, times=60):
     lines = [f"a{i + 1} = {plus.format(f'a{i}')}\n" for i in range(times)]
     return "a0 = 'aa'\n" + "".join(lines) + SETUP.format(f"a{times}")
 
@@ -95,9 +94,6 @@ def test_what_takes_too_long_is_refused_by_the_time_that_it_takes(
 #: Set-up files that no parser takes.
 UNREADABLE = {
     "parentheses": "(" * 400_000,
-    "signs": f"x = {'-' * 400_000}1",
-    "functions": f"x = {'lambda:' * 100_000}1",
-    "attributes": "a" + ".a" * 400_000,
     "sums": SETUP.format("'a'" + "+'a'" * 200_000),
     "a coding": f"# coding: {'a' * 900_000}",
 }
@@ -110,9 +106,7 @@ GROWING = {
 #: What stands behind a node that is hard to read.
 HARD = {
     "a chain of comparisons": "<".join(["a"] * 100_000),
-    "attributes": "a" + ".a" * 400_000,
     "a package in a package": "import " + ".".join(["a"] * 100_000),
-    "parentheses": "(" * 400_000,
     "guards that do not parse": "if " + "__name__ " * 100_000 + "\n(",
 }
 ONE_PARSER = "the same parser, another way to trouble it"
@@ -237,23 +231,20 @@ def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path):
         os.system(f"rm -rf '{tmp_path}'")  # Python's own way down is one of paths
 
 
-@pytest.mark.parametrize(
-    "name", ["{}.py", pytest.param(".{}", marks=pytest.mark.more("of other names"))]
-)
-def test_a_hundred_thousand_files_are_not_listed(tmp_path, name):
+def test_eleven_thousand_files_are_not_listed(tmp_path):
     for number in range(11_000):
-        (tmp_path / name.format(number)).touch()
+        (tmp_path / f"{number}.py").touch()
     (tmp_path / "node.py").touch()
     how, sentence = opened(tmp_path)
     assert how == "refused"
-    assert "holds more than 10,000 files and folders" in sentence or "is an empty" in sentence
+    assert "holds more than 10,000 files and folders" in sentence
 
 
-@pytest.mark.parametrize("name", ["setup.py", "setup.cfg", "pkg/node.py"])
+@pytest.mark.parametrize("name", ["setup.py", "setup.cfg", "pkg/node.py", "launch/a.launch.py"])
 def test_a_link_to_a_place_outside_is_not_read(tmp_path, name):
     secret = tmp_path / "secret"
     secret.write_text("password = hunter2\n")
-    handed_in = package(tmp_path / "in", SETUP.format("1"))
+    handed_in = package(tmp_path / "in", SETUP.format("1"), **{"launch/README": ""})
     (handed_in / name).unlink(missing_ok=True)
     (handed_in / name).symlink_to(secret)
     how, sentence = inspected(handed_in)

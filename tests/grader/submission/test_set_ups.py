@@ -1,17 +1,15 @@
 """What an inspection says of set-up files is held against them."""
 
-from pathlib import Path
-
 import pytest
 
 from grader.errors import SubmissionError
 from grader.inspection.answer import SetUp, SetUpFacts
 from grader.submission.folder import SubmissionFolder
-from grader.submission.set_ups import PackageFolder, read_package
+from grader.submission.set_ups import read_package
 from tests.files import lay
 
 
-def read(folder: Path, *scripts: str, package_folders: tuple[str, ...] = ()) -> PackageFolder:
+def read(folder, *scripts, package_folders=()):
     lay(folder, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
     declared = SetUpFacts(scripts=scripts, package_folders=package_folders)
     return read_package(SetUp(".", declared, None), SubmissionFolder("pkg", folder))

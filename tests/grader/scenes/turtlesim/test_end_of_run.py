@@ -11,16 +11,16 @@ FIRST_MOTION, REST, TOTAL = 100, 10, 200
 LIMITS = Limits(first_motion_s=100 * TICK_S, rest_s=10 * TICK_S, total_s=200 * TICK_S)
 
 
-def at(x: float, theta: float = 0.0, speed: float = 0.0) -> Pose:
+def at(x, theta=0.0, speed=0.0):
     return Pose(x, 5.0, theta, speed, 0.0)
 
 
-def turtles(pose: Pose | None) -> dict[str, Pose]:
+def turtles(pose):
     """The turtles that there are in a tick, by name."""
     return {} if pose is None else {"turtle1": pose}
 
 
-def ends(poses, limits: Limits = LIMITS, gone_tick: int | None = None) -> tuple[int, str]:
+def ends(poses, limits=LIMITS, gone_tick=None):
     """The tick after which a run of these poses (tick -> pose) is over, and why."""
     end = EndOfRun(limits)
     for tick in range(1, 1000):
@@ -30,12 +30,12 @@ def ends(poses, limits: Limits = LIMITS, gone_tick: int | None = None) -> tuple[
     raise AssertionError("it never ends")
 
 
-def pauses(tick: int) -> Pose:
+def pauses(tick):
     """A rest that is too short counts for nothing."""
     return at(tick if tick < 20 else max(20, tick - REST + 2))
 
 
-def turns_then_drives(tick: int) -> Pose:
+def turns_then_drives(tick):
     return at(1.0 + min(max(tick - 60, 0), 20), theta=min(tick, 30))
 
 

@@ -16,7 +16,7 @@ from grader.scenes import load_scene
 from grader.scenes.live import Grading
 from grader.scenes.turtlesim.live import TurtlesimPage
 from tests.programs import DEADLINE_S
-from turtlesim_py.live.feed import Feed, News
+from turtlesim_py.live.feed import Feed
 from turtlesim_py.world.arena import Arena
 
 #: What drives, or leads to a ROS graph.
@@ -43,7 +43,7 @@ def viewer(page):
         yield connection
 
 
-def socket_of(page) -> str:
+def socket_of(page):
     return page.address.replace("http:", "ws:").replace("/?", "/socket?")
 
 
@@ -53,7 +53,7 @@ def heard(viewer):
 
 def news(ticks=60):
     """What a simulator tells of a turtle that turns and is given another pen."""
-    told: list[News] = []
+    told = []
     arena = Arena(sprite="jazzy")
     feed = Feed(arena, told.append, together=1)
     feed.is_watched = True
@@ -130,7 +130,7 @@ def test_nobody_comes_in_without_the_token_not_even_on_this_machine(page):
 
 
 def test_a_wipe_takes_away_what_was_drawn_before_it():
-    told: list[News] = []
+    told = []
     mirror = TurtlesimPage(told.append)
     stroke = [[1, 2, 3], [10, 20, 30]]
     states = [{"tick": 1, "drawn": [stroke], "calls": []}]

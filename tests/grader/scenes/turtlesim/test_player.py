@@ -4,7 +4,6 @@ import base64
 import json
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,18 +18,17 @@ from grader.scenes.turtlesim.driving import drive
 from grader.scenes.turtlesim.player import page
 from grader.scenes.turtlesim.player.page import first_difference
 from grader.scenes.turtlesim.player.replay import MOST_TICKS, WIPED, animate
-from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import pen, twist
 from tests.grader.driving import Spiral
 from tests.grader.scenes.turtlesim.traces import odd_traces
 from turtlesim_py.world.arena import TICK_NS
 
 
-def numbers(text: str, kind: str) -> np.ndarray:
+def numbers(text, kind):
     return np.frombuffer(base64.b64decode(text), kind)
 
 
-def painted(made: dict[str, Any], frame: int) -> np.ndarray:
+def painted(made, frame):
     """The canvas of a frame, as the page paints it."""
     canvas = np.zeros((500, 500, 4), np.uint8)
     canvas[..., :3] = 255
@@ -47,7 +45,7 @@ def painted(made: dict[str, Any], frame: int) -> np.ndarray:
     return canvas
 
 
-def poses(made: dict[str, Any], name: str) -> np.ndarray:
+def poses(made, name):
     """What a turtle published, (n, 6): tick, and the columns of the pose."""
     turtle = next(each for each in made["turtles"] if each["name"] == name)
     columns = numbers(turtle["poses"], "<f4").reshape(-1, 5)
@@ -177,13 +175,11 @@ def test_the_first_input_that_differs_is_named():
         drive(*each)[0] for each in ((eventful, 100), (later, 100), (eventful, 90))
     )
     found = first_difference(one, two)
-    assert found is not None
     assert found["tick"] == 50
     assert [call["op"] for call in found["mine"]] == ["cmd_vel"]
     assert [call["op"] for call in found["other"]] == ["cmd_vel", "clear"]
     assert first_difference(one, one) is None
     ended = first_difference(one, shorter)
-    assert ended is not None
     assert (ended["tick"], ended["other"]) == (91, [])
 
 
@@ -191,7 +187,7 @@ COMMANDS = [{"op": "cmd_vel", "turtle": "turtle1", "tick": tick} for tick in (1,
 LINES = (SourceLine("a.py", 5, text="go"), SourceLine("a.py", 9, text="stop"))
 
 
-def lines_of(sent: Sent) -> list[int | None]:
+def lines_of(sent):
     made = page.with_lines([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
     lines = [line["line"] for line in made["lines"]]
     found = [call.get("line") for call in made["calls"]]
@@ -217,7 +213,7 @@ def test_nothing_is_known_of_what_was_sent_by_another_name():
 
 def test_what_stands_in_a_result_ends_no_element_of_the_page():
     evil = "</script><script>alert(1)</script><!-- $data & co"
-    trace: TurtleTrace = drive(eventful, 3)[0]
+    trace = drive(eventful, 3)[0]
     judged = JudgedCheck(evil, "failed", evil, evil, evil, ())
     made = page.render(Playback(evil, evil, (PlayedRun(0, evil, evil, trace),), (judged,)))
     assert made.count("<script") == 2

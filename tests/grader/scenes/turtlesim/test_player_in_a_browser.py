@@ -94,7 +94,7 @@ def visit(browser, usual, page_file):
     """Opens the page; whatever fails in it fails the test."""
     pages, errors = [], []
 
-    def visited(address: str = "", name: str = "view.html", **settings: str):
+    def visited(address="", name="view.html", **settings):
         page = browser.new_page(**settings) if settings else usual.new_page()
         pages.append(page)
         page.on("pageerror", lambda error: errors.append(str(error)))
@@ -110,21 +110,21 @@ def visit(browser, usual, page_file):
     assert errors == []
 
 
-def at(page, frame: int, run: int = 0) -> None:
+def at(page, frame, run=0):
     page.wait_for_selector(f"html[data-frame='{frame}'][data-run='{run}']")
 
 
-def pixels(page, selector: str = "#canvas") -> np.ndarray:
+def pixels(page, selector="#canvas"):
     data = np.frombuffer(base64.b64decode(page.evaluate(PIXELS, selector)), np.uint8)
     return data.reshape(500, 500, 4)[..., :3]
 
 
-def go(page, frame: int) -> None:
+def go(page, frame):
     page.locator("#slider").fill(str(frame))
     at(page, frame)
 
 
-def window(ticks: int) -> np.ndarray:
+def window(ticks):
     """What the simulator shows after so many ticks."""
     return TurtleTrace.of(drive(Wild(), ticks=ticks).trace).window
 

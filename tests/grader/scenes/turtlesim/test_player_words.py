@@ -1,7 +1,6 @@
 """The pages that play runs have their sentences' translations in them."""
 
 import json
-from pathlib import Path
 
 import pytest
 
@@ -16,7 +15,7 @@ PAGES = [
 ]
 
 
-def sentences(html: str, entry: str, folders: list[Path], language: str) -> dict[str, str]:
+def sentences(html, entry, folders, language):
     text = (folders[0] / html).read_text(encoding="utf-8")
     modules = joined.join_modules(entry, [*folders, joined.LIVE_PAGE])
     return joined._sentences(f"{modules} {text}", language)

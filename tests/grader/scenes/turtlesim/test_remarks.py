@@ -26,7 +26,7 @@ def trace():
     return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
 
 
-def told(trace: TurtleTrace) -> list[str]:
+def told(trace):
     return [str(remark) for remark in remarks(trace, [])]
 
 

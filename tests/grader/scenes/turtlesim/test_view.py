@@ -15,16 +15,12 @@ from turtlesim_py.world.arena import TICK_NS, Arena
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 
-def nothing(*_) -> None:
-    """A controller that does nothing."""
-
-
 def once(at_tick, act):
     """A controller that does something in one tick."""
     return lambda tick, _, arena: act(arena) if tick == at_tick else None
 
 
-def traced(controller, ticks: int = 4000) -> TurtleTrace:
+def traced(controller, ticks=4000):
     return TurtleTrace.of(drive(controller, ticks=ticks).trace)
 
 
@@ -36,9 +32,6 @@ def spiral():
 def test_metres_become_pixels_with_y_down():
     assert PLANE.to_px(0, 0) == (0, pytest.approx(499, abs=1e-4))
     assert PLANE.to_px(SIZE_M, SIZE_M) == (pytest.approx(499, abs=1e-4), 0)
-
-
-# Tracks ---------------------------------------------------------------------------------------
 
 
 def test_a_track_has_every_tick_in_the_pixels_of_the_picture(spiral):
@@ -104,9 +97,6 @@ def test_clearing_and_resetting_make_what_was_drawn_vanish():
         assert view(traced(once(50, act), ticks=100)).cleared == (50 * TICK_NS,)
 
 
-# The end --------------------------------------------------------------------------------------
-
-
 def test_the_rest_is_where_and_since_when_it_stands_still(spiral):
     rest = view(spiral).rest
     way = spiral.trajectory()
@@ -118,14 +108,11 @@ def test_the_rest_is_where_and_since_when_it_stands_still(spiral):
 
 def test_what_still_moves_never_moved_or_is_nowhere_has_no_rest(spiral):
     assert view(traced(Spiral(), ticks=300)).rest is None
-    assert view(traced(nothing, ticks=10)).rest is None
+    assert view(traced(lambda *_: None, ticks=10)).rest is None
     rows = spiral.trajectory().rows()
     rows[100:, 1:3] = np.nan
     lost = type(spiral.trajectory()).of_rows(rows)
     assert view(replace(spiral, trajectories={"turtle1": lost})).rest is None
-
-
-# Curves and calls -----------------------------------------------------------------------------
 
 
 def test_there_is_a_curve_for_distance_speed_turning_and_command_rate(spiral):
@@ -200,18 +187,12 @@ def test_the_picture_is_told_in_words(spiral):
         assert re.search(rf": mostly {color} \([\d, ]+\), \d,\d+ pixels$", part)
 
 
-# The background -------------------------------------------------------------------------------
-
-
 def test_the_background_is_what_lies_below_the_ink_or_the_usual_one(spiral):
     assert view(traced(Spiral(), ticks=200)).background == "#4556ff"
     other = once(1, lambda arena: arena.set_parameter("background_r", 255))
     assert view(traced(other, ticks=2)).background == "#ff56ff"
     painted = replace(spiral, canvas=np.full_like(spiral.canvas, 255))
     assert view(painted).background == "#4556ff"
-
-
-# Nothing --------------------------------------------------------------------------------------
 
 
 def test_an_empty_trace_has_an_empty_view(spiral):

@@ -2,7 +2,6 @@
 
 import struct
 from dataclasses import fields
-from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
@@ -29,7 +28,7 @@ _vectors = st.tuples(_doubles, _doubles, _doubles)
 _ids = st.binary(max_size=16) | texts | st.integers()
 
 
-def _of(kind: type[Event], **more: Any) -> st.SearchStrategy[Event]:
+def _of(kind, **more):
     return st.builds(kind, tick=_ticks, **more)
 
 
@@ -60,14 +59,14 @@ _any_of_kind = {
 }
 
 
-def odd_events(*ops: str) -> st.SearchStrategy[Event]:
+def odd_events(*ops):
     """Events of these kinds (of all, if none is named) as a recorder takes them down."""
     found = st.one_of(*(_any_of_kind[op] for op in ops or events.KINDS))
     return found.map(lambda event: from_json(to_json(event)))
 
 
 @st.composite
-def odd_traces(draw: st.DrawFn) -> TurtleTrace:
+def odd_traces(draw):
     """Traces that no run makes, but that nothing forbids."""
     bits = st.integers(0, 2**32 - 1)  # every float32 there is, NaNs of all kinds too
     trajectories = {}
@@ -93,7 +92,7 @@ def odd_traces(draw: st.DrawFn) -> TurtleTrace:
     )
 
 
-def assert_same_trace(ours: TurtleTrace, theirs: TurtleTrace) -> None:
+def assert_same_trace(ours, theirs):
     """Nothing differs, not the sign of a zero, nor the bits of a NaN, nor any type or order."""
     assert ours.ticks == theirs.ticks
     assert [_bits(event) for event in ours.events] == [_bits(event) for event in theirs.events]
@@ -106,18 +105,18 @@ def assert_same_trace(ours: TurtleTrace, theirs: TurtleTrace) -> None:
     assert ours.sha256() == theirs.sha256()
 
 
-def assert_same_trajectory(ours: Trajectory, theirs: Trajectory) -> None:
+def assert_same_trajectory(ours, theirs):
     """Every column has the same type and bits."""
     for column in fields(Trajectory):
         _assert_same_array(getattr(ours, column.name), getattr(theirs, column.name))
 
 
-def _assert_same_array(ours: Any, theirs: Any) -> None:
+def _assert_same_array(ours, theirs):
     assert (ours.dtype, ours.shape) == (theirs.dtype, theirs.shape)
     assert ours.tobytes() == theirs.tobytes()
 
 
-def _bits(value: Any) -> Any:
+def _bits(value):
     """An event, or a value in one, as something that is equal only where every bit is."""
     if isinstance(value, Event):
         return type(value), [_bits(getattr(value, field.name)) for field in fields(value)]
