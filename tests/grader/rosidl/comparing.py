@@ -99,7 +99,6 @@ def assigned(message, name, value):
 
 
 def _attributes(kind):
-    """Constants and defaults, of the class and of its instances."""
     names = [name for name in dir(type(kind)) if name.isupper() and not name.startswith("_")]
     return {
         **{f"class {name}": repr(getattr(kind, name)) for name in names},

@@ -36,7 +36,6 @@ def definitions(shares):
 
 
 def compare(texts, shares):
-    """Compare made and imported classes, and the published hashes."""
     made = Definitions(texts)
     print("skipped:", {name: str(error) for name, error in made.errors.items()})
     assert not made.errors
@@ -71,9 +70,8 @@ def test_made_classes_are_as_those_that_are_installed(name):
 @pytest.mark.timeout(1200)
 @pytest.mark.parametrize("number", range(5))
 def test_made_classes_are_as_those_that_are_compiled(number, tmp_path, monkeypatch):
-    """100 definitions that are drawn."""
     name = f"drawn_{number}"
-    texts = package(random.Random(number), name, 100)
+    texts = package(random.Random(number), name, count=100)
     built = building.build(texts, tmp_path / "place")
     library = base64.b64decode(built.pop(""))
     compiling._keep(built, library, {name}, tmp_path / "kept")

@@ -86,8 +86,6 @@ def test_a_file_is_called_as_its_type(name):
 
 @pytest.fixture
 def importable(monkeypatch):
-    """Makes definitions importable."""
-
     def importable(texts):
         monkeypatch.setattr(sys, "meta_path", [*sys.meta_path, Definitions(texts)])
 

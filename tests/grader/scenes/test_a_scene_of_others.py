@@ -148,7 +148,6 @@ def make(folder):
 
 
 def run(folder, name, *more):
-    """Grade the node; return the exit code and what stands on stderr."""
     out = f"out_{Path(name).name}"
     words = ["-m", "grader", "run", "node.py", "--exercise", name, "--out", out, *more]
     python = str(folder / "venv" / "bin" / "python")

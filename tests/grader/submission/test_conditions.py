@@ -12,7 +12,6 @@ CONDITIONS = yaml.safe_load(Path(__file__).with_name("conditions.yaml").read_tex
 
 
 def found_in(source, kind):
-    """Name and near of the findings of a kind."""
     files = {"a.py": source}
     found = lint.find(lint.parsed_of(files), files, lambda _: False)
     return [(name, near) for _, (of_kind, name, near, _) in found if of_kind == kind]

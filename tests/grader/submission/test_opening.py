@@ -92,12 +92,27 @@ def test_nothing_of_a_submission_is_executed(tmp_path):
     assert not (tmp_path / "executed").exists()
 
 
-def test_the_only_file_that_starts_itself_is_taken_from_a_folder(tmp_path):
-    lay(tmp_path, {"scripts/spiral.py": GUARDED, "scripts/geometry.py": "PI = 3\n"})
-    submission = found_in(tmp_path)
-    assert submission.start == Script(tmp_path / "scripts/spiral.py")
-    assert submission.root == tmp_path / "scripts"
-    assert str(submission.found) == "file scripts/spiral.py"
+PASSED_OVER = [
+    *(".git/a.py", ".venv/a.py", "__pycache__/a.py", "__MACOSX/a.py", "._node.py"),
+    *("venv/a.py", "my_env/a.py", "build/a.py", "install/a.py", "log/a.py"),
+    *("test/a.py", "tests/a.py", "pkg/__init__.py", "x.launch.py", "launch/y_launch.py"),
+]
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"a/node.py": GUARDED, "a/geometry.py": "PI = 3\n"},
+        {"a/node.py": "import rclpy\nrclpy.init()\n", "README.md": ""},
+        {"a/node.py": "x = (\n" + GUARDED, "helper.py": "X = 1\n"},
+        dict.fromkeys([*PASSED_OVER, "a/node.py"], GUARDED) | {"my_env/pyvenv.cfg": ""},
+    ],
+)
+def test_the_file_that_starts_itself_or_is_the_only_one_is_taken_from_a_folder(tmp_path, files):
+    submission = found_in(lay(tmp_path, files))
+    assert submission.start == Script(tmp_path / "a/node.py")
+    assert submission.root == tmp_path / "a"
+    assert str(submission.found) == "file a/node.py"
 
 
 def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path):
@@ -112,26 +127,6 @@ def test_several_files_to_start_are_listed(tmp_path):
     lay(tmp_path, {"a.py": GUARDED, "b.py": NODE, "helper.py": "X = 1\n"})
     assert "several Python files to start: a.py, b.py. " in refused(tmp_path)
     assert "no Python file c; it has: a.py, b.py" in refused(tmp_path, "c")
-
-
-def test_a_lone_file_needs_neither_guard_nor_main(tmp_path):
-    lay(tmp_path, {"node.py": "import rclpy\nrclpy.init()\n", "README.md": ""})
-    assert found_in(tmp_path).start == Script(tmp_path / "node.py")
-
-
-def test_a_file_that_does_not_parse_still_counts_by_its_text(tmp_path):
-    lay(tmp_path, {"node.py": "x = (\n" + GUARDED, "helper.py": "X = 1\n"})
-    assert found_in(tmp_path).start == Script(tmp_path / "node.py")
-
-
-def test_what_is_not_the_students_node_is_passed_over(tmp_path):
-    others = [
-        *(".git/a.py", ".venv/a.py", "__pycache__/a.py", "__MACOSX/a.py", "._node.py"),
-        *("venv/a.py", "my_env/a.py", "build/a.py", "install/a.py", "log/a.py"),
-        *("test/a.py", "tests/a.py", "pkg/__init__.py", "x.launch.py", "launch/y_launch.py"),
-    ]
-    lay(tmp_path, dict.fromkeys(others, GUARDED) | {"my_env/pyvenv.cfg": "", "node.py": GUARDED})
-    assert found_in(tmp_path).start == Script(tmp_path / "node.py")
 
 
 def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path):
@@ -231,20 +226,20 @@ def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path):
     assert "there is no folder" in refused(tmp_path / "no" / "a.py")
 
 
-def test_an_empty_folder_says_what_to_hand_in(tmp_path):
-    lay(tmp_path, {".git/config": ""})
-    assert refused(tmp_path).endswith(f"is an empty folder. {HAND_IN!s}")
+CPP = ("package.xml", "CMakeLists.txt", "src/node.cpp", "launch/a.launch.py")
+HELD = "no Python file that could be the node (it holds: old.rar, report.pdf)"
 
 
-def test_a_folder_without_python_lists_what_it_holds(tmp_path):
-    text = refused(lay(tmp_path, {"report.pdf": "", "old.rar": "", "test/a.py": ""}))
-    assert "no Python file that could be the node (it holds: old.rar, report.pdf)" in text
-
-
-def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path):
-    files = {"package.xml": "", "CMakeLists.txt": "", "src/node.cpp": "", "launch/a.launch.py": ""}
-    assert "Only Python can be graded" in refused(lay(tmp_path, files))
-    assert "Only Python can be graded" in refused(tmp_path / "src/node.cpp")
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        ([".git/config"], f"is an empty folder. {HAND_IN!s}"),
+        (["report.pdf", "old.rar", "test/a.py"], HELD),
+        (CPP, "Only Python can be graded"),
+    ],
+)
+def test_a_folder_without_a_program_in_python_says_what_it_holds(tmp_path, names, words):
+    assert words in refused(lay(tmp_path, dict.fromkeys(names, "")))
 
 
 @pytest.mark.parametrize(
@@ -252,6 +247,7 @@ def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path):
     [
         *(("a.tar.xz", "as a .zip"), ("a.rar", "as a .zip"), ("a.ipynb", "(.py)")),
         *(("a.PY", "call it a.py"), ("a.txt", HAND_IN), ("README", HAND_IN)),
+        ("a.cpp", "Only Python can be graded"),
     ],
 )
 def test_another_kind_of_file_says_what_to_hand_in(tmp_path, name, advice):

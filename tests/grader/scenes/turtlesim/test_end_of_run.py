@@ -16,7 +16,6 @@ def at(x, theta=0.0, speed=0.0):
 
 
 def turtles(pose):
-    """The turtles that there are in a tick, by name."""
     return {} if pose is None else {"turtle1": pose}
 
 
@@ -31,7 +30,6 @@ def ends(poses, limits=LIMITS, gone_tick=None):
 
 
 def pauses(tick):
-    """A rest that is too short counts for nothing."""
     return at(tick if tick < 20 else max(20, tick - REST + 2))
 
 

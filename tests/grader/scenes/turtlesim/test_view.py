@@ -16,7 +16,6 @@ from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 
 def once(at_tick, act):
-    """A controller that does something in one tick."""
     return lambda tick, _, arena: act(arena) if tick == at_tick else None
 
 

@@ -28,35 +28,23 @@ _vectors = st.tuples(_doubles, _doubles, _doubles)
 _ids = st.binary(max_size=16) | texts | st.integers()
 
 
+_of_type = {"int": _bytes, "float": _doubles, "str": texts, "Vector": _vectors, "GoalId": _ids}
+
+
 def _of(kind, **more):
+    own = {each.name: each.type for each in fields(kind) if each.name not in ("tick", *more)}
+    more |= {name: _of_type[its] for name, its in own.items()}
     return st.builds(kind, tick=_ticks, **more)
 
 
+_doubles_set = _of(events.SetParameter, value=_doubles, double=st.just(True))
+_others_set = _of(
+    events.SetParameter, value=st.booleans() | st.integers() | texts, double=st.just(False)
+)
 #: op -> any event of this kind.
 _any_of_kind = {
-    "cmd_vel": _of(events.CmdVel, turtle=topic_names, linear=_vectors, angular=_vectors),
-    "set_pen": _of(
-        events.SetPen, turtle=texts, r=_bytes, g=_bytes, b=_bytes, width=_bytes, off=_bytes
-    ),
-    "teleport_absolute": _of(
-        events.TeleportAbsolute, turtle=texts, x=_doubles, y=_doubles, theta=_doubles
-    ),
-    "teleport_relative": _of(
-        events.TeleportRelative, turtle=texts, linear=_doubles, angular=_doubles
-    ),
-    "rotate_absolute": _of(events.RotateAbsolute, turtle=texts, theta=_doubles, id=_ids),
-    "cancel": _of(events.Cancel, id=_ids),
-    "spawn": _of(events.Spawn, x=_doubles, y=_doubles, theta=_doubles, name=texts),
-    "kill": _of(events.Kill, name=texts),
-    "clear": _of(events.Clear),
-    "reset": _of(events.Reset),
-    "param": st.one_of(
-        _of(events.SetParameter, name=texts, value=st.booleans() | st.integers() | texts),
-        _of(events.SetParameter, name=texts, value=_doubles, double=st.just(True)),
-    ),
-    "snapshot": _of(events.Snapshot, name=texts),
-    "snapshot_now": _of(events.SnapshotNow, name=texts),
-}
+    op: _of(kind) for op, kind in events.KINDS.items() if kind is not events.SetParameter
+} | {"cmd_vel": _of(events.CmdVel, turtle=topic_names), "param": _others_set | _doubles_set}
 
 
 def odd_events(*ops):
@@ -106,7 +94,6 @@ def assert_same_trace(ours, theirs):
 
 
 def assert_same_trajectory(ours, theirs):
-    """Every column has the same type and bits."""
     for column in fields(Trajectory):
         _assert_same_array(getattr(ours, column.name), getattr(theirs, column.name))
 
