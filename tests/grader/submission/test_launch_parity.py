@@ -1,7 +1,9 @@
 """What a launch file starts, when and with which arguments is what ROS's own launch has started.
 
-The files are of the kinds that public courses have; `record_launches` has run them with launch
-3.4.3 and launch_ros 0.26.6.
+The files are of the kinds that public courses have; launched.json is what launch 3.4.3 and
+launch_ros 0.26.6 made of them, packages laid out as `colcon build` would: the name that `ros2
+launch` prints, the moment [s], and the arguments. `worker` and scripts ended at once, all others
+waited.
 """
 
 import json
@@ -12,11 +14,12 @@ import pytest
 
 from grader.run import inspecting
 from grader.submission.launching import LaunchAsked
-from tests.grader.submission.record_launches import FOLDER, RECORDED
 from tests.grader.submission.test_launching import opened
 from tests.grader_robots.packages import inspected
+from tests.hand_ins import SUBMISSIONS
 
-STARTS = json.loads(RECORDED.read_text())
+FOLDER = SUBMISSIONS / "like_ros2_launch"
+STARTS = json.loads(Path(__file__).with_name("launched.json").read_text())
 #: What the grader does not start, and says so.
 LEFT_OUT = ("sleep", "rqt_graph", "static_transform_publisher", "turtlesim_node", "Spawn")
 #: The programs of `composed.launch.py` that it does not start either; a prefix is no name.
