@@ -14,7 +14,7 @@ from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
 from grader.scenes.live import Grading
 from tests import runs
 from tests.barriers import barriers
-from tests.browser import WIDTHS, clipped, cut_off, needs_browser, open_browser
+from tests.browser import WIDTHS, clipped, cut_off, needs_browser
 from tests.grader.exercise.expect.traces import endpoint, line, text, trace
 from tests.programs import DEADLINE_S, Program
 
@@ -63,12 +63,6 @@ def folder(tmp_path_factory, everything):
     content = render(Playback(f"node.py {HOSTILE}", "", played, judged))
     (made / "replay.html").write_text(content, encoding="utf-8")
     return made
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 @pytest.fixture

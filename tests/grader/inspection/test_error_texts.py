@@ -15,12 +15,6 @@ from grader.inspection.error_texts import advice
         ("ValueError: too many values to unpack (expected 2)", ".items()"),
         ("TypeError: Failed to normalize given item of type '<class 'float'>'", "'0.1'"),
         ("TypeError: Expected 'parameters' given to Node to be one of ['list'], dict", "[{...}]"),
-        (
-            "TypeError: generate_launch_description() returned NoneType; expected a "
-            "LaunchDescription",
-            "return LaunchDescription",
-        ),
-        ("RuntimeError: Unrecognized entity of the type: param (it is one of ROS 1)", "ROS 2"),
         ("NameError: name 'x' is not defined", "`ros2 launch` says the same"),
     ],
 )

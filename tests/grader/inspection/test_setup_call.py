@@ -110,11 +110,11 @@ def test_nothing_is_fetched(tmp_path):
 
 
 @pytest.mark.parametrize("group", ["distutils.setup_keywords", "distutils.commands"])
-@pytest.mark.parametrize("plugins", ["setuptools.finalize_distribution_options"])
-def test_no_plugin_is_loaded(group, plugins, tmp_path):
+def test_no_plugin_is_loaded(group, tmp_path):
     info = tmp_path / "plugin-1.dist-info"
     info.mkdir()
-    lines = [f"[{each}]\nplugin = plugin:fail\n" for each in (group, plugins)]
+    groups = (group, "setuptools.finalize_distribution_options")
+    lines = [f"[{each}]\nplugin = plugin:fail\n" for each in groups]
     (info / "entry_points.txt").write_text("".join(lines))
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: plugin\nVersion: 1\n")
     text = f"{SETUP}setup(name='walker', plugin=1)\n"

@@ -60,7 +60,6 @@ THIRD = "Node(package='spiral', executable='pen_node'{})"
 @pytest.mark.parametrize(
     ("more", "note"),
     [
-        (THIRD.format(", condition=IfCondition('false')"), ""),
         (
             "ExecuteProcess(cmd=['ls', '-l'])",
             "launch/a.launch.py starts programs of other packages, and these were not: ls -l",

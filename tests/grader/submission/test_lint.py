@@ -15,8 +15,6 @@ TUTORIALS = SUBMISSIONS / "tutorials"
 SETUP = """from setuptools import setup
 setup(name="spiral", entry_points={"console_scripts": ["draw = spiral.draw:main"]})
 """
-HEAD = "class Controller(Node):\n    def __init__(self):\n        self.stopped = False\n"
-READ = "    def drive(self):\n        return self.stopped\n"
 CASES = yaml.safe_load(Path(__file__).with_name("lint.yaml").read_text(encoding="utf-8"))
 #: What only gives a place to something that a run has shown.
 PLACES = {
@@ -63,7 +61,7 @@ def test_in_the_right_programs_of_tutorials_nothing_is_blamed():
 
 def test_what_one_file_sets_another_may_read():
     base = "class Base:\n    def go(self):\n        return self.stoped\n"
-    source = f"{HEAD}{READ}    def on_pose(self, pose):\n        self.stoped = True\n"
+    source = "class Controller(Base):\n    def on_pose(self, pose):\n        self.stoped = True\n"
     assert reported({"a.py": source, "b.py": base}) == []
 
 

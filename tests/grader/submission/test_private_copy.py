@@ -1,10 +1,8 @@
 """Runs see a copy of what was handed in, that and no more, and people see what they know."""
 
 import os
-import shutil
 import socket
 import stat
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -17,7 +15,7 @@ from grader.submission.private_copy import PrivateCopy
 from tests.files import lay
 from tests.grader.submission.copies import GUARDED as NODE
 from tests.grader.submission.copies import refused
-from tests.grader.submission.test_opening import PACKAGE
+from tests.grader.submission.test_opening import PACKAGE, pack
 
 
 @pytest.fixture
@@ -95,11 +93,7 @@ def test_what_an_earlier_grading_has_left_is_not_handed_in_again(home):
 def test_the_copy_is_for_reading_only_and_what_was_executable_is(home):
     lay(home, PACKAGE | {"run.sh": "#!/bin/sh\n"})
     (home / "run.sh").chmod(0o755)
-    archive = home.parent / "alice.zip"
-    with zipfile.ZipFile(archive, "w") as packed:
-        for name, text in PACKAGE.items():
-            packed.writestr(name, text)
-    for handed_in in (home, archive):
+    for handed_in in (home, pack(home.parent / "alice.zip", PACKAGE)):
         with open_submission(handed_in) as submission:
             for path in (submission.copy.folder, *submission.copy.folder.rglob("*")):
                 mode = stat.S_IMODE(path.stat().st_mode)
@@ -207,8 +201,8 @@ def test_paths_are_told_as_they_were_handed_in(home):
             text = f'File "{submission.root}/node.py", line 1\n{submission.root}'
             told = submission.with_original_paths(text)
             assert told == f'File "{shown}/node.py", line 1\n{shown}'
-    archive = shutil.make_archive(str(home.parent / "alice"), "zip", home)
-    with open_submission(Path(archive)) as submission:
+    archive = pack(home.parent / "alice.zip", PACKAGE)
+    with open_submission(archive) as submission:
         printed = submission.with_original_paths(f"{submission.root}/spiral/node.py")
         assert printed == f"{archive}/spiral/node.py"
 

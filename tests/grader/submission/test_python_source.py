@@ -12,22 +12,17 @@ def seen(tmp_path, text):
 
 
 @pytest.mark.parametrize(
-    "line",
+    ("line", "is_one"),
     [
-        'if __name__ == "__main__": run()',
-        'if (__name__ == "__main__") and True: run()',
-        'try:\n    pass\nfinally:\n    if __name__ == "__main__": run()',
+        ('if __name__ == "__main__": run()', True),
+        ('if (__name__ == "__main__") and True: run()', True),
+        ('try:\n    pass\nfinally:\n    if __name__ == "__main__": run()', True),
+        ("# if __name__ == '__main__':", False),
+        ("def f():\n    if __name__ == '__main__': pass", False),
     ],
 )
-def test_a_guard_is_seen(tmp_path, line):
-    assert seen(tmp_path, line).has_guard
-
-
-@pytest.mark.parametrize(
-    "line", ["# if __name__ == '__main__':", "def f():\n    if __name__ == '__main__': pass"]
-)
-def test_what_only_looks_like_a_guard_is_none(tmp_path, line):
-    assert not seen(tmp_path, line).has_guard
+def test_a_guard_is_seen(tmp_path, line, is_one):
+    assert seen(tmp_path, line).has_guard == is_one
 
 
 def test_only_a_main_at_module_level_counts(tmp_path):

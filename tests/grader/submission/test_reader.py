@@ -107,7 +107,6 @@ GROWING = {
 HARD = {
     "a chain of comparisons": "<".join(["a"] * 100_000),
     "a package in a package": "import " + ".".join(["a"] * 100_000),
-    "guards that do not parse": "if " + "__name__ " * 100_000 + "\n(",
 }
 ONE_PARSER = "the same parser, another way to trouble it"
 
@@ -231,15 +230,6 @@ def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path):
         os.system(f"rm -rf '{tmp_path}'")  # Python's own way down is one of paths
 
 
-def test_eleven_thousand_files_are_not_listed(tmp_path):
-    for number in range(11_000):
-        (tmp_path / f"{number}.py").touch()
-    (tmp_path / "node.py").touch()
-    how, sentence = opened(tmp_path)
-    assert how == "refused"
-    assert "holds more than 10,000 files and folders" in sentence
-
-
 @pytest.mark.parametrize("name", ["setup.py", "setup.cfg", "pkg/node.py", "launch/a.launch.py"])
 def test_a_link_to_a_place_outside_is_not_read(tmp_path, name):
     secret = tmp_path / "secret"
@@ -294,8 +284,6 @@ def test_a_copy_that_dies_is_no_fault_of_the_submission_s(tmp_path, monkeypatch)
     "answer",
     [
         b"",
-        b"null\n",
-        b"{}\n",
         b'{"name": 1}\n',
         b'{"found": {"name": "", "root": "", "found": "", "start": {"x": 1}}}\n',
         b'{"whose": "grader", "refused": ""}\n',

@@ -12,7 +12,7 @@ from grader.recording.subject import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.translations import ENGLISH, use
 from tests.barriers import barriers
-from tests.browser import WIDTHS, clipped, cut_off, moving, needs_browser, obstacles, open_browser
+from tests.browser import WIDTHS, clipped, cut_off, moving, needs_browser, obstacles
 from tests.grader.driving import RED, Spiral, drive, pen, twist
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
@@ -73,12 +73,6 @@ def page_file(tmp_path_factory, runs):
         assert main(["view", str(folder / "graded"), "--no-open", *words]) == 0
     use(ENGLISH)
     return folder / "graded" / "view.html"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

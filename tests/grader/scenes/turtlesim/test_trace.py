@@ -56,10 +56,6 @@ def test_a_turtle_that_never_was_has_an_empty_trajectory(trace):
     assert way.rgb.shape == (0, 3)
 
 
-def test_its_length_in_nanoseconds_is_16_ms_a_tick(trace):
-    assert (trace.ticks, trace.duration_ns) == (100, 1_600_000_000)
-
-
 def test_another_scene_s_trace_is_refused():
     with pytest.raises(TypeError, match="expected a trace of turtlesim, found a Log"):
         TurtleTrace.of(Log(1, "INFO", "turtlesim", "no trace"))
