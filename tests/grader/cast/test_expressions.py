@@ -137,9 +137,8 @@ def test_a_name_that_begins_with_a_line_is_no_way_out():
 
 
 def test_a_text_is_filled_with_values_in_forms():
-    assert (
-        filled("Hello {text}: {n}, {pose.x:.2f} {n:03d} {n:x}", NAMES) == "Hello abc: 3, 1.00 003 3"
-    )
+    found = filled("Hello {text}: {n}, {pose.x:.2f} {n:03d} {n:x}", NAMES)
+    assert found == "Hello abc: 3, 1.00 003 3"
     assert filled({"a": ["=n", "{data[1:]}", 5]}, NAMES) == {"a": [3, "[2.5]", 5]}
 
 

@@ -75,7 +75,6 @@ def visit(browser):
         page.set_default_timeout(DEADLINE_S * 1000)
         pages.append(page)
         here = address.partition("?")[0]
-        page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("dialog", lambda dialog: errors.append(dialog.message))
         page.on("request", lambda a: a.url.startswith(("data:", here)) or errors.append(a.url))
         page.goto(address)

@@ -14,14 +14,11 @@ OTHERS = ["geometry_msgs/Point", "builtin_interfaces/Time", "std_msgs/Header", "
 TEXTS = ["", "a", " b ", "it's", "c d", "\\t", "x, y", "é雪"]
 
 
-def whole(rng, low, high):
-    value = rng.choice([low, high, rng.randint(low, high), min(high, 7)])
-    return rng.choice([str(value), hex(value)])
-
-
 def value(rng, kind):
     if kind in WHOLE:
-        return whole(rng, *WHOLE[kind])
+        low, high = WHOLE[kind]
+        whole = rng.choice([low, high, rng.randint(low, high), min(high, 7)])
+        return rng.choice([str(whole), hex(whole)])
     if kind == "bool":
         return rng.choice(["true", "false", "True", "0", "1"])
     if kind.startswith("float"):

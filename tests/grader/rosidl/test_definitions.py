@@ -164,10 +164,8 @@ def test_types_of_other_packages_are_those_that_are_installed():
 
 
 def test_an_unknown_type_is_told():
-    assert (
-        "line 2: `mine/Header` is not known. Write std_msgs/Header."
-        in errors(A="int8 a\nHeader h")["A"]
-    )
+    found = errors(A="int8 a\nHeader h")["A"]
+    assert "line 2: `mine/Header` is not known. Write std_msgs/Header." in found
     assert "`std_msgs/Nothing` is not known" in errors(A="std_msgs/Nothing h")["A"]
     # nothing is imported to look for it
     assert "is not known" in errors(A="antigravity/Nothing h")["A"]

@@ -9,7 +9,6 @@ import pytest
 import yaml
 
 from grader.run.opening import open_submission
-from grader.submission.start import EntryPoint
 from tests.files import lay
 from tests.grader.submission.copies import NODE, below
 
@@ -95,16 +94,6 @@ def test_each_shortcoming_is_a_note(tmp_path, shortcoming):
 )
 def test_what_is_no_shortcoming_is_not_told(tmp_path, change):
     assert notes(lay(tmp_path, PACKAGE | change)) == ()
-
-
-def test_a_set_up_that_cannot_be_evaluated_is_a_note_with_its_line(tmp_path):
-    change = changed("setup.py", "packages=[package_name]", "packages=more()")
-    with open_submission(lay(tmp_path, PACKAGE | change)) as submission:
-        assert submission.start == EntryPoint("spiral.node", "main")
-        assert tuple(map(str, submission.notes)) == (
-            "colcon would not build this: setup.py ends with NameError: name 'more' is not "
-            "defined (setup.py, line 8)",
-        )
 
 
 def test_a_package_inside_is_named_with_its_folder(tmp_path):

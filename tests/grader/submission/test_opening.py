@@ -129,19 +129,12 @@ def test_several_files_to_start_are_listed(tmp_path):
     assert "no Python file c; it has: a.py, b.py" in refused(tmp_path, "c")
 
 
-def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path):
+def test_a_zip_is_unpacked_while_it_is_open_and_removed_also_after_an_error(tmp_path):
     archive = pack(tmp_path / "alice.zip", below("hw1/ws/src/spiral", PACKAGE))
-    with open_submission(archive) as submission:
+    with pytest.raises(FileNotFoundError, match="run"), open_submission(archive) as submission:
         assert submission.name == "alice.zip"
         assert str(submission.found).endswith(" in hw1/ws/src/spiral/setup.py")
         assert (submission.root / "spiral/node.py").read_text() == GUARDED
-    assert not submission.root.exists()
-
-
-def test_a_zip_goes_away_after_an_error_in_the_run(tmp_path):
-    opened = open_submission(pack(tmp_path / "a.zip", {"node.py": NODE}))
-    with pytest.raises(FileNotFoundError, match="of the run"), opened as submission:
-        assert submission.start == EntryPoint("node", "main")
         raise FileNotFoundError("of the run")
     assert not submission.root.exists()
 

