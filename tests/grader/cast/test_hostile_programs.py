@@ -23,7 +23,6 @@ EARNED = {
     "floods_peers": set[str](),
     "floods_the_graph": set[str](),
 }
-FULL = "of what was exchanged, the first"
 
 
 def graded(name):
@@ -67,5 +66,5 @@ def test_what_a_peer_cannot_use_is_a_finding():
 
 def test_what_lies_behind_a_flood_is_not_taken_for_right():
     result = graded("floods_with_texts")
-    assert any(FULL in str(flag) for flag in result.run.flags)
+    assert any("of what was exchanged, the first" in str(flag) for flag in result.run.flags)
     assert "was recorded" in said(result, "chatter")

@@ -116,14 +116,7 @@ def test_a_value_that_does_not_fit_is_told_with_its_field(types, what):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        "own/msg/None",
-        "no_such/msg/String",
-        "std_msgs/msg/Strin",
-        "std_msgs/srv/String",
-        "antigravity/msg/A",
-    ],
+    "name", ["own/msg/None", "no_such/msg/String", "std_msgs/srv/String", "antigravity/msg/A"]
 )
 def test_a_type_that_is_nowhere_is_none(types, name):
     with pytest.raises(NoType, match="there is no"):

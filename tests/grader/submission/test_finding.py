@@ -69,6 +69,5 @@ def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(tmp_path, scratch
 
 def test_a_folder_with_too_many_files_is_refused(tmp_path, scratch, monkeypatch):
     monkeypatch.setattr("grader.submission.folder.MAX_ENTRIES", 2)
-    assert "more than 2 files" in refused(
-        lay(tmp_path / "in", dict.fromkeys(("a", "b", "c"), "")), scratch
-    )
+    handed_in = lay(tmp_path / "in", dict.fromkeys(("a", "b", "c"), ""))
+    assert "more than 2 files" in refused(handed_in, scratch)

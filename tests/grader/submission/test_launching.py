@@ -54,9 +54,6 @@ def notes(submission):
     return [str(note) for note in submission.notes]
 
 
-THIRD = "Node(package='spiral', executable='pen_node'{})"
-
-
 @pytest.mark.parametrize(
     ("more", "note"),
     [
@@ -77,7 +74,8 @@ def test_what_a_launch_file_does_besides_is_followed_or_named(tmp_path, more, no
 
 
 def test_what_is_started_again_is_said_once(tmp_path):
-    submission = launched(tmp_path, f"{DRIVE}, {THIRD.format(', respawn=True')}")
+    again = PENS.replace(")", ", respawn=True)")
+    submission = launched(tmp_path, f"{DRIVE}, {again}")
     assert names(submission) == ["turtle_controller-1", *["pen_node-2"] * 4]
     assert str(submission.found) == "launch/a.launch.py, which starts turtle_controller, pen_node"
 

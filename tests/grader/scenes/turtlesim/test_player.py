@@ -171,9 +171,8 @@ def test_the_first_input_that_differs_is_named():
         if tick == 50:
             arena.clear()
 
-    one, two, shorter = (
-        drive(*each)[0] for each in ((eventful, 100), (later, 100), (eventful, 90))
-    )
+    one, two = (drive(each, 100)[0] for each in (eventful, later))
+    shorter = drive(eventful, 90)[0]
     found = first_difference(one, two)
     assert found["tick"] == 50
     assert [call["op"] for call in found["mine"]] == ["cmd_vel"]
