@@ -11,7 +11,6 @@ from grader.run.opening import open_submission
 from grader.submission.interfaces import MOST, completed
 from tests import runs
 
-WORKSPACE = runs.SUBMISSIONS / "interfaces" / "workspace"
 NODE = "import rclpy\nfrom mine.msg import Num\n\nrclpy.init()\n"
 MANIFEST = """<package format="3"><name>{name}</name><version>0.1.0</version>
 <description>d</description><maintainer email="a@b.org">a</maintainer><license>MIT</license>
@@ -47,7 +46,7 @@ def test_what_cmake_globs_is_generated(tmp_path):
 
 
 def test_they_are_no_missing_modules():
-    with open_submission(WORKSPACE) as submission:
+    with open_submission(runs.SUBMISSIONS / "interfaces" / "workspace") as submission:
         assert "tutorial_interfaces" not in {**submission.imports.surely}
         assert "rclpy" in submission.imports.surely
 

@@ -9,8 +9,8 @@ from grader.submission.set_ups import read_package
 from tests.files import lay
 
 
-def read(folder, *scripts, package_folders=()):
-    lay(folder, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
+def read(folder, *scripts, package_folders=(), **texts):
+    lay(folder, {"setup.py": "", "setup.cfg": "", "pyproject.toml": "", **texts})
     declared = SetUpFacts(scripts=scripts, package_folders=package_folders)
     return read_package(SetUp(".", declared, None), SubmissionFolder("pkg", folder))
 
@@ -47,10 +47,7 @@ def test_an_entry_that_no_tool_could_install_is_refused(tmp_path, entry, words):
 
 @pytest.mark.parametrize("named", ["setup.cfg", "pyproject.toml", "setup.py"])
 def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path, named):
-    lay(tmp_path, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
-    (tmp_path / named).write_text("go: pkg.node:main")
-    declared = SetUpFacts(scripts=("go = pkg.node:main",))
-    (script,) = read_package(SetUp(".", declared, None), SubmissionFolder("pkg", tmp_path)).scripts
+    (script,) = read(tmp_path, "go = pkg.node:main", **{named: "go: pkg.node:main"}).scripts
     assert script.file == tmp_path / named
 
 

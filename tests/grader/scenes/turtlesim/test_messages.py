@@ -21,7 +21,6 @@ from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_traces
 from turtlesim_py.world.arena import TICK_NS
 
 DEFINITIONS = Path(__file__).parents[4] / "interfaces" / "packages" / "turtlesim" / "msg"
-STRING = "std_msgs/msg/String"
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +43,7 @@ def channels_of(found, trace):
 
 
 def said(text):
-    return BagMessage(TICK_NS, "/turtlesim/events", STRING, string(text))
+    return BagMessage(TICK_NS, "/turtlesim/events", "std_msgs/msg/String", string(text))
 
 
 def test_the_definitions_of_turtlesim_are_those_of_our_interfaces():

@@ -49,12 +49,9 @@ class Wild:
             arena.kill("turtle2")
 
 
-START = Start(3.0, 7.0, 0.5)
-
-
 @pytest.fixture(scope="module")
 def runs():
-    return Recordings(drive(Wild(), ticks=TICKS), (drive(Spiral(), 120, START),))
+    return Recordings(drive(Wild(), ticks=TICKS), (drive(Spiral(), 120, Start(3.0, 7.0, 0.5)),))
 
 
 @pytest.fixture(scope="module")

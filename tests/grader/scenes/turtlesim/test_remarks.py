@@ -22,7 +22,6 @@ MOVES = "it moves a turtle without driving"
 
 @pytest.fixture(scope="module")
 def trace():
-    """Driving and pens only."""
     return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
 
 
