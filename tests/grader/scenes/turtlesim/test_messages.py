@@ -87,6 +87,7 @@ def test_a_turtle_that_published_nothing_has_topics_all_the_same(trace):
 def test_the_messages_stand_by_time(trace):
     times_ns = [message.time_ns for message in messages.to_messages(trace)]
     assert times_ns == sorted(times_ns)
+    assert times_ns[-1] <= trace.duration_ns == 1_600_000_000  # of 100 ticks
 
 
 @pytest.mark.parametrize(
