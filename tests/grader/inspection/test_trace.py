@@ -67,6 +67,7 @@ def test_a_trace_comes_back_as_it_was():
         b"\xff",
         b"NaN",
         b'"' + b"[" * 100_000,
+        b"[" * 100_000,
         b" " * (MOST_BYTES + 1),
         changed(more=1),
         changed(setup=[]),
