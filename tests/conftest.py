@@ -146,11 +146,3 @@ def turtle(graph, simulator):
     assert graph.call(Spawn, "/spawn", x=5.5, y=5.5, theta=0.0, name=name).name == name
     yield name
     graph.call(Kill, "/kill", name=name)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    from tests.browser import open_browser
-
-    with open_browser() as opened:
-        yield opened
