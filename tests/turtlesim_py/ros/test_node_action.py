@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
+from geometry_msgs.msg import Twist
 from rclpy.task import Future
 from turtlesim.action import RotateAbsolute
 from turtlesim.msg import Pose
@@ -142,3 +143,14 @@ def test_goals_of_two_turtles_run_beside_each_other(graph, turtle, rotation):
     assert rotation.outcome(goals[0])[1] == pytest.approx(-0.192)
     assert other.outcome(goals[1])[1] == pytest.approx(0.192)
     graph.call(Kill, "/kill", name="second")
+
+
+def test_a_command_aborts_a_goal(graph, simulator, turtle, rotation):
+    publisher = graph.publisher(Twist, f"/{turtle}/cmd_vel")
+    begin = len(simulator.lines)
+    goal = rotation.send(3.0)
+    graph.until(lambda: goal.remaining, "a rotation")
+    publisher.publish(Twist())
+    assert rotation.outcome(goal)[0] == GoalStatus.STATUS_ABORTED
+    line = simulator.wait_for_line("Velocity command received during rotation goal.", begin)
+    assert line.startswith("[WARN]")

@@ -1,7 +1,12 @@
+from functools import partial
+
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from turtlesim.msg import Pose
+from turtlesim.srv import Kill, Spawn
+
+from tests.graph import DEEP
 
 pytestmark = pytest.mark.usefixtures("simulator")
 
@@ -97,3 +102,25 @@ def test_of_a_long_burst_the_last_seven_survive(graph, turtle):
     speeds = [pose.linear_velocity / 0.125 for pose in poses if pose.linear_velocity]
     last = speeds.index(40.0)
     assert speeds[last - 6 : last + 1] == [34, 35, 36, 37, 38, 39, 40]
+
+
+def test_turtles_publish_in_the_bytewise_order_of_their_names(graph):
+    names = ["zoe", "Zoe", "alice"]
+    sent = []  # when, who
+    for name in names:
+        graph.call(Spawn, "/spawn", x=1.0, y=1.0, name=name)
+        note = partial(lambda who, _, info: sent.append((info["source_timestamp"], who)), name)
+        graph.node.create_subscription(Pose, f"/{name}/pose", note, DEEP)
+    graph.until(lambda: {who for _, who in sent} == set(names), "poses of all three")
+    first = max(min(when for when, who in sent if who == name) for name in names)
+
+    def order():
+        """Who has sent since all three are heard: what has come of one may be behind the others."""
+        return [who for when, who in sorted(sent) if when >= first]
+
+    graph.until(lambda: min(map(order().count, names)) > 6, "more poses")
+    found = order()
+    start = found.index("Zoe")
+    assert found[start : start + 12] == ["Zoe", "alice", "zoe"] * 4
+    for name in names:
+        graph.call(Kill, "/kill", name=name)
