@@ -83,7 +83,7 @@ def _unpacked() -> Path:
         with tarfile.open(FILE) as packed:
             packed.extractall(folder, filter="data")
 
-    return once.folder(unpack, "archive", FILE.read_bytes())
+    return once.folder(unpack, "archive", made_by=(str(FILE.relative_to(once.ROOT)),))
 
 
 def _make(place: Path) -> None:

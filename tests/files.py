@@ -1,6 +1,8 @@
 """Files that a test works on."""
 
+import io
 import os
+import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -18,6 +20,15 @@ def contents(folder: Path) -> dict[str, bytes]:
     """What files there are below a folder, by their paths in it."""
     files = (path for path in folder.rglob("*") if path.is_file())
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+def packed(files: Mapping[str, str | bytes]) -> bytes:
+    """The bytes of a zip with these files."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return buffer.getvalue()
 
 
 def lay_too_deep(top: Path) -> None:

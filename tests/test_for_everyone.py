@@ -14,7 +14,7 @@ from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.result.error import ErrorResult
 from tests.barriers import barriers
-from tests.browser import needs_browser, open_browser
+from tests.browser import needs_browser
 from tests.grader.batch.page.classes import entry, result
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
@@ -60,12 +60,6 @@ def page_of_a_class(folder):
 def page_without_a_result(folder):
     error = ErrorResult("submission", "Found no .py file; hand in one.", 100)
     return html.render_error(ErrorReport(error, folder))
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 PAGES = (report_of_turtles, report_of_a_crash, report_of_a_package, page_of_a_class)

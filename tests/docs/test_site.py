@@ -9,7 +9,7 @@ import pytest
 
 import grader
 from scripts.site import __main__ as site
-from tests.browser import needs_browser, obstacles, open_browser
+from tests.browser import needs_browser, obstacles
 from tests.needs import SITE, needs
 
 EXERCISES = tomllib.loads((site.ROOT / "pyproject.toml").read_text("utf-8"))["project"][
@@ -60,12 +60,6 @@ def address():
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 @needs("site")

@@ -1,9 +1,7 @@
 """A submission is found, or refused in words that a student can act on; it is never run."""
 
-import io
 import os
 import tarfile
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -14,7 +12,7 @@ from grader.submission import safe_members
 from grader.submission.folder import HAND_IN
 from grader.submission.safe_members import ArchiveLimits, Budget
 from grader.submission.start import EntryPoint, Script
-from tests.files import lay
+from tests.files import lay, packed
 from tests.grader.submission.copies import GUARDED, NODE, below, found_in, refused
 
 SETUP = (
@@ -32,14 +30,6 @@ PACKAGE = {
 @pytest.fixture(autouse=True)
 def inspection():
     """Confined, as in a run."""
-
-
-def packed(files):
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in files.items():
-            archive.writestr(name, data)
-    return buffer.getvalue()
 
 
 def pack(archive, files):

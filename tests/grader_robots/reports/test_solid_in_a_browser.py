@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader_robots.scene.driving import drive
-from tests.browser import clipped, needs_browser, open_browser
+from tests.browser import clipped, needs_browser
 from tests.grader.reports.samples import verdict
 from tests.grader_robots.reports.test_parts import package_trace, page_of
 from tests.grader_robots.scene.robots import walks
@@ -18,12 +18,6 @@ from tests.grader_robots.scene.test_view import URDF
 pytestmark = needs_browser
 
 READER = Path(__file__).with_name("reader.js").read_text(encoding="utf-8")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with open_browser() as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

@@ -1,19 +1,8 @@
 """Exports of course systems, made by hand as their own source code or documentation has them."""
 
-import io
-import zipfile
-
 from grader.batch.find.finding import find
 
 NODE = "def main():\n    pass\n"
-
-
-def packed(files):
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return out.getvalue()
 
 
 class Finder:

@@ -1,7 +1,7 @@
 """Canvas's download of submissions, as its content_zipper.rb names it."""
 
-from tests.files import lay
-from tests.grader.batch.find.exports import NODE, content, noted, packed
+from tests.files import lay, packed
+from tests.grader.batch.find.exports import NODE, content, noted
 
 GRADEBOOK = (
     "Student,ID,SIS User ID,SIS Login ID,Section,Spiral (9)\n"

@@ -8,7 +8,8 @@ import pytest
 
 from grader.batch.find import finding
 from grader.errors import UsageError
-from tests.grader.batch.find.exports import NODE, content, noted, packed
+from tests.files import packed
+from tests.grader.batch.find.exports import NODE, content, noted
 
 
 def test_one_bad_member_keeps_nobody_else_out(tmp_path, finder):

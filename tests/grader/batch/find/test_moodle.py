@@ -1,7 +1,7 @@
 """Moodle's download of all submissions, as its downloader.php names it."""
 
-from tests.files import lay
-from tests.grader.batch.find.exports import NODE, content, noted, packed
+from tests.files import lay, packed
+from tests.grader.batch.find.exports import NODE, content, noted
 
 FOLDERS = {
     "Zoë Müller-Łukasz_101_assignsubmission_file/turtle_controller.py": NODE,

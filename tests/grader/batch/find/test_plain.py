@@ -7,8 +7,8 @@ import pytest
 
 from grader.batch.find.plain import Pattern
 from grader.errors import UsageError
-from tests.files import lay
-from tests.grader.batch.find.exports import NODE, content, noted, packed
+from tests.files import lay, packed
+from tests.grader.batch.find.exports import NODE, content, noted
 
 
 def test_each_file_and_folder_is_a_student(tmp_path, finder):
