@@ -1,6 +1,5 @@
 """What a family of processes uses, and what ends it."""
 
-import os
 import subprocess
 import sys
 import threading
@@ -23,45 +22,40 @@ DEADLINE_S = 30.0
 
 
 @contextmanager
-def family() -> Iterator[int]:
+def family() -> Iterator[tuple[int, int]]:
+    """Start a family; yield its ancestor and its first member."""
     with subprocess.Popen(
         [sys.executable, "-W", "ignore", "-I", "-S", "-c", TEXTS["family"]],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-    ) as child:
-        assert child.stdout.readline() == b"ready\n"
-        yield child.pid
+    ) as ancestor:
+        yield ancestor.pid, int(ancestor.stdout.readline())
 
 
 def test_all_descendants_count_and_what_they_share_once():
-    found = Family(os.getpid())
-    before = found.usage().tasks, found.private_memory_bytes()
-    with family():
-        assert found.usage().tasks == before[0] + 4
+    with family() as (ancestor, first):
+        found = Family(ancestor)
+        assert found.usage().tasks == 4
         assert found.usage().memory_bytes > 300 * MIB
-        assert 100 * MIB < found.private_memory_bytes() - before[1] < 150 * MIB
-
-
-def test_an_ancestor_does_not_count():
-    with family() as child:
-        assert Family(child).usage().tasks == 2
+        assert 100 * MIB < found.private_memory_bytes() < 150 * MIB
+        assert Family(first).usage().tasks == 2  # an ancestor does not count
 
 
 def test_whose_parent_ends_during_a_look_is_found_by_the_next(monkeypatch):
     """He has told of a parent that is not there any more, and has another one by now."""
     gone = 1 << 30
     look = linux.process_stat
-    with family() as child:
+    with family() as (ancestor, first):
 
         def look_before(pid: int) -> linux.ProcessStat:
             seen = look(pid)
-            return seen._replace(parent=gone) if pid == child else seen
+            return seen._replace(parent=gone) if pid == first else seen
 
-        found = Family(os.getpid())
+        found = Family(ancestor)
         with monkeypatch.context() as during:
             during.setattr(linux, "process_stat", look_before)
-            before = found.usage().tasks
-        assert found.usage().tasks == before + 4
+            assert found.usage().tasks == 0
+        assert found.usage().tasks == 4
 
 
 def test_a_process_that_does_not_exist_has_no_family():
@@ -83,9 +77,9 @@ def test_a_process_that_does_not_exist_has_no_family():
 )
 def test_too_much_ends_them(limits, said):
     ended = threading.Event()
-    with family():
+    with family() as (ancestor, _):
         guard = LimitsGuard(limits)
-        guard.add(os.getpid(), ended.set, lambda: MIB)
+        guard.add(ancestor, ended.set, lambda: MIB)
         assert ended.wait(DEADLINE_S)
         guard.stop()
     assert said in str(guard.remark)
@@ -95,8 +89,8 @@ def test_too_much_ends_them(limits, said):
 def test_the_last_look_finds_what_came_after_the_one_before(monkeypatch, bytes_, is_much):
     monkeypatch.setattr("grader.run.processes.limits_guard.EVERY_S", DEADLINE_S)
     ended = threading.Event()
-    with family():
+    with family() as (ancestor, _):
         guard = LimitsGuard(RunLimits(family_bytes=bytes_))
-        guard.add(os.getpid(), ended.set)
+        guard.add(ancestor, ended.set)
         assert guard.measure_last() is ended.is_set() is is_much
     assert ("used more than 50 MiB of memory" in str(guard.remark)) is is_much
