@@ -86,6 +86,9 @@ def execute(session: WorkDB) -> None:
     site = next(Path(".venv").glob("lib/python*/site-packages"))
     refused = subprocess.run([*APART, "true"], stderr=subprocess.DEVNULL).returncode
     passed: set[str] = set()
+    modules = {Path(item.mutations[0].module_path) for item in session.work_items}
+    for module in modules:  # a run that was stopped has left one changed
+        shutil.copyfile(module, site / module)
     for item in session.pending_work_items:
         module = Path(item.mutations[0].module_path)
         for tier, (which, timeout_s) in enumerate(TIERS):
