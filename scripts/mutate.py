@@ -135,6 +135,9 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200, help="mutants at most: %(default)s")
     parser.add_argument("--seed", type=int, default=1)
     args = parser.parse_args()
+    # what the wheels set for this process: the libraries of the clone are its own
+    for name in ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE"):
+        os.environ.pop(name, None)
     commit = clone()
     os.chdir(TREE)
     drawn = hashlib.sha256("+".join(args.modules).encode()).hexdigest()[:10]
