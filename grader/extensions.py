@@ -3,7 +3,7 @@
 grader.scenes       a `grader.recording.subject.Subject`, named by an exercise's `scene:`
 grader.exercises    a module or package in the exercise's folder
 grader.reports      a `grader.reports.Format`
-grader.inspections  what an exercise's `inspections:` name: a `grader.inspection.inspector.
+grader.inspections  what an exercise's `inspections:` name: a `grader.submission.inspector.
                     Inspector`
 """
 

@@ -92,21 +92,17 @@ MAY_IMPORT: dict[str, set[str]] = {
     # scripted peers, which any scene may have beside it
     "grader.cast": GROUND
     | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined", "rosidl"),
-    # a package is inspected in the submission's process, which sees little of ours
-    "grader.inspection": GROUND | below("grader", "recording", "inspection", "rosidl.cdr"),
-    "grader.inspection.trace": below("grader", "strict_json", "message"),
-    "grader.inspection.answer": {"grader.strict_json", "grader.inspection.trace"},
-    "grader.inspection.examining": below("grader", "limited", "linux", "strict_json", "message")
-    | below("grader.inspection", "trace", "answer", "__init__"),
-    "grader.inspection.examining.doubles": below("grader", "inspection.examining", "message"),
-    # what an inspection answers, as data; what the source shows, as it is recorded; what CMake
-    # would generate, and what of that parses
+    # what the source shows, as it is recorded; what CMake would generate, and what of that parses
     "grader.submission": GROUND
-    | below("grader.inspection", "answer", "error_texts", "trace", "examining.cmake")
-    | below("grader.inspection.examining", "known", "paths")
-    | below("grader", "recording.observations", "recording.recording", "rosidl.definitions"),
+    | below("grader", "submission", "recording", "rosidl.cdr", "rosidl.definitions"),
+    # a package is examined in the submission's process, which sees little of ours
+    "grader.submission.trace": below("grader", "strict_json", "message"),
+    "grader.submission.answer": {"grader.strict_json", "grader.submission.trace"},
+    "grader.submission.examining": below("grader", "limited", "linux", "strict_json", "message")
+    | below("grader.submission", "trace", "answer", "__init__"),
+    "grader.submission.examining.doubles": below("grader", "submission.examining", "message"),
     "grader.run": GROUND
-    | below("grader", "submission", "recording", "scenes", "inspection", "run", "rosidl.compiler")
+    | below("grader", "submission", "recording", "scenes", "run", "rosidl.compiler")
     | {"grader.cast.script"},
     "grader.run.limits": {"grader.message"},
     "grader.run.sandbox": GROUND | {"grader.run.limits"},
@@ -137,7 +133,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("turtlesim_py.world", "trajectory", "turtle"),
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes.turtlesim", "exercise", "cast.trace")
-    | below("grader", "inspection.trace")
+    | below("grader", "submission.trace")
     | {"turtlesim_py.world"},
     "grader.diagnosis": GROUND | below("grader", "recording", "exercise.verdict"),
     "grader.result": GROUND | below("grader", "recording", "exercise", "diagnosis.diagnosis"),
@@ -215,12 +211,12 @@ EXTENSION = {
     "grader_robots.__init__": set(),
     "grader_robots.scene": GROUND
     | below("grader", "recording", "rosidl.cdr", "scenes.scene", "scenes.by_hand")
-    | {"grader.inspection.trace", "robot_py", "turtlesim_py.ros.program"},
+    | {"grader.submission.trace", "robot_py", "turtlesim_py.ros.program"},
     "grader_robots.inspection": {"grader.message"}
-    | below("grader", "recording", "inspection")
+    | below("grader", "recording", "submission")
     | {"grader_robots.scene"},
     "grader_robots.exercises": GROUND
-    | below("grader", "recording", "inspection", "exercise")
+    | below("grader", "recording", "submission", "exercise")
     | {"grader_robots.scene", "robot_py", "tf2_ros"},
 }
 if (ROOT / "grader_robots").is_dir():

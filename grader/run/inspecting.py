@@ -23,10 +23,6 @@ from typing import Final
 
 from grader import linux
 from grader.errors import GraderFailure
-from grader.inspection import answer, inspector
-from grader.inspection.answer import Inspection, SetUp, SetUpFacts
-from grader.inspection.launched import unlike_launched
-from grader.inspection.trace import FAILED, PackageTrace
 from grader.message import Message, msg
 from grader.recording.recording import Outcome, Recording
 from grader.recording.subject import Trace, load_subject
@@ -36,12 +32,16 @@ from grader.run.finish import Ending, ended, record
 from grader.run.handover import Plan
 from grader.run.limits import INSPECTION_BYTES, INSPECTION_S, CpuBudget
 from grader.run.processes.started_process import SubmissionProcess
+from grader.submission import answer, inspector
+from grader.submission.answer import Inspection, SetUp, SetUpFacts
+from grader.submission.launched import unlike_launched
 from grader.submission.start import EntryPoint, Submission, Whole
+from grader.submission.trace import FAILED, PackageTrace
 
 #: Called with the simulated time [s], of which none passes here.
 Progress = Callable[[float], None]
 #: The program that examines a package, from `ROOT` on.
-EXAMINER: Final = "grader/inspection/examining/main.py"
+EXAMINER: Final = "grader/submission/examining/main.py"
 #: How often the process is checked for being stopped [s], and how many checks together decide.
 EVERY_S, STOPPED_CHECKS = 0.5, 4
 ROOT: Final = Path(__file__).resolve().parents[2]

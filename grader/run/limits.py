@@ -7,7 +7,7 @@ nothing comes from a submission in virtual time (`Patience`). A supervisor ends 
 run is over (`grader.run.processes.supervisor`). A course may bound the processor time of a grading
 as a whole (`CpuBudget`).
 
-A step of an inspection (`grader.inspection.examining.steps`), the link of virtual time
+A step of an inspection (`grader.submission.examining.steps`), the link of virtual time
 (`grader.run.lockstep.protocol`) and the reading of a submission (`grader.submission.reader`)
 have limits of their own.
 """

@@ -29,7 +29,7 @@ from grader.submission.set_ups import NotInspected
 from grader.submission.start import EntryPoint, Submission, Whole
 
 if TYPE_CHECKING:
-    from grader.inspection.trace import PackageTrace
+    from grader.submission.trace import PackageTrace
 
 
 @contextmanager
@@ -127,7 +127,7 @@ def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
 
 def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
     """Return notes on how a program started by itself differs from its start by launch files."""
-    from grader.inspection.launched import not_installed, not_read, unlike_launched
+    from grader.submission.launched import not_installed, not_read, unlike_launched
 
     if not isinstance(submission.start, EntryPoint):
         return not_installed(trace)

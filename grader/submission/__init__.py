@@ -1,1 +1,1 @@
-"""Reads a submission and finds what of it to start; nothing of it is run for that."""
+"""Reads a submission, and finds what of it to start: its packages are evaluated, nothing is run."""

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Final
 
-from grader.inspection.examining import paths
 from grader.message import Message, msg
+from grader.submission.examining import paths
 from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest

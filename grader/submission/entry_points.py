@@ -14,7 +14,7 @@ from grader.submission.python_source import read_source
 from grader.submission.set_ups import ConsoleScript, PackageFolder, read_package
 
 if TYPE_CHECKING:
-    from grader.inspection.answer import SetUp
+    from grader.submission.answer import SetUp
 
 Choice = tuple[PackageFolder, ConsoleScript]
 #: What a submission may have several of that could be started.

@@ -73,7 +73,7 @@ from grader.submission.start import EntryPoint, Launch, Program, Script, Submiss
 from grader.submission.unpacking import Unpacking, is_archive
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.inspection.answer import Inspection
+    from grader.submission.answer import Inspection
 
 
 def find(

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from grader.inspection.examining import paths
+from grader.submission.examining import paths
 from grader.submission.folder import read_bounded, shown
 from grader.submission.python_source import parse
 from grader.submission.start import Imports, Program, Script

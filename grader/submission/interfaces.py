@@ -12,10 +12,10 @@ from itertools import takewhile, zip_longest
 from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
-from grader.inspection.examining import cmake
-from grader.inspection.examining.known import DESKTOP
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
+from grader.submission.examining import cmake
+from grader.submission.examining.known import DESKTOP
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
 

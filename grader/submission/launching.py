@@ -15,8 +15,8 @@ from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.inspection.answer import Inspection, LaunchOrder, LaunchStart
-    from grader.inspection.trace import LaunchFile
+    from grader.submission.answer import Inspection, LaunchOrder, LaunchStart
+    from grader.submission.trace import LaunchFile
 
 _ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
@@ -214,7 +214,7 @@ def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: s
 
 
 def _faulty(launch: LaunchFile) -> Message:
-    from grader.inspection.error_texts import described, placed
+    from grader.submission.error_texts import described, placed
 
     assert launch.problem is not None
     why = joined([described(launch.problem), placed(launch.problem)])

@@ -36,7 +36,7 @@ from grader.submission.start import Imports, Submission, Whole
 from grader.text import clip
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.inspection.answer import Inspection
+    from grader.submission.answer import Inspection
 
 #: No answer is longer.
 _MAX_ANSWER: Final = 1_000_000

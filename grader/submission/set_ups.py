@@ -19,7 +19,7 @@ from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import read_manifest
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.inspection.answer import SetUp, SetUpFacts
+    from grader.submission.answer import SetUp, SetUpFacts
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
 #: So many folders with set-up files are inspected.
@@ -80,7 +80,7 @@ class PackageFolder:
     @property
     def problem(self) -> Message:
         """A sentence on the error that ended its set-up; '' where there was none."""
-        from grader.inspection.error_texts import how_it_ends
+        from grader.submission.error_texts import how_it_ends
 
         if self.set_up is None or self.set_up.problem is None:
             return NOTHING

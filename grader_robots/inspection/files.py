@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from grader.inspection.examining import paths
-from grader.inspection.examining.launch_record import LaunchRecord
-from grader.inspection.examining.launches import prepare, watch_files
-from grader.inspection.examining.layout import Workspace
-from grader.inspection.examining.packages import is_description
-from grader.inspection.examining.steps import end_of
-from grader.inspection.trace import NamedMesh
+from grader.submission.examining import paths
+from grader.submission.examining.launch_record import LaunchRecord
+from grader.submission.examining.launches import prepare, watch_files
+from grader.submission.examining.layout import Workspace
+from grader.submission.examining.packages import is_description
+from grader.submission.examining.steps import end_of
+from grader.submission.trace import NamedMesh
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].

@@ -12,11 +12,12 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from grader.inspection import trace
-from grader.inspection.examining.examination import Examination
-from grader.inspection.examining.steps import Ended, attempt, open_account, step
-from grader.inspection.inspector import Inspector
-from grader.inspection.trace import (
+from grader.message import Message, msg, plain_text
+from grader.submission import trace
+from grader.submission.examining.examination import Examination
+from grader.submission.examining.steps import Ended, attempt, open_account, step
+from grader.submission.inspector import Inspector
+from grader.submission.trace import (
     Description,
     LaunchFile,
     NamedMesh,
@@ -24,7 +25,6 @@ from grader.inspection.trace import (
     PackageTrace,
     Varied,
 )
-from grader.message import Message, msg, plain_text
 from grader_robots.inspection import files, meshes
 
 if TYPE_CHECKING:

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from grader.inspection.trace import (
+from grader.message import NOTHING, plain_text
+from grader.recording.subject import Trace
+from grader.submission.trace import (
     Description,
     Include,
     InstalledScript,
@@ -20,8 +22,6 @@ from grader.inspection.trace import (
     Setup,
     Varied,
 )
-from grader.message import NOTHING, plain_text
-from grader.recording.subject import Trace
 
 _SETUP: Final = Setup("", "", "", "", NOTHING, (), None, (), (), (), "", (), (), ())
 _LAUNCH: Final = LaunchFile("", None, (), (), (), (), (), (), (), "")

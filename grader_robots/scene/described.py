@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from grader.inspection.trace import Description, PackageTrace
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.view import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
+from grader.submission.trace import Description, PackageTrace
 from grader_robots.scene import shapes
 from grader_robots.scene.shapes import MOST_NODES, descend, is_finite, name_of, named, placing
 from robot_py.kinematics import forward, joint_transform, tree

@@ -205,7 +205,7 @@ from grader import grading
 from grader.run.handover import Plan
 
 def run(submission, plan, progress=None):
-    print("grader.inspection.subject" in sys.modules)
+    print("grader.submission.subject" in sys.modules)
 
 with grading.start(None, [Plan(None, scene="robot", looks_at_package=True)], run):
     pass

@@ -13,14 +13,14 @@ from unittest.mock import patch
 
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.inspection import inspector
-from grader.inspection.answer import Inspection, decode
-from grader.inspection.examining import steps
-from grader.inspection.examining.main import inspect
-from grader.inspection.trace import PackageTrace, encode
 from grader.judging import judge
 from grader.recording.recording import Recording, Recordings, Run
 from grader.result.result import Result
+from grader.submission import inspector
+from grader.submission.answer import Inspection, decode
+from grader.submission.examining import steps
+from grader.submission.examining.main import inspect
+from grader.submission.trace import PackageTrace, encode
 from grader.testing.solutions import read_solutions
 from tests import apart, once
 from tests.hand_ins import SUBMISSIONS
@@ -46,7 +46,7 @@ def inspected(
     wall_s: float = steps.LIMITS.wall_s,
     **order: object,
 ) -> Inspection:
-    """The answer to an order for an inspection; see `grader.inspection.examining.main.inspect`.
+    """The answer to an order for an inspection; see `grader.submission.examining.main.inspect`.
 
     Args:
         cpu_s, wall_s: so much time may a step take.

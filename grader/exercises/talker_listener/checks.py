@@ -5,9 +5,9 @@ from __future__ import annotations
 from grader.cast.trace import CastTrace
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.trace import Obstacle, PackageTrace
 from grader.message import Message, joined, msg
 from grader.recording.recording import Recordings
+from grader.submission.trace import Obstacle, PackageTrace
 
 checks = Checks()
 

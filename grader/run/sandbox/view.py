@@ -42,7 +42,7 @@ HOST = (
     "grader/run/processes/__init__.py",
     "grader/linux.py",
     # what inspects a package
-    *("grader/limited.py", "grader/inspection"),
+    *("grader/limited.py", "grader/submission"),
     *("grader_robots/__init__.py", "grader_robots/inspection"),
     "grader/strict_json.py",
     # ... and the sentences of its remarks

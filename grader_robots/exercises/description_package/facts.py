@@ -10,9 +10,11 @@ from typing import NamedTuple
 from grader.exercise.asking import CheckFunction
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.error_texts import described
-from grader.inspection.examining.known import SIMULATORS
-from grader.inspection.trace import (
+from grader.message import NOTHING, Message, msg
+from grader.recording.recording import Recordings
+from grader.submission.error_texts import described
+from grader.submission.examining.known import SIMULATORS
+from grader.submission.trace import (
     Description,
     LaunchedNode,
     LaunchFile,
@@ -20,8 +22,6 @@ from grader.inspection.trace import (
     PackageTrace,
     Setup,
 )
-from grader.message import NOTHING, Message, msg
-from grader.recording.recording import Recordings
 
 _SIMULATORS = ("gz sim", "gazebo", "gzserver", "ign gazebo", "webots")
 

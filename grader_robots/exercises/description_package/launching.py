@@ -8,10 +8,10 @@ from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.error_texts import advice, how_it_ends, shown
-from grader.inspection.examining.known import FILES, KNOWN
-from grader.inspection.trace import EMPTY, Lacking, LaunchedNode, LaunchFile, Obstacle
 from grader.message import joined, msg
+from grader.submission.error_texts import advice, how_it_ends, shown
+from grader.submission.examining.known import FILES, KNOWN
+from grader.submission.trace import EMPTY, Lacking, LaunchedNode, LaunchFile, Obstacle
 from grader_robots.exercises.description_package import installing
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

@@ -10,9 +10,9 @@ from typing import Final
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.error_texts import shown
-from grader.inspection.trace import Description
 from grader.message import NOTHING, Message, msg
+from grader.submission.error_texts import shown
+from grader.submission.trace import Description
 from grader_robots.exercises.description_package.facts import PackageFacts, not_judged, of_package
 from robot_py.model import Inertial, Joint, JointType, Model, Origin
 from robot_py.urdf import Consequence, ParsedUrdf, parse

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.error_texts import shown
-from grader.inspection.trace import LaunchedNode, LaunchFile
 from grader.message import Message, msg
+from grader.submission.error_texts import shown
+from grader.submission.trace import LaunchedNode, LaunchFile
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     no_robot,

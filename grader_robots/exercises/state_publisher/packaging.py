@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.error_texts import described, shown
-from grader.inspection.trace import PREFIX, LaunchedNode, LaunchFile
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.recording import Recordings
+from grader.submission.error_texts import described, shown
+from grader.submission.trace import PREFIX, LaunchedNode, LaunchFile
 from grader_robots.exercises.description_package import installing, launching
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

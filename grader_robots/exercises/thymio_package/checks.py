@@ -12,8 +12,8 @@ import numpy as np
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.error_texts import shown
 from grader.message import NOTHING, Message, msg
+from grader.submission.error_texts import shown
 from grader_robots.exercises.description_package import checks as of_packages
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.inspection.error_texts import shown
 from grader.message import Message, joined, msg
+from grader.submission.error_texts import shown
 from grader_robots.exercises.description_package.facts import PackageFacts, no_robot, of_package
 from grader_robots.exercises.description_package.robots import best_of
 from robot_py import kinematics

@@ -13,7 +13,6 @@ from rosbags.typesys import Stores, get_typestore
 
 from grader import cli, content
 from grader.errors import RecordingError
-from grader.inspection.trace import PackageTrace
 from grader.message import msg
 from grader.recording import bag, reading, saving
 from grader.recording.observations import End, Observations, SourceLine, Standstill
@@ -22,6 +21,7 @@ from grader.recording.saving import BAG, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.saving import CIRCUMSTANCES_FILE as CIRCUMSTANCES
 from grader.scenes.turtlesim.trace import Log
 from grader.strict_json import to_json
+from grader.submission.trace import PackageTrace
 from tests.files import contents
 from tests.grader.driving import Spiral, drive
 from turtlesim_py.world.events import RotateAbsolute, SetParameter, SetPen

@@ -7,13 +7,13 @@ import yaml
 
 from grader.errors import SubmissionError
 from grader.exercise.building import NO_LIMITS
-from grader.inspection.answer import Inspection, decode
-from grader.inspection.trace import encode
 from grader.run import inspecting
 from grader.run.handover import Plan
 from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
+from grader.submission.answer import Inspection, decode
 from grader.submission.start import EntryPoint, Script, Submission, Whole
+from grader.submission.trace import encode
 from tests.files import lay
 from tests.grader.submission.test_entry_points import SETUP, package
 from tests.tiers import others_are_more
@@ -49,7 +49,7 @@ HOSTILE = [
     ("spoils the module json", "import json\njson.loads = json.dumps = None"),
     (
         "spoils the inspection",
-        "from grader.inspection.examining import main, setup_call, steps\n"
+        "from grader.submission.examining import main, setup_call, steps\n"
         "main.inspect = setup_call.evaluate = steps.step = lambda *_, **__: None",
     ),
     ("ends without a word", "import os\nos._exit(0)"),

@@ -7,8 +7,8 @@ their own.
 
 import pytest
 
-from grader.inspection import inspector
 from grader.run import inspecting
+from grader.submission import inspector
 from tests.grader_robots.packages import inspected
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.inspection.answer import Inspection, SetUp, SetUpFacts
+from grader.submission.answer import Inspection, SetUp, SetUpFacts
 from grader.submission.finding import find, find_inspected
 from grader.submission.refusals import readable
 from grader.submission.set_ups import NotInspected

@@ -3,7 +3,7 @@
 import pytest
 
 from grader.errors import SubmissionError
-from grader.inspection.answer import SetUp, SetUpFacts
+from grader.submission.answer import SetUp, SetUpFacts
 from grader.submission.folder import SubmissionFolder
 from grader.submission.set_ups import read_package
 from tests.files import lay

@@ -8,7 +8,9 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.inspection.trace import (
+from grader.message import NOTHING, plain_text
+from grader.recording.recording import Recording, Recordings
+from grader.submission.trace import (
     Include,
     InstalledScript,
     Lacking,
@@ -19,8 +21,6 @@ from grader.inspection.trace import (
     Parameter,
     Setup,
 )
-from grader.message import NOTHING, plain_text
-from grader.recording.recording import Recording, Recordings
 from grader_robots.scene.driving import drive, joint_state, tf
 from robot_py.robot_state import Placed
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.inspection.examining import steps
+from grader.submission.examining import steps
 
 
 @pytest.fixture(autouse=True)

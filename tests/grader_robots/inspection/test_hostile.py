@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.inspection.answer import SetUpFacts
-from grader.inspection.examining import main, paths, steps
-from grader.inspection.examining.steps import (
+from grader.strict_json import from_json
+from grader.submission.answer import SetUpFacts
+from grader.submission.examining import main, paths, steps
+from grader.submission.examining.steps import (
     NONSENSE,
     Ended,
     end_of,
@@ -21,8 +22,7 @@ from grader.inspection.examining.steps import (
     start_of,
     step,
 )
-from grader.inspection.trace import FAILED, PackageTrace, decode, encode
-from grader.strict_json import from_json
+from grader.submission.trace import FAILED, PackageTrace, decode, encode
 from grader_robots.inspection import meshes
 from tests.grader_robots.packages import INSPECTORS, REFERENCE, looked_at, written
 

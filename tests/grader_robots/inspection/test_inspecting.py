@@ -9,9 +9,9 @@ import grader
 from grader import judging, scratch
 from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
-from grader.inspection.trace import FAILED
 from grader.run import inspecting
 from grader.run.processes import levels, network
+from grader.submission.trace import FAILED
 from tests import archive, runs
 from tests.grader.run.test_opening import TEXTS
 from tests.grader_robots.packages import EXERCISE, REFERENCE, looked_at, recorded, written

@@ -1,6 +1,6 @@
 """What a launch file would start stands in a table, with the line that says so."""
 
-from grader.inspection.launched import HEADINGS, tables
+from grader.submission.launched import HEADINGS, tables
 from tests.grader_robots.inspection.test_launches import FILE, traced
 
 

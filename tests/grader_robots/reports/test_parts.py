@@ -7,7 +7,6 @@ import pytest
 
 from grader.batch.gradebook.feedback import Feedback
 from grader.batch.page.thumb import THUMB, Thumb, thumb
-from grader.inspection.trace import Description, LaunchedNode, LaunchFile, PackageTrace, Parameter
 from grader.message import plain_text
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.view import Tree, TreeNode
@@ -15,6 +14,7 @@ from grader.reports import gradescope
 from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.reports.page.parts import DEEPEST, WIDTH, drawn
+from grader.submission.trace import Description, LaunchedNode, LaunchFile, PackageTrace, Parameter
 from grader_robots.scene.driving import drive
 from grader_robots.scene.trace import RobotTrace
 from tests.grader.batch.page.classes import entry, result

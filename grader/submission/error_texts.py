@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from grader.inspection.trace import Obstacle
 from grader.message import Message, msg
+from grader.submission.trace import Obstacle
 from grader.text import clip_inside, without_controls
 
 #: A text of the submission's in a sentence is no longer.

@@ -18,10 +18,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader import strict_json
-from grader.inspection.answer import DataFiles, SetUpFacts
-from grader.inspection.examining import paths
-from grader.inspection.examining.steps import NONSENSE, Ended, in_folder, it, step
-from grader.inspection.trace import Obstacle
+from grader.submission.answer import DataFiles, SetUpFacts
+from grader.submission.examining import paths
+from grader.submission.examining.steps import NONSENSE, Ended, in_folder, it, step
+from grader.submission.trace import Obstacle
 
 #: What a package may set for setuptools, which learns of these by entry points.
 _KEYWORDS: Final = (

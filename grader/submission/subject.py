@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar, Final
 
-from grader.inspection import inspector, launched
-from grader.inspection.trace import PackageTrace, decode, encode
 from grader.message import Message, msg
 from grader.recording.channel import Channel
 from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
 from grader.recording.view import Part, View
 from grader.rosidl.cdr import string, string_of
+from grader.submission import inspector, launched
+from grader.submission.trace import PackageTrace, decode, encode
 from grader.translations import tr
 
 _TOPIC: Final = "/package"

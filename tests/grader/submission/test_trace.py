@@ -7,7 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.inspection.trace import (
+from grader.message import NOTHING, plain_text
+from grader.recording.reading import load
+from grader.recording.recording import Recording, Recordings, Run
+from grader.recording.saving import save_all
+from grader.submission.trace import (
     MOST_BYTES,
     Description,
     Lacking,
@@ -22,10 +26,6 @@ from grader.inspection.trace import (
     decode,
     encode,
 )
-from grader.message import NOTHING, plain_text
-from grader.recording.reading import load
-from grader.recording.recording import Recording, Recordings, Run
-from grader.recording.saving import save_all
 
 SETUP = Setup(
     "a", "a", "", "ament_python", NOTHING, ("b",), None, (), (), (), "", ("x",), ("y",), ()

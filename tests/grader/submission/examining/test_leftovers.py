@@ -8,7 +8,7 @@ import pytest
 BEGIN = """
 import ctypes, os, signal, sys, threading, time
 from grader import linux
-from grader.inspection.examining import leftovers
+from grader.submission.examining import leftovers
 
 def born():
     reads, writes = os.pipe()

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 import yaml
 
-from grader.inspection.examining.steps import not_known
+from grader.submission.examining.steps import not_known
 
 _SUBSTITUTIONS_OF_ROS_1 = ("find", "arg", "optenv", "param")
 _SUBSTITUTION = re.compile(r"\$\(([\w-]+)")

@@ -25,13 +25,13 @@ if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
 from grader import linux  # noqa: E402
-from grader.inspection import trace  # noqa: E402
-from grader.inspection.answer import Inspection, LaunchOrder, SetUp  # noqa: E402
-from grader.inspection.examining import layout, leftovers, packages, setup_call  # noqa: E402
-from grader.inspection.examining.examination import Examination  # noqa: E402
-from grader.inspection.examining.layout import Workspace  # noqa: E402
-from grader.inspection.examining.steps import Ended, attempt, open_account  # noqa: E402
-from grader.inspection.trace import FAILED, PackageTrace  # noqa: E402
+from grader.submission import trace  # noqa: E402
+from grader.submission.answer import Inspection, LaunchOrder, SetUp  # noqa: E402
+from grader.submission.examining import layout, leftovers, packages, setup_call  # noqa: E402
+from grader.submission.examining.examination import Examination  # noqa: E402
+from grader.submission.examining.layout import Workspace  # noqa: E402
+from grader.submission.examining.steps import Ended, attempt, open_account  # noqa: E402
+from grader.submission.trace import FAILED, PackageTrace  # noqa: E402
 
 
 def main() -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.inspection.error_texts import advice
+from grader.submission.error_texts import advice
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any, Final
 
-from grader.inspection.examining.steps import not_there
+from grader.submission.examining.steps import not_there
 
 PUBLISHER: Final = "robot_state_publisher"
 _NODE: Final = {"name": "", "namespace": "", "arguments": [], "remappings": []}

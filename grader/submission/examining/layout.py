@@ -14,13 +14,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from grader.inspection.answer import SetUpFacts
-from grader.inspection.examining import cmake, known, paths
-from grader.inspection.examining.packages import MANIFEST, SourcePackage
-from grader.inspection.examining.setup_call import evaluate
-from grader.inspection.examining.steps import Ended, attempt, it
-from grader.inspection.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
 from grader.message import NOTHING, Message, msg
+from grader.submission.answer import SetUpFacts
+from grader.submission.examining import cmake, known, paths
+from grader.submission.examining.packages import MANIFEST, SourcePackage
+from grader.submission.examining.setup_call import evaluate
+from grader.submission.examining.steps import Ended, attempt, it
+from grader.submission.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
 
 #: Set-ups that were evaluated already, by their folders.
 Known = Mapping[Path, tuple[SetUpFacts, Obstacle | None]]

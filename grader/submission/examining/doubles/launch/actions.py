@@ -23,8 +23,8 @@ from launch._core import (
 )
 from launch.conditions import evaluate_condition_expression
 
-from grader.inspection.examining.steps import not_known
 from grader.message import msg
+from grader.submission.examining.steps import not_known
 
 #: Nothing starts later [s].
 _LONGEST_S = 1e6

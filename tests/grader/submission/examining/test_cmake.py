@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from grader.inspection.examining import cmake
+from grader.submission.examining import cmake
 
 FILES = ("launch/a.py", "urdf/a.urdf", "urdf/more/b.urdf", "rviz/a.rviz", "rviz/b.txt")
 

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeVar
 
 from grader import limited, strict_json
-from grader.inspection.examining import leftovers
-from grader.inspection.trace import Obstacle
 from grader.message import NOTHING, Message, msg, plain_text, reason
+from grader.submission.examining import leftovers
+from grader.submission.trace import Obstacle
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
 LIMITS: Final = limited.WorkLimits(

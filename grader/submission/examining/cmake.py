@@ -12,10 +12,10 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.inspection.examining import paths
-from grader.inspection.examining.steps import Ended, attempt, it
-from grader.inspection.trace import Obstacle
 from grader.message import msg
+from grader.submission.examining import paths
+from grader.submission.examining.steps import Ended, attempt, it
+from grader.submission.trace import Obstacle
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
 _KEPT = (

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from grader.inspection import trace
-from grader.inspection.trace import Obstacle, PackageTrace
+from grader.submission import trace
+from grader.submission.trace import Obstacle, PackageTrace
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from grader.inspection.answer import LaunchOrder, LaunchStart
-from grader.inspection.examining import commands, external, known, paths
-from grader.inspection.examining.launch_time import NEVER, WITH_THE_LAUNCH, LaunchTime
-from grader.inspection.examining.layout import Workspace
-from grader.inspection.examining.steps import LIMITS, NotKnown, end_of, it
-from grader.inspection.trace import (
+from grader.message import Message, msg
+from grader.strict_json import STRANGERS
+from grader.submission.answer import LaunchOrder, LaunchStart
+from grader.submission.examining import commands, external, known, paths
+from grader.submission.examining.launch_time import NEVER, WITH_THE_LAUNCH, LaunchTime
+from grader.submission.examining.layout import Workspace
+from grader.submission.examining.steps import LIMITS, NotKnown, end_of, it
+from grader.submission.trace import (
     Include,
     Lacking,
     LaunchedNode,
@@ -26,8 +28,6 @@ from grader.inspection.trace import (
     Parameter,
     Skipped,
 )
-from grader.message import Message, msg
-from grader.strict_json import STRANGERS
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
@@ -404,7 +404,7 @@ class LaunchRecord:
         if path.endswith(".py"):
             walk(_python(path, read), self.context)
         else:
-            from grader.inspection.examining import frontend
+            from grader.submission.examining import frontend
 
             is_yaml = path.endswith((".yaml", ".yml"))
             walk(frontend.entities(read, is_yaml=is_yaml), self.context)

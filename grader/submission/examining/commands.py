@@ -13,8 +13,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Final
 
-from grader.inspection.examining.steps import NotKnown, it
 from grader.message import msg
+from grader.submission.examining.steps import NotKnown, it
 
 #: Exit code, and what is printed to either side.
 Ended = tuple[int, str, str]

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from grader.inspection.examining.steps import not_known
+from grader.submission.examining.steps import not_known
 
 _MOST_ENTITIES = 10_000
 

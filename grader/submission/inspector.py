@@ -10,13 +10,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from grader.inspection.trace import PackageTrace
 from grader.message import Message
+from grader.submission.trace import PackageTrace
 
 if TYPE_CHECKING:  # a confined process has none of the recording
-    from grader.inspection.examining.examination import Examination
     from grader.recording.subject import Trace
     from grader.recording.view import Part
+    from grader.submission.examining.examination import Examination
 
 
 class Inspector(ABC):
@@ -27,7 +27,7 @@ class Inspector(ABC):
         """Return the trace of a package with the facts of this inspector.
 
         It is called in the process of the inspection, where launch files have been evaluated. What
-        runs a stranger's code, or reads a stranger's file, is a `grader.inspection.examining.
+        runs a stranger's code, or reads a stranger's file, is a `grader.submission.examining.
         steps.step`.
         """
 

@@ -11,15 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from grader import strict_json
-from grader.inspection import trace
-from grader.inspection.answer import LaunchOrder
-from grader.inspection.examining import launches, paths
-from grader.inspection.examining.launch_record import Evaluated
-from grader.inspection.examining.layout import Installed, Workspace
-from grader.inspection.examining.steps import Ended, attempt, step
-from grader.inspection.trace import Lacking, LaunchedNode, LaunchFile, PackageTrace, Setup
 from grader.message import NOTHING, Message, msg
 from grader.strict_json import Made
+from grader.submission import trace
+from grader.submission.answer import LaunchOrder
+from grader.submission.examining import launches, paths
+from grader.submission.examining.launch_record import Evaluated
+from grader.submission.examining.layout import Installed, Workspace
+from grader.submission.examining.steps import Ended, attempt, step
+from grader.submission.trace import Lacking, LaunchedNode, LaunchFile, PackageTrace, Setup
 
 _MOST_LAUNCHES, _MOST_TEXTS = 40, 20
 #: Of a launch file so much is read to find a line [bytes].

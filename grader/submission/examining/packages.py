@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
-from grader.inspection.examining import paths
-from grader.inspection.examining.steps import it
 from grader.message import NOTHING, Message, msg
+from grader.submission.examining import paths
+from grader.submission.examining.steps import it
 
 MANIFEST = "package.xml"
 _SKIPPED = {"build", "install", "log", "__pycache__", "venv", "env", "node_modules"}
@@ -27,7 +27,7 @@ class SourcePackage:
     Attributes:
         folder: where it lies.
         name: by its package.xml; '' where that tells none.
-        build_type, manifest, depends: see `grader.inspection.trace.Setup`.
+        build_type, manifest, depends: see `grader.submission.trace.Setup`.
         files: all of it, relative to its folder, in their order.
     """
 

@@ -1,1 +1,0 @@
-"""A package that is looked at, and not run: the scene `package`."""
