@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from grader.message import Message, msg
-from grader.submission.examining import paths
+from grader.submission import safe_files
 from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
@@ -183,7 +183,7 @@ def _may_be_there(folder: Path, name: str) -> bool:
     """Whether a file exists; one outside of the submission is not checked."""
     if name.startswith("/") or ".." in PurePosixPath(name).parts:
         return True
-    return paths.is_file(folder / name)
+    return safe_files.is_file(folder / name)
 
 
 def _no(file: str, submitted: SubmissionFolder, folder: Path) -> Message:

@@ -38,6 +38,7 @@ from grader.submission.entry_points import (
     no_such_executable,
     not_started,
 )
+from grader.submission.examining.packages import is_launch_file
 from grader.submission.folder import (
     HAND_IN,
     SubmissionFolder,
@@ -55,7 +56,6 @@ from grader.submission.launching import (
     LaunchAsked,
     StartedScript,
     find_launched,
-    is_launch_file,
     undeclared,
 )
 from grader.submission.manifest import FILE as MANIFEST
@@ -394,9 +394,8 @@ def _is_source(file: Path) -> bool:
 
 def may_be_node(file: Path) -> bool:
     """Whether a file is Python, and none of those that every package has."""
-    is_launch_file = file.name.endswith((".launch.py", "_launch.py"))
-    is_other = is_launch_file or file.name in ("setup.py", "__init__.py")
-    return file.suffix == ".py" and not is_other
+    is_python = file.suffix == ".py" and file.name not in ("setup.py", "__init__.py")
+    return is_python and not is_launch_file(file)
 
 
 def _only(submitted: SubmissionFolder, candidates: list[Path], executable: str | None) -> Path:

@@ -13,6 +13,7 @@ from typing import Final
 
 from grader.errors import SubmissionError
 from grader.message import Message, Text, joined, msg
+from grader.submission import safe_files
 from grader.text import clip_inside, without_controls
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
@@ -148,7 +149,7 @@ def files_below(top: Path) -> list[Path]:
                 raise too_many(top)
             entries = [entry for entry in everything if not is_junk(entry.name)]
             files += [entry for entry in entries if entry.is_file()]
-            below += [entry for entry in entries if _is_searched(entry)]
+            below += [entry for entry in entries if is_searched(entry)]
         level = below
     return files
 
@@ -164,7 +165,8 @@ def too_many(top: Path) -> SubmissionError:
     )
 
 
-def _is_searched(entry: Path) -> bool:
+def is_searched(entry: Path) -> bool:
+    """Whether a folder that is no junk is looked into for what belongs to a submission."""
     if entry.is_symlink() or not entry.is_dir() or is_generated(entry):
         return False
     # students do call a package "test": what holds a package is one, whatever its name
@@ -174,8 +176,7 @@ def _is_searched(entry: Path) -> bool:
 
 def read_bounded(path: Path) -> bytes | None:
     """Read a file; None if it has more than MAX_SOURCE_BYTES."""
-    with path.open("rb") as file:
-        data = file.read(MAX_SOURCE_BYTES + 1)
+    data = safe_files.read(path, MAX_SOURCE_BYTES + 1)
     return data if len(data) <= MAX_SOURCE_BYTES else None
 
 

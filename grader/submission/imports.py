@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from grader.submission.examining import paths
+from grader.submission import safe_files
 from grader.submission.folder import read_bounded, shown
 from grader.submission.python_source import parse
 from grader.submission.start import Imports, Program, Script
@@ -105,8 +105,8 @@ def _files(root: Path, module: str) -> list[tuple[Path, str]]:
     for part in module.split("."):
         inner = f"{package}.{part}" if package else part
         candidates = ((folder / part / "__init__.py", inner), (folder / f"{part}.py", package))
-        files += [candidate for candidate in candidates if paths.is_file(candidate[0])][:1]
+        files += [candidate for candidate in candidates if safe_files.is_file(candidate[0])][:1]
         folder, package = folder / part, inner
-        if not paths.is_folder(folder):
+        if not safe_files.is_folder(folder):
             break
     return files

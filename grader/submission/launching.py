@@ -18,7 +18,6 @@ if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection, LaunchOrder, LaunchStart
     from grader.submission.trace import LaunchFile
 
-_ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
 _SIMULATOR: Final = ("turtlesim", "turtlesim_node")
 #: The most times that a program which has ended is started again.
@@ -99,11 +98,6 @@ class Launched:
     def found(self) -> Message:
         names = listed({each.name: each.called for each in self.scripts}.values())
         return msg("{file}, which starts {names}", file=shown(self.file), names=names)
-
-
-def is_launch_file(file: Path) -> bool:
-    """Whether `ros2 launch` would accept a file of this name: spiral_launch.py, a.launch.xml."""
-    return file.name.endswith(_ENDINGS)
 
 
 def find_launched(

@@ -54,7 +54,7 @@ class Manifest:
     build_type: str | None
     fault: Message
     exercises: tuple[str, ...] = ()
-    elements: frozenset[tuple[str, str]] = frozenset()
+    elements: tuple[tuple[str, str], ...] = ()
 
     @property
     def depends(self) -> set[str]:
@@ -75,7 +75,7 @@ def read_manifest(file: Path) -> Manifest | None:
     conditional = any(node.attrib for node in types)
     build_type = None if conditional else "".join((types[0].text or "").split()) if types else ""
     named = (node.get("exercise", "").strip() for node in root.findall("export/grader"))
-    elements = frozenset((node.tag, node.text.strip()) for node in root if node.text)
+    elements = tuple((node.tag, node.text.strip()) for node in root if node.text)
     return Manifest(name, build_type, _fault(root, name), tuple(filter(None, named)), elements)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from grader.submission.examining import paths
+from grader.submission import safe_files
 from grader.submission.examining.launch_record import LaunchRecord
 from grader.submission.examining.launches import prepare, watch_files
 from grader.submission.examining.layout import Workspace
@@ -71,7 +71,7 @@ def _looked_for(path: Path, place: Workspace) -> tuple[str, str]:
     """What there is of a file of ours, by a path without `..`."""
     if not path.is_relative_to(place.prefix):
         return "missing", str(path)
-    if paths.is_file(path):
+    if safe_files.is_file(path):
         return "found", str(path)
     meant = place.own(place.meant(str(path)))
     if meant and str(path).endswith(f"/{meant}"):

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.message import msg
-from grader.submission.examining import paths
+from grader.submission import safe_files
 from grader.submission.examining.steps import Ended, attempt, it
 from grader.submission.trace import Obstacle
 
@@ -68,7 +68,7 @@ class Read(NamedTuple):
 
 def read(folder: Path) -> Read:
     """What the CMakeLists.txt of a package says."""
-    text = paths.read(folder / FILE, _MOST_CHARACTERS).decode("utf-8", "replace")
+    text = safe_files.read(folder / FILE, _MOST_CHARACTERS).decode("utf-8", "replace")
     variables = {**dict.fromkeys(_HERE, "."), "CMAKE_INSTALL_PREFIX": ""}
     made, calls = Read("", [], [], [], []), list[list[str]]()
     depth = 0  # of if()
@@ -165,7 +165,7 @@ def _files_below(folder: Path) -> Iterator[str]:
         folders.sort()
         for name in sorted(names):
             path = Path(at, name)
-            if paths.is_file(path):
+            if safe_files.is_file(path):
                 yield path.relative_to(folder).as_posix()
 
 
@@ -196,7 +196,7 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
         if not source.resolve().is_relative_to(folder.resolve()):
             raise Ended(Obstacle("unknown", it(msg("installs {name}", name=name[:200]))))
         if words[0].upper() == "DIRECTORY":
-            if not paths.is_folder(source):
+            if not safe_files.is_folder(source):
                 absent.append(name.rstrip("/"))
                 continue
             # with a slash at its end what is in it is installed, without one the folder itself
@@ -210,7 +210,7 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
                         below = path.relative_to(base).parent.as_posix()
                         to = f"{where}/{below}" if below != "." else where
                         files.append((to, os.path.relpath(path, folder)))
-        elif paths.is_file(source):
+        elif safe_files.is_file(source):
             files.append((where, os.path.relpath(source, folder)))
         else:
             absent.append(name)

@@ -13,9 +13,9 @@ from typing import Any
 from grader import strict_json
 from grader.message import NOTHING, Message, msg
 from grader.strict_json import Made
-from grader.submission import trace
+from grader.submission import safe_files, trace
 from grader.submission.answer import LaunchOrder
-from grader.submission.examining import launches, paths
+from grader.submission.examining import launches
 from grader.submission.examining.launch_record import Evaluated
 from grader.submission.examining.layout import Installed, Workspace
 from grader.submission.examining.steps import Ended, attempt, step
@@ -179,7 +179,9 @@ class Examination:
         """The one line of a launch file that has the last part of a path or name; 0 for none."""
         of, own = self._files[file]
         try:
-            text = paths.read(of.package.folder / own, _LONGEST_FILE).decode("utf-8", "replace")
+            text = safe_files.read(of.package.folder / own, _LONGEST_FILE).decode(
+                "utf-8", "replace"
+            )
         except OSError:  # its own code has taken it away
             return 0
         word = name.replace(" ", "/").rstrip("/").rsplit("/", 1)[-1]

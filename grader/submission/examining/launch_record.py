@@ -14,8 +14,9 @@ from typing import Annotated, Any, Final
 
 from grader.message import Message, msg
 from grader.strict_json import STRANGERS
+from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder, LaunchStart
-from grader.submission.examining import commands, external, known, paths
+from grader.submission.examining import commands, external, known
 from grader.submission.examining.launch_time import NEVER, WITH_THE_LAUNCH, LaunchTime
 from grader.submission.examining.layout import Workspace
 from grader.submission.examining.steps import LIMITS, NotKnown, end_of, it
@@ -200,7 +201,11 @@ class LaunchRecord:
     def _program_file(self, package: str, name: str) -> str:
         """The submission's file of the same name as a program that it installs; '' for none."""
         path = self._place.prefix / "lib" / package / name
-        meant = self._place.meant(str(path)) if name.endswith(".py") and paths.is_file(path) else ""
+        meant = (
+            self._place.meant(str(path))
+            if name.endswith(".py") and safe_files.is_file(path)
+            else ""
+        )
         return self._source(meant) if meant else ""
 
     def later(self, entities: Any, delay_s: float) -> None:
@@ -287,13 +292,13 @@ class LaunchRecord:
             return
         ours = [each.name for each in self._place.all]
         if package in ours:
-            there = paths.is_file(Path(prefix) / "lib" / package / name)
+            there = safe_files.is_file(Path(prefix) / "lib" / package / name)
         else:
             programs = known.PROGRAMS.get(package)
             there = programs is None or name in programs
             programs_of = (self._place.prefix / "lib" / each / name for each in ours)
             is_known = self._place.knows(package)
-            if not is_known and any(map(paths.is_file, programs_of)):
+            if not is_known and any(map(safe_files.is_file, programs_of)):
                 self._add("borrowed", package)
         if not there:
             self.lack("executable", f"{package} {name}", "")

@@ -15,11 +15,13 @@ from pathlib import Path
 from typing import Final
 
 from grader.message import NOTHING, Message, msg
+from grader.submission import safe_files
 from grader.submission.answer import SetUpFacts
-from grader.submission.examining import cmake, known, paths
-from grader.submission.examining.packages import MANIFEST, SourcePackage
+from grader.submission.examining import cmake, known
+from grader.submission.examining.packages import SourcePackage
 from grader.submission.examining.setup_call import evaluate
 from grader.submission.examining.steps import Ended, attempt, it
+from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
 
 #: Set-ups that were evaluated already, by their folders.
@@ -86,9 +88,9 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
     found: dict[str, str] = {}
     for where, source in read.files[:_MOST_FILES]:
         path = package.folder / source
-        if paths.is_folder(path):
+        if safe_files.is_folder(path):
             folders.append(source)
-        elif not paths.is_file(path):
+        elif not safe_files.is_file(path):
             read.absent.append(source)
         else:
             to = os.path.normpath(os.path.join(where, os.path.basename(source)))
@@ -122,7 +124,7 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
 def _set_up_facts(package: SourcePackage, known: Known) -> tuple[SetUpFacts, cmake.Read]:
     """What the set-up says of itself, and what it installs."""
     file = cmake.FILE if package.is_cmake else "setup.py"
-    if not paths.is_file(package.folder / file):
+    if not safe_files.is_file(package.folder / file):
         problem = Obstacle("error", msg("there is no {file}", file=file))
         return SetUpFacts(), cmake.Read("", [], [], [], [problem])
     if not package.is_cmake:
@@ -170,7 +172,7 @@ def _make_known(package: SourcePackage, name: str, prefix: Path) -> None:
     """Marker and package.xml, which colcon adds by itself."""
     _touch(prefix / MARKS / name, prefix)
     manifest = os.path.normpath(f"share/{name}/{MANIFEST}")
-    if paths.is_file(package.folder / MANIFEST) and not paths.is_file(prefix / manifest):
+    if safe_files.is_file(package.folder / MANIFEST) and not safe_files.is_file(prefix / manifest):
         _copy(package.folder / MANIFEST, prefix, manifest)
     share = Path(os.path.normpath(prefix / "share" / name))
     if share.is_relative_to(prefix):
@@ -215,7 +217,7 @@ def _script(
     base = module.replace(".", "/")
     for folder in ("", "src/"):
         for file in (f"{folder}{base}.py", f"{folder}{base}/__init__.py"):
-            if paths.is_file(package.folder / file):
+            if safe_files.is_file(package.folder / file):
                 fault, source, says = _of(package.folder / file, file, function)
                 parent = module.rpartition(".")[0]
                 if not fault and parent and installed is not None and parent not in installed:
@@ -231,7 +233,7 @@ def _script(
 def _of(path: Path, file: str, function: str) -> tuple[Message, str, bool]:
     """The fault of a script, its source, and whether that speaks of joint states."""
     try:
-        text = paths.read(path, 1_000_000).decode("utf-8-sig", "replace")
+        text = safe_files.read(path, 1_000_000).decode("utf-8-sig", "replace")
     except OSError:
         return msg("{file} cannot be read", file=file), file, False
     says = "JointState" in text or "joint_states" in text
@@ -297,8 +299,10 @@ class Workspace:
     def taken_away(self) -> str:
         """What was laid out and is not there any more, as everybody knows it; '' for nothing."""
         files = [file for each in self.all for file in each.files]
-        gone = [file for file in files if not paths.is_file(self.prefix / file)]
-        folders = [each for each in (self.home, self.stubs / "share") if not paths.is_folder(each)]
+        gone = [file for file in files if not safe_files.is_file(self.prefix / file)]
+        folders = [
+            each for each in (self.home, self.stubs / "share") if not safe_files.is_folder(each)
+        ]
         gone.sort(key=lambda file: "/ament_index/" in file)  # nobody knows those
         return next(iter([*gone, *(self.shown(str(each)) for each in folders)]), "")
 
@@ -307,7 +311,8 @@ class Workspace:
         share = self.stubs / "share"
         is_name = package.strip(".") != ""
         return is_name and (
-            paths.is_folder(share / package) or paths.is_file(self.stubs / MARKS / package)
+            safe_files.is_folder(share / package)
+            or safe_files.is_file(self.stubs / MARKS / package)
         )
 
     def borrowed(self, wanted: str) -> tuple[str, str]:

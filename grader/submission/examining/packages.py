@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import os
+import re
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from xml.etree import ElementTree
+from typing import Final
 
 from grader.message import NOTHING, Message, msg
-from grader.submission.examining import paths
+from grader.submission import safe_files
 from grader.submission.examining.steps import it
+from grader.submission.folder import MAX_SOURCE_BYTES, is_junk, is_searched
+from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.manifest import read_manifest
 
-MANIFEST = "package.xml"
-_SKIPPED = {"build", "install", "log", "__pycache__", "venv", "env", "node_modules"}
 _DEPENDS = ("depend", "exec_depend", "run_depend", "build_depend", "build_export_depend")
-_REQUIRED = ("name", "version", "description", "maintainer", "license")
-_MOST_BYTES, _MOST_FILES = 1_000_000, 5000
+#: Names that only launch files have, and what makes one of another file that `ros2 launch` takes:
+#: launch/frontend's `get_file_extensions` in launch_xml and launch_yaml, and .py.
+_LAUNCH_ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml", ".launch")
+_OF_YAML: Final = re.compile(rb"^launch\s*:", re.MULTILINE)
+_OF_LAUNCH: Final = {
+    ".py": re.compile(rb"^def generate_launch_description\b", re.MULTILINE),
+    ".xml": re.compile(rb"<launch\b"),
+    ".yaml": _OF_YAML,
+    ".yml": _OF_YAML,
+}
+_MOST_FILES = 5000
 _MOST_DEPENDS, _LONGEST = 500, 500
 
 
@@ -52,16 +63,8 @@ class SourcePackage:
 
     @property
     def launch_files(self) -> list[str]:
-        """Its files that `ros2 launch` takes, whatever they are called."""
-        return [each for each in self.files if is_launch_file(each) or self._is_one(each)]
-
-    def _is_one(self, name: str) -> bool:
-        if not name.startswith("launch/") or not name.endswith(".py"):
-            return False
-        with suppress(OSError):
-            text = paths.read(self.folder / name, _MOST_BYTES)
-            return b"def generate_launch_description" in text
-        return False
+        """Its launch files, whatever they are called."""
+        return [each for each in self.files if is_launch_file(self.folder / each)]
 
 
 def is_description(name: str) -> bool:
@@ -71,52 +74,51 @@ def is_description(name: str) -> bool:
     )
 
 
-def is_launch_file(name: str) -> bool:
-    """Whether a file of this name is one, as `ros2 launch` completes them."""
-    endings = ("launch.py", "launch.xml", "launch.yaml", "launch.yml", ".launch")
-    return name.endswith(endings)
+def is_launch_file(file: Path) -> bool:
+    """Whether `ros2 launch` takes a file, and it is one by its name or by its text."""
+    if file.name.endswith(_LAUNCH_ENDINGS):
+        return True
+    with suppress(OSError):
+        says = _OF_LAUNCH.get(file.suffix)
+        return says is not None and says.search(safe_files.read(file, MAX_SOURCE_BYTES)) is not None
+    return False
 
 
 def find(root: Path) -> list[SourcePackage]:
     """All packages, in the order of their paths."""
     found: list[SourcePackage] = []
     for at, folders, files in os.walk(root):
-        folders[:] = _searched(folders)
+        folders[:] = _searched(at, folders)
         is_one = MANIFEST in files or "setup.py" in files or "CMakeLists.txt" in files
         if is_one and not any(Path(at).is_relative_to(each.folder) for each in found):
             found.append(read(Path(at)))
     return found
 
 
-def _searched(folders: list[str]) -> list[str]:
-    return sorted(each for each in folders if each not in _SKIPPED and not each.startswith("."))
+def _searched(at: str, folders: list[str]) -> list[str]:
+    return sorted(each for each in folders if not is_junk(each) and is_searched(Path(at, each)))
 
 
 def read(folder: Path) -> SourcePackage:
     """What the package in a folder says of itself."""
     files = _files(folder)
-    if not (folder / MANIFEST).is_file():
+    if not safe_files.is_file(folder / MANIFEST):
         return SourcePackage(folder, manifest=msg("there is none"), files=files)
     try:
-        data = paths.read(folder / MANIFEST, _MOST_BYTES + 1)
-        if len(data) > _MOST_BYTES or b"<!DOCTYPE" in data:
-            raise ValueError("it is larger than any, or has a DOCTYPE")
-        root = ElementTree.fromstring(data)
-    except (OSError, ValueError, LookupError, ElementTree.ParseError) as error:
-        return SourcePackage(
-            folder, manifest=it(msg("does not parse: {error}", error=str(error)[:280])), files=files
-        )
-    name = (root.findtext("name") or "").strip()[:_LONGEST]
-    lacking = [tag for tag in _REQUIRED if root.find(tag) is None]
-    types = root.findall("export/build_type")
-    depends = (each.text or "" for each in root if each.tag in _DEPENDS)
-    named = dict.fromkeys(each.strip()[:_LONGEST] for each in depends if each)
+        found = read_manifest(folder / MANIFEST)
+    except OSError as error:
+        why = msg("cannot be read ({error})", error=error.strerror)
+        return SourcePackage(folder, manifest=it(why), files=files)
+    if found is None:
+        why = msg("is larger than any, or has a DOCTYPE")
+        return SourcePackage(folder, manifest=it(why), files=files)
+    depends = (text[:_LONGEST] for tag, text in found.elements if tag in _DEPENDS)
     return SourcePackage(
         folder,
-        name=name,
-        build_type="".join((types[0].text or "").split())[:_LONGEST] if types else "",
-        manifest=it(msg("has no <{tag}>", tag=lacking[0])) if lacking else NOTHING,
-        depends=tuple(named)[:_MOST_DEPENDS],
+        name=found.name[:_LONGEST],
+        build_type=(found.build_type or "")[:_LONGEST],
+        manifest=it(found.fault) if found.fault else NOTHING,
+        depends=tuple(dict.fromkeys(depends))[:_MOST_DEPENDS],
         files=files,
     )
 
@@ -146,7 +148,7 @@ def _files(folder: Path) -> tuple[str, ...]:
         if is_one and MANIFEST in files and Path(at) != folder:
             folders.clear()
             continue
-        folders[:] = _searched(folders)
+        folders[:] = _searched(at, folders)
         found += [os.path.relpath(Path(at, name), folder) for name in sorted(files)]
         if len(found) > _MOST_FILES:
             break

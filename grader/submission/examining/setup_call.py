@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader import strict_json
+from grader.submission import safe_files
 from grader.submission.answer import DataFiles, SetUpFacts
-from grader.submission.examining import paths
 from grader.submission.examining.steps import NONSENSE, Ended, in_folder, it, step
 from grader.submission.trace import Obstacle
 
@@ -46,9 +46,9 @@ def evaluate(folder: Path) -> tuple[SetUpFacts, Obstacle | None]:
         problem = ended.problem
     except ValueError:
         problem = Obstacle("limit", it(NONSENSE))
-    if not problem.file and not paths.is_file(folder / "setup.py"):
+    if not problem.file and not safe_files.is_file(folder / "setup.py"):
         names = ("pyproject.toml", "setup.cfg")
-        problem = replace(problem, file=next(n for n in names if paths.is_file(folder / n)))
+        problem = replace(problem, file=next(n for n in names if safe_files.is_file(folder / n)))
     return SetUpFacts(), problem
 
 
@@ -70,7 +70,7 @@ def run_setup(folder: Path) -> Any:
             return []
 
         def find_config_files(self) -> list[str]:  # none of the system's or the user's
-            return ["setup.cfg"] if paths.is_file(folder / "setup.cfg") else []
+            return ["setup.cfg"] if safe_files.is_file(folder / "setup.cfg") else []
 
     for name in _KEYWORDS:
         setattr(Read, name, None)
@@ -85,7 +85,7 @@ def run_setup(folder: Path) -> Any:
     setuptools.setup = setuptools.distutils.core.setup = setup  # it may bring its own distutils
     in_folder(str(folder), [str(folder)], {})
     sys.argv = ["setup.py", "install"]
-    if paths.is_file(folder / "setup.py"):
+    if safe_files.is_file(folder / "setup.py"):
         runpy.run_path(str(folder / "setup.py"), run_name="__main__")
     else:
         setup()

@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from grader.strict_json import from_json
+from grader.submission import safe_files
 from grader.submission.answer import SetUpFacts
-from grader.submission.examining import main, paths, steps
+from grader.submission.examining import main, steps
 from grader.submission.examining.steps import (
     NONSENSE,
     Ended,
@@ -252,9 +253,9 @@ def test_nothing_is_waited_for_that_is_no_file(tmp_path):
     os.mkfifo(pipe)
     for path in (pipe, Path("/dev/zero"), tmp_path, tmp_path / "none"):
         with pytest.raises(OSError, match=r".+"):
-            paths.read(path, 10)
-    assert not paths.is_file(tmp_path / ("a" * 5000))
-    assert not paths.is_folder(tmp_path / "a\0b")
+            safe_files.read(path, 10)
+    assert not safe_files.is_file(tmp_path / ("a" * 5000))
+    assert not safe_files.is_folder(tmp_path / "a\0b")
 
 
 def test_what_fails_in_the_grader_ends_with_a_code_of_its_own():

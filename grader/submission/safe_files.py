@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from contextlib import suppress
@@ -25,7 +26,7 @@ def is_folder(path: Path) -> bool:
 def read(path: Path, most: int) -> bytes:
     """The first bytes of a file."""
     found = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
-    with open(found, "rb") as file:
+    with os.fdopen(found, "rb") as file:
         if not stat.S_ISREG(os.fstat(found).st_mode):
-            raise OSError(f"it is no file: {path.name}")
+            raise OSError(errno.ENXIO, "it is no file", str(path))
         return file.read(most)
