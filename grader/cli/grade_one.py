@@ -38,8 +38,8 @@ from grader.result.result import (
 )
 from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
-from grader.submission.launching import LaunchAsked
 from grader.submission.reader import Marks
+from grader.submission.request import LaunchAsked
 from grader.submission.start import Submission
 from grader.translations import tr
 

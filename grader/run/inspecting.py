@@ -18,7 +18,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Final
 
 from grader import linux
@@ -35,6 +34,7 @@ from grader.run.processes.started_process import SubmissionProcess
 from grader.submission import answer, inspector
 from grader.submission.answer import Inspection, SetUp, SetUpFacts
 from grader.submission.launched import unlike_launched
+from grader.submission.request import Request
 from grader.submission.start import EntryPoint, Submission, Whole
 from grader.submission.trace import FAILED, PackageTrace
 
@@ -63,23 +63,23 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
 def inspect(
     submission: Submission,
     folders: Sequence[str],
-    program: str,
+    request: Request,
     budget: CpuBudget,
-    inspections: Sequence[str] | None,
-    given: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Inspection, tuple[Message, ...]]:
     """Find what packages have to start; return it with remarks on what could not be found.
 
     Args:
         submission: all of it.
         folders: those with set-up files, below its root.
-        program: the console script that is asked for.
-        inspections: by which its package is inspected as by `inspect_beside`; None for not at all.
-        given: values of launch arguments.
     """
-    inspectors = None if inspections is None else inspector.places(inspections)
-    asked: dict[str, object] = {"set_ups": list(folders), "program": program}
-    asked |= {"inspectors": inspectors, "given": dict(given)}
+    asked: dict[str, object] = {
+        "set_ups": list(folders),
+        "program": request.executable or request.usual,
+        "inspectors": None,
+        "given": dict(request.launch.given) if request.launch else {},
+    }
+    if request.inspections is not None:
+        asked["inspectors"] = inspector.places(request.inspections)
     found, ending = _inspected(submission, asked, budget)
     if found is None or [each.folder for each in found.set_ups] != list(folders):
         found = Inspection(tuple(SetUp(each, SetUpFacts(), None) for each in folders))

@@ -9,23 +9,21 @@ launch files, so an inspection evaluates them first, in a process confined like 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from grader.message import NOTHING, Message
 from grader.run.limits import CpuBudget
 from grader.scratch import make_folder
 from grader.submission import reader
-from grader.submission.folder import USUAL_NAME
-from grader.submission.launching import LaunchAsked
 from grader.submission.private_copy import PrivateCopy, copy_privately
 from grader.submission.reader import Marks
-from grader.submission.set_ups import NotInspected
+from grader.submission.request import LaunchAsked, Request
+from grader.submission.set_ups import Unevaluated
 from grader.submission.start import EntryPoint, Submission, Whole
 
 if TYPE_CHECKING:
@@ -40,7 +38,7 @@ def open_submission(
     *,
     is_started: bool = True,
     programs: Sequence[str] = (),
-    inspections: Sequence[str] | None = None,
+    inspections: tuple[str, ...] | None = None,
     cpu_s: float = math.inf,
     interfaces: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[Submission]:
@@ -64,18 +62,13 @@ def open_submission(
         OSError: something is wrong with the machine.
         GraderFailure: it could not be read or inspected, for a reason of ours.
     """
+    request = Request(executable, launch, is_started, tuple(programs), inspections, interfaces)
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()
-        more: dict[str, Any] = {"programs": programs, "launch": launch}
-        more["interfaces"] = interfaces
-        read = partial(reader.read, path, executable, scratch, **more)
-        try:
-            found = read(is_started=is_started)
-        except NotInspected as asked:
-            program = executable or next(iter(programs), USUAL_NAME)
-            given = launch.given if launch else {}
-            found, copy = _inspected(path, scratch, read, asked, cpu_s, program, inspections, given)
+        found = reader.read(path, request, scratch)
+        if isinstance(found, Unevaluated):
+            found, copy = _evaluated(path, scratch, found, request, CpuBudget(cpu_s))
         else:
             copy = copy_privately(path, found.root, scratch)
         yield _in_private(found, copy)
@@ -87,31 +80,23 @@ def marks_of(path: Path) -> Marks:
         return reader.read_marks(path, scratch.resolve())
 
 
-def _inspected(
-    path: Path,
-    scratch: Path,
-    read: Callable[..., Submission],
-    asked: NotInspected,
-    cpu_s: float,
-    program: str,
-    inspections: Sequence[str] | None,
-    given: Mapping[str, str],
+def _evaluated(
+    path: Path, scratch: Path, package: Unevaluated, request: Request, budget: CpuBudget
 ) -> tuple[Submission, PrivateCopy]:
     """Return a package as it is started according to an inspection, and its copy."""
     from grader.run import inspecting  # here: most submissions are a file
 
-    copy, budget = copy_privately(path, asked.base, scratch), CpuBudget(cpu_s)
-    everything = Submission(path.name, copy.of(asked.base), Whole(), NOTHING, copy=copy)
-    inspection, remarks = inspecting.inspect(
-        everything, asked.folders, program, budget, inspections, given
-    )
-    found = read(again=(asked, inspection))
+    copy = copy_privately(path, package.base, scratch)
+    everything = Submission(path.name, copy.of(package.base), Whole(), NOTHING, copy=copy)
+    inspection, remarks = inspecting.inspect(everything, package.folders, request, budget)
+    name = path.name or path.resolve().name
+    found = reader.read_evaluated(package, inspection, name, request, scratch)
     notes = (*remarks, *found.notes)
-    if inspections is None:  # else that is reported with the run
+    if request.inspections is None:  # else that is reported with the run
         notes = (*notes, *_by_itself(found, inspection.trace))
     elif (
         inspection.trace.setup
-        and found.package == asked.base / inspection.package
+        and found.package == package.base / inspection.package
         and not found.added
     ):
         found = replace(found, seen=inspection.trace)

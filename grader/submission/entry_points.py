@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Literal
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg
-from grader.submission.folder import USUAL_NAME, SubmissionFolder, files_below, listed, near, shown
+from grader.submission.folder import SubmissionFolder, files_below, listed, near, shown
 from grader.submission.python_source import read_source
+from grader.submission.request import USUAL_NAME
 from grader.submission.set_ups import ConsoleScript, PackageFolder, read_package
 
 if TYPE_CHECKING:
@@ -37,10 +38,11 @@ class Packages:
     readable: tuple[PackageFolder, ...]
     faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
 
-    def choose(self, executable: str | None) -> Choice | None:
+    def choose(self) -> Choice | None:
         """Choose the script asked for, else the usual one, else the only one; None without any."""
         every = [(package, script) for package in self.readable for script in package.scripts]
-        wanted = executable or self.submitted.usual
+        executable = self.submitted.request.executable
+        wanted = executable or self.submitted.request.usual
         matching = [choice for choice in every if choice[1].name == wanted]
         if len(matching) == 1:
             return matching[0]
@@ -90,7 +92,7 @@ class Packages:
             "{usual}; choose another with --executable NAME.",
             name=self.submitted.name,
             names=listed(names),
-            usual=self.submitted.usual,
+            usual=self.submitted.request.usual,
         )
 
 

@@ -53,7 +53,6 @@ from grader.submission.folder import (
 )
 from grader.submission.interfaces import find_interfaces
 from grader.submission.launching import (
-    LaunchAsked,
     StartedScript,
     find_launched,
     undeclared,
@@ -62,12 +61,13 @@ from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
 from grader.submission.python_source import read_source
 from grader.submission.refusals import CPP, advice, missing, no_python
+from grader.submission.request import LaunchAsked, Request
 from grader.submission.set_ups import (
     MOST,
     SETUP_FILES,
     ConsoleScript,
-    NotInspected,
     PackageFolder,
+    Unevaluated,
 )
 from grader.submission.start import EntryPoint, Launch, Program, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
@@ -76,35 +76,23 @@ if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection
 
 
-def find(
-    path: Path,
-    executable: str | None,
-    scratch: Path,
-    programs: Sequence[str] = (),
-    launch: LaunchAsked | None = None,
-) -> Submission:
-    """Find what to start.
+def find(path: Path, request: Request, scratch: Path) -> Submission | Unevaluated:
+    """Find what to start; or what has to be evaluated for that, see `find_evaluated`.
 
     Args:
-        executable: chooses among the console scripts or Python files of a folder or zip; a single
-            .py file leaves no choice.
         scratch: an empty folder, for what has to be unpacked or mended.
-        programs: the exercise's; see the rules.
-        launch: the launch file that is asked for.
 
     Raises:
-        NotInspected: it is a package; `find_inspected` goes on.
         SubmissionError: there is nothing to start, or no way to tell what.
         UsageError: there is no such path; or a choice is asked for where there is none.
         OSError: a file cannot be read, or something is wrong with the machine.
     """
-    name = shown(path.name or path.resolve().name)
-    asked = tuple(programs), launch.file if launch else ""
+    name, executable = shown(path.name or path.resolve().name), request.executable
     if not path.exists():
         raise missing(path)
+    unpacking = Unpacking(scratch)
     if path.is_dir():
-        submitted = SubmissionFolder(name, path.resolve(), *asked)
-        return _in_folder(submitted, executable, Unpacking(scratch))
+        return _in_folder(SubmissionFolder(name, path.resolve(), request), unpacking)
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
@@ -124,41 +112,29 @@ def find(
                 executable=executable,
                 name=name,
             )
-        if launch:
-            raise _no_launch_files(name, launch.file)
         folder = path.parent.resolve()
-        return _from_file(SubmissionFolder(name, folder, *asked), folder / path.name)
-    unpacking = Unpacking(scratch)
-    submitted = SubmissionFolder(name, unpacking.unpack(path), *asked)
-    return _in_folder(submitted, executable, unpacking)
+        submitted = SubmissionFolder(name, folder, request)
+        if request.launch:
+            raise _no_launch_files(submitted, request.launch)
+        return _from_file(submitted, folder / path.name)
+    return _in_folder(SubmissionFolder(name, unpacking.unpack(path), request), unpacking)
 
 
-def find_inspected(
-    asked: NotInspected,
-    inspection: Inspection,
-    name: str,
-    executable: str | None,
-    scratch: Path,
-    programs: Sequence[str] = (),
-    launch: LaunchAsked | None = None,
+def find_evaluated(
+    package: Unevaluated, inspection: Inspection, name: str, request: Request, scratch: Path
 ) -> Submission:
-    """Find what to start of a package that was inspected; see `find`."""
-    file = launch.file if launch else ""
-    submitted = SubmissionFolder(shown(name), asked.base, tuple(programs), file)
-    found = _in_folder(submitted, executable, Unpacking(scratch), inspection)
-    if launch is not None:
-        found = replace(found, notes=(*undeclared(inspection, launch), *found.notes))
-    for archive in asked.inside:
+    """Find what to start of a submission that was evaluated; see `find`."""
+    submitted = SubmissionFolder(shown(name), package.base, request)
+    files = files_below(top_of(package.base))
+    found = _found(submitted, files, Unpacking(scratch), inspection)
+    if request.launch is not None:
+        found = replace(found, notes=(*undeclared(inspection, request.launch), *found.notes))
+    for archive in package.inside:
         found = _with_archive(found, archive)
     return found
 
 
-def _in_folder(
-    submitted: SubmissionFolder,
-    executable: str | None,
-    unpacking: Unpacking,
-    inspection: Inspection | None = None,
-) -> Submission:
+def _in_folder(submitted: SubmissionFolder, unpacking: Unpacking) -> Submission | Unevaluated:
     top = top_of(submitted.base)
     if all(is_junk(entry.name) for entry in entries_of(top)):
         raise SubmissionError(
@@ -167,12 +143,21 @@ def _in_folder(
     files = files_below(top)
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
-        return _in_archive(submitted, archives, executable, unpacking)
-    if inspection is None and (folders := _set_ups(submitted, files)):
-        raise NotInspected(submitted.base, tuple(folders))
-    if inspection is None and submitted.launch:
-        raise _no_launch_files(submitted.name, submitted.launch)
-    found = _among(submitted, files, executable, unpacking, inspection)
+        return _in_archive(submitted, archives, unpacking)
+    if folders := _set_ups(submitted, files):
+        return Unevaluated(submitted.base, tuple(folders))
+    if submitted.request.launch:
+        raise _no_launch_files(submitted, submitted.request.launch)
+    return _found(submitted, files, unpacking)
+
+
+def _found(
+    submitted: SubmissionFolder,
+    files: list[Path],
+    unpacking: Unpacking,
+    inspection: Inspection | None = None,
+) -> Submission:
+    found = _among(submitted, files, unpacking, inspection)
     interfaces, notes = find_interfaces(submitted, files)
     return replace(found, interfaces=interfaces, notes=(*found.notes, *notes))
 
@@ -180,12 +165,12 @@ def _in_folder(
 def _among(
     submitted: SubmissionFolder,
     files: list[Path],
-    executable: str | None,
     unpacking: Unpacking,
     inspection: Inspection | None,
 ) -> Submission:
+    request, executable = submitted.request, submitted.request.executable
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
-    together = [] if executable or submitted.launch else packages.together(submitted.programs)
+    together = [] if executable or request.launch else packages.together(request.programs)
     notes: tuple[Message, ...] = ()
     if inspection and executable is None and len(together) != 1:
         launched = find_launched(submitted, packages, inspection, is_needed=not together)
@@ -198,7 +183,7 @@ def _among(
         started = [StartedScript.plain(*each, number) for number, each in enumerate(together, 1)]
         found = _from_scripts(submitted, packages, started, unpacking.scratch)
         return replace(found, notes=(*notes, *found.notes))
-    if choice := packages.choose(executable):
+    if choice := packages.choose():
         started = [StartedScript.plain(*choice)]
         return _from_scripts(submitted, packages, started, unpacking.scratch)
     candidates = [file for file in files if may_be_node(file)]
@@ -210,7 +195,7 @@ def _among(
     if several and (package := packages.holding(starting[0])):
         problem = package.problem or _no_script(submitted, package, starting)
         raise SubmissionError(joined([problem, "."]))
-    chosen = _only(submitted, starting, executable)
+    chosen = _only(submitted, starting)
     submitted.must_hold(chosen)
     if package := packages.holding(chosen):
         return _without_script(submitted, package, chosen)
@@ -220,21 +205,18 @@ def _among(
     return replace(found, notes=tuple(more))
 
 
-def _no_launch_files(name: str, launch: str) -> SubmissionError:
+def _no_launch_files(submitted: SubmissionFolder, launch: LaunchAsked) -> SubmissionError:
     return SubmissionError(
         "{name} is no package with launch files, and {file} was asked for. Hand in the folder with "
         "package.xml and setup.py.",
-        name=name,
-        file=shown(launch),
+        name=submitted.name,
+        file=shown(launch.file),
     )
 
 
 def _in_archive(
-    submitted: SubmissionFolder,
-    archives: list[Path],
-    executable: str | None,
-    unpacking: Unpacking,
-) -> Submission:
+    submitted: SubmissionFolder, archives: list[Path], unpacking: Unpacking
+) -> Submission | Unevaluated:
     """Unpack the one archive that a folder holds, as folders from a course's server do."""
     if len(archives) > 1:
         raise SubmissionError(
@@ -245,12 +227,9 @@ def _in_archive(
         )
     (archive,) = archives
     submitted.must_hold(archive)
-    inside = replace(submitted, base=unpacking.unpack(archive))
-    try:
-        found = _in_folder(inside, executable, unpacking)
-    except NotInspected as asks:
-        asks.inside = (*asks.inside, submitted.called(archive))
-        raise
+    found = _in_folder(replace(submitted, base=unpacking.unpack(archive)), unpacking)
+    if isinstance(found, Unevaluated):
+        return replace(found, inside=(*found.inside, submitted.called(archive)))
     return _with_archive(found, submitted.called(archive))
 
 
@@ -398,8 +377,9 @@ def may_be_node(file: Path) -> bool:
     return is_python and not is_launch_file(file)
 
 
-def _only(submitted: SubmissionFolder, candidates: list[Path], executable: str | None) -> Path:
+def _only(submitted: SubmissionFolder, candidates: list[Path]) -> Path:
     """Choose the Python file to start."""
+    executable = submitted.request.executable
     if executable:
         chosen = [file for file in candidates if executable in (file.stem, file.name)]
         if not chosen:
@@ -414,14 +394,16 @@ def _only(submitted: SubmissionFolder, candidates: list[Path], executable: str |
             "only that file.",
             name=submitted.name,
             names=listed(map(submitted.called, chosen)),
-            usual=submitted.usual,
+            usual=submitted.request.usual,
         )
     return chosen[0]
 
 
 def _usual(submitted: SubmissionFolder, candidates: list[Path]) -> list[Path]:
     """Return the files with the usual name, else those called main, else all of them."""
-    usual = [[file for file in candidates if file.stem == s] for s in (submitted.usual, "main")]
+    usual = [
+        [file for file in candidates if file.stem == s] for s in (submitted.request.usual, "main")
+    ]
     return usual[0] or usual[1] or candidates
 
 
@@ -429,7 +411,7 @@ def _no_script(
     submitted: SubmissionFolder, package: PackageFolder, starting: list[Path]
 ) -> Message:
     """Say that a setup.py names no console script, and which line it lacks."""
-    likely = [file for file in starting if file.stem == submitted.usual] or starting
+    likely = [file for file in starting if file.stem == submitted.request.usual] or starting
     module = "my_package.turtle_controller"
     if len(likely) == 1:
         module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)

@@ -6,7 +6,7 @@ import errno
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path, PurePath
 from typing import Final
@@ -14,6 +14,7 @@ from typing import Final
 from grader.errors import SubmissionError
 from grader.message import Message, Text, joined, msg
 from grader.submission import safe_files
+from grader.submission.request import Request
 from grader.text import clip_inside, without_controls
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
@@ -42,23 +43,13 @@ _COLCON: Final = {"build", "install", "log"}
 NO_SOURCES: Final = {"venv", "env", "test", "tests"} | _COLCON
 
 
-#: The challenge asks for a node of this name.
-USUAL_NAME: Final = "turtle_controller"
-
-
 @dataclass(frozen=True)
 class SubmissionFolder:
     """A submission as a folder, submitted as such or unpacked, and its names in messages."""
 
     name: str  # "alice.zip"
     base: Path  # absolute; messages name paths relative to it
-    programs: tuple[str, ...] = ()  # those of the exercise
-    launch: str = ""  # the launch file that is asked for
-
-    @property
-    def usual(self) -> str:
-        """The name of what is started, where there are several."""
-        return self.programs[0] if self.programs else USUAL_NAME
+    request: Request = field(default_factory=Request)
 
     def called(self, path: Path) -> str:
         """Name a path of the submission in a message."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -12,6 +12,7 @@ from grader.message import Message, joined, msg
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import SubmissionFolder, listed, shown
+from grader.submission.request import LaunchAsked
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -33,19 +34,6 @@ SEVERAL: Final = msg(
 AGAIN: Final = msg("{program} of {file} is started again {n} times at most")
 #: How an inspection names the folder of the submission.
 _SOURCE: Final = "/source/"
-
-
-@dataclass(frozen=True)
-class LaunchAsked:
-    """A launch file that is asked for.
-
-    Attributes:
-        file: its path in the submission, or its name alone.
-        given: values of its arguments.
-    """
-
-    file: str
-    given: Mapping[str, str] = field(default_factory=dict)
 
 
 class StartedScript(NamedTuple):
@@ -115,14 +103,14 @@ def find_launched(
     Args:
         is_needed: else there is none where one would have to be chosen.
     """
-    launches, asked = inspection.trace.launches, submitted.launch
+    launches, asked = inspection.trace.launches, submitted.request.launch
 
     def launched(launch: LaunchFile) -> Launched:
         made = _Launching(submitted, packages, inspection)
         return made.launched(launch, inspection.orders[launch.file])
 
     if asked:
-        found = launched(_asked(submitted, launches, asked))
+        found = launched(_asked(submitted, launches, asked.file))
         if not (found.scripts or found.compiled):
             raise SubmissionError(
                 "{file} starts no program of {name}", file=shown(found.file), name=submitted.name
@@ -135,7 +123,7 @@ def find_launched(
             for each in launches
             if each.problem is None and each.file not in included
         ]
-        least = 1 if len(submitted.programs) > 1 else 2
+        least = 1 if len(submitted.request.programs) > 1 else 2
         several = {
             each.scripts: each
             for each in reversed(every)

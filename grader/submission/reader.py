@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, Self
 
 from grader import limited, strict_json
@@ -22,16 +21,16 @@ from grader.errors import GraderError, GraderFailure, SubmissionError, UsageErro
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
 from grader.submission import folder, python_source, whole
-from grader.submission.finding import find, find_inspected, may_be_node
+from grader.submission.finding import find, find_evaluated, may_be_node
 from grader.submission.folder import is_source, shown
 from grader.submission.imports import read_imports
 from grader.submission.interfaces import completed, undeclared
-from grader.submission.launching import LaunchAsked
 from grader.submission.lint import lint
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
 from grader.submission.refusals import readable
-from grader.submission.set_ups import NotInspected
+from grader.submission.request import Request
+from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Imports, Submission, Whole
 from grader.text import clip
 
@@ -78,15 +77,13 @@ class _Answer:
     """The outcome of reading a submission; one of these.
 
     Attributes:
-        found: what to start.
-        asks: for an inspection.
+        found: what to start; or what has to be evaluated first.
         refused: why the submission cannot be used, and `whose` turn it is.
         unable: why the machine cannot read it, and the system's `errno` of that.
         failed: the grader's own mistake, in words.
     """
 
-    found: Submission | None = None
-    asks: NotInspected | None = None
+    found: Submission | Unevaluated | None = None
     refused: Message = NOTHING
     whose: str = ""
     unable: str = ""
@@ -94,8 +91,10 @@ class _Answer:
     failed: str = ""
 
     @classmethod
-    def of_found(cls, submission: Submission) -> Self:
+    def of_found(cls, submission: Submission | Unevaluated) -> Self:
         """Answer with a submission, its lists and texts cut to their limits."""
+        if isinstance(submission, Unevaluated):
+            return cls(submission)
         imports = Imports(_some(submission.imports.surely), _some(submission.imports.perhaps))
         notes = submission.notes[:_MAX_NOTES]
         short = tuple(note.map_texts(partial(clip, limit=_MAX_NOTE)) for note in notes)
@@ -106,14 +105,12 @@ class _Answer:
         """Answer with the error that refuses a submission."""
         return cls(refused=error.message, whose=error.whose)
 
-    def submission(self) -> Submission:
-        """Return the submission that was found."""
+    def submission(self) -> Submission | Unevaluated:
+        """Return what was found."""
         if self.whose in _REFUSALS:
             raise _REFUSALS[self.whose](self.refused)
         if self.unable:
             raise OSError(self.errno, self.unable)
-        if self.asks is not None:
-            raise self.asks
         if self.found is None:
             failed = self.failed or "the answer makes no sense"
             raise GraderFailure(f"the submission could not be read: {failed[-4000:]}")
@@ -135,43 +132,47 @@ def _some(modules: dict[str, str]) -> dict[str, str]:
     return dict(islice(named, _MAX_MODULES))
 
 
-def read(
-    path: Path,
-    executable: str | None,
-    scratch: Path,
-    *,
-    is_started: bool = True,
-    programs: Sequence[str] = (),
-    launch: LaunchAsked | None = None,
-    again: tuple[NotInspected, Inspection] | None = None,
-    interfaces: Mapping[str, str] = MappingProxyType({}),
-) -> Submission:
+def read(path: Path, request: Request, scratch: Path) -> Submission | Unevaluated:
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
-    Args:
-        again: the first reading's request for an inspection, and that inspection.
-        interfaces: the exercise's, a type -> its definition.
-
     Raises:
-        NotInspected: it is a package; read it again, with its inspection.
         SubmissionError: as there, or it takes more than the limits.
         UsageError, OSError: as there.
         GraderFailure: the copy has failed.
     """
-    name = path.name or path.resolve().name
+
+    def found() -> Submission | Unevaluated:
+        with readable(path):
+            if not request.is_started:
+                return whole.find(path, request.executable, scratch)
+            started = find(path, request, scratch)
+        if isinstance(started, Unevaluated):
+            return started
+        only = started.root / path.name if path.suffix == ".py" and not path.is_dir() else None
+        return _with_its_source(started, only, request)
+
+    return _in_copy(found, path.name or path.resolve().name)
+
+
+def read_evaluated(
+    package: Unevaluated, inspection: Inspection, name: str, request: Request, scratch: Path
+) -> Submission:
+    """Read a submission that was evaluated; see `read`."""
 
     def found() -> Submission:
-        with readable(again[0].base if again else path):
-            if not is_started:
-                return whole.find(path, executable, scratch)
-            if again is None:
-                started = find(path, executable, scratch, programs, launch)
-            else:
-                started = find_inspected(*again, name, executable, scratch, programs, launch)
-        return _with_its_source(started, path, interfaces)
+        with readable(package.base):
+            started = find_evaluated(package, inspection, name, request, scratch)
+        return _with_its_source(started, None, request)
 
+    submission = _in_copy(found, name)
+    if isinstance(submission, Unevaluated):
+        raise GraderFailure("the answer makes no sense")
+    return submission
+
+
+def _in_copy(found: Callable[[], Submission | Unevaluated], name: str) -> Submission | Unevaluated:
     try:
-        answer = decoded(limited.call(lambda: _answered(found, path), LIMITS))
+        answer = decoded(limited.call(lambda: _answered(found, name), LIMITS))
     except limited.LimitHit as hit:
         answer = _of_hit(hit, name)
     return answer.submission()
@@ -225,9 +226,9 @@ def _too_much(hit: limited.LimitHit) -> Message:
 # In the copy ----------------------------------------------------------------------------------
 
 
-def _answered(found: Callable[[], Submission], path: Path) -> bytes:
+def _answered(found: Callable[[], Submission | Unevaluated], name: str) -> bytes:
     _be_confined()
-    return strict_json.line(_answer(found, path))
+    return strict_json.line(_answer(found, name))
 
 
 def _be_confined() -> None:
@@ -260,19 +261,16 @@ def _marks(path: Path, scratch: Path) -> Marks:
     return Marks(_some(exercises), names, any(map(may_be_node, files)))
 
 
-def _answer(found: Callable[[], Submission], path: Path) -> _Answer:
+def _answer(found: Callable[[], Submission | Unevaluated], name: str) -> _Answer:
     """Find what to start, and answer with it or with the error."""
     try:
         return _Answer.of_found(found())
-    except NotInspected as asks:
-        return _Answer(asks=asks)
     except (SubmissionError, UsageError) as error:
         return _Answer.of_refusal(error)
     except OSError as error:
         return _Answer(unable=error.strerror or str(error), errno=error.errno)
     except RecursionError:
-        name = shown(path.name or path.resolve().name)
-        deep = SubmissionError("{name} is nested too deeply to be read.", name=name)
+        deep = SubmissionError("{name} is nested too deeply to be read.", name=shown(name))
         return _Answer.of_refusal(deep)
     except MemoryError:
         raise
@@ -282,15 +280,18 @@ def _answer(found: Callable[[], Submission], path: Path) -> _Answer:
         return _Answer(failed=traceback.format_exc())
 
 
-def _with_its_source(found: Submission, path: Path, theirs: Mapping[str, str]) -> Submission:
-    """Add to a submission what its source shows: imports, interfaces, faults, lint findings."""
-    only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
+def _with_its_source(found: Submission, only: Path | None, request: Request) -> Submission:
+    """Add to a submission what its source shows: imports, interfaces, faults, lint findings.
+
+    Args:
+        only: the one file that is the submission, if it is one.
+    """
     assert not isinstance(found.start, Whole)
     imports = read_imports(found.root, found.programs, only, found.beside)
     files = [each for each in imports.files if each.is_relative_to(found.root)]
     refused = python_source.byte_faults(files, found.root)
     notes, shows = [*refused, *found.notes], lint(found.root, files)
-    defined = completed(found.interfaces, theirs)
+    defined = completed(found.interfaces, request.interfaces)
     known = {*imports.surely, *imports.perhaps} & defined.packages
     interfaces = defined if known else OwnInterfaces()
     if found.package is not None:

@@ -28,9 +28,9 @@ MOST: Final = 50
 _TARGET: Final = re.compile(r"(\w+(?:\.\w+)*)\s*:\s*(\w+(?:\.\w+)*)\s*(?:\[.*\])?")
 
 
-@dataclass(eq=False)
-class NotInspected(Exception):
-    """The submission is a package: only an inspection can find out what there is to start.
+@dataclass(frozen=True)
+class Unevaluated:
+    """A submission whose set-up files have to be evaluated before anything of it can be chosen.
 
     Attributes:
         base: the whole submission, where it lies unpacked.

@@ -12,6 +12,7 @@ from grader.run.handover import Plan
 from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
 from grader.submission.answer import Inspection, decode
+from grader.submission.request import Request
 from grader.submission.start import EntryPoint, Script, Submission, Whole
 from grader.submission.trace import encode
 from tests.files import lay
@@ -116,7 +117,7 @@ def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path):
 def test_an_answer_about_other_folders_is_none(tmp_path, monkeypatch):
     with open_submission(lay(tmp_path, package("spiral"))) as found:
         whole = Submission("a", found.copy.folder, Whole(), "", copy=found.copy)
-        asked = (whole, ["."], "turtle_controller", CpuBudget(), None)
+        asked = (whole, ["."], Request(), CpuBudget())
         said, _ = inspecting.inspect(*asked)
         assert [each.told.name for each in said.set_ups] == ["spiral"]
         monkeypatch.setattr(inspecting.answer, "decode", lambda _: Inspection())

@@ -14,9 +14,14 @@ from tests.grader_robots.packages import inspected
 
 @pytest.fixture(autouse=True)
 def inspection(monkeypatch):
-    def inspect(submission, folders, program, _, inspections, given):
-        places = None if inspections is None else inspector.places(inspections)
-        order = {"set_ups": [*folders], "program": program, "inspectors": places}
-        return inspected(submission.root, **order, given=dict(given)), ()
+    def inspect(submission, folders, request, _):
+        by = request.inspections
+        order = {
+            "set_ups": [*folders],
+            "program": request.executable or request.usual,
+            "inspectors": None if by is None else inspector.places(by),
+            "given": dict(request.launch.given) if request.launch else {},
+        }
+        return inspected(submission.root, **order), ()
 
     monkeypatch.setattr(inspecting, "inspect", inspect)

@@ -6,9 +6,10 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.submission.answer import Inspection, SetUp, SetUpFacts
-from grader.submission.finding import find, find_inspected
+from grader.submission.finding import find, find_evaluated
 from grader.submission.refusals import readable
-from grader.submission.set_ups import NotInspected
+from grader.submission.request import Request
+from grader.submission.set_ups import Unevaluated
 from tests.files import lay
 from tests.grader.submission.copies import NODE
 from tests.grader.submission.test_opening import PACKAGE
@@ -23,7 +24,7 @@ def scratch(tmp_path):
 
 def refused(path, scratch):
     with pytest.raises(SubmissionError) as error, readable(path):
-        find(path, None, scratch)
+        find(path, Request(), scratch)
     return str(error.value)
 
 
@@ -35,14 +36,13 @@ def test_an_unreadable_file_is_named(tmp_path, scratch, monkeypatch):
 
 def test_an_unreadable_file_of_a_package_is_named(tmp_path, scratch, monkeypatch):
     handed_in = lay(tmp_path / "in", PACKAGE)
-    with pytest.raises(NotInspected) as asked:
-        find(handed_in, None, scratch)
-    assert asked.value.folders == (".",)
+    asked = find(handed_in, Request(), scratch)
+    assert asked == Unevaluated(handed_in, (".",))
     forbid(monkeypatch, handed_in / "spiral/node.py")
     said = SetUp(".", SetUpFacts(scripts=("turtle_controller = spiral.node:main",)), None)
     words = r"^spiral/node\.py cannot be read: Permission"
     with pytest.raises(SubmissionError, match=words), readable(handed_in):
-        find_inspected(asked.value, Inspection((said,)), "in", None, scratch, "a")
+        find_evaluated(asked, Inspection((said,)), "in", Request(), scratch)
 
 
 def forbid(monkeypatch, path):
@@ -64,7 +64,7 @@ def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(tmp_path, scratch
     monkeypatch.setattr("grader.submission.archive.unpack", full)
     (tmp_path / "a.zip").touch()
     with pytest.raises(OSError, match="No space left"), readable(tmp_path):
-        find(tmp_path / "a.zip", None, scratch)
+        find(tmp_path / "a.zip", Request(), scratch)
 
 
 def test_a_folder_with_too_many_files_is_refused(tmp_path, scratch, monkeypatch):

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from grader.run import inspecting
-from grader.submission.launching import LaunchAsked
+from grader.submission.request import LaunchAsked
 from tests.grader.submission.test_launching import opened
 from tests.grader_robots.packages import inspected
 from tests.hand_ins import SUBMISSIONS

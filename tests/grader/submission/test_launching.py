@@ -4,7 +4,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.run.opening import open_submission
-from grader.submission.launching import LaunchAsked
+from grader.submission.request import LaunchAsked
 from grader.submission.start import EntryPoint, Launch, Program
 from tests.files import lay
 from tests.grader.submission.copies import NODE

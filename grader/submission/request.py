@@ -1,0 +1,50 @@
+"""What is asked of a hand-in: by its exercise, and by who has it graded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+#: What the challenge asks for.
+USUAL_NAME = "turtle_controller"
+
+
+@dataclass(frozen=True)
+class LaunchAsked:
+    """A launch file that is asked for.
+
+    Attributes:
+        file: its path in the submission, or its name alone.
+        given: values of its arguments.
+    """
+
+    file: str
+    given: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is to be started of a hand-in, and looked at.
+
+    Attributes:
+        executable: chooses among the console scripts or Python files of a folder or zip; where
+            nothing is started, among packages. A single .py file leaves no choice.
+        launch: the launch file that is asked for.
+        is_started: else all of it is inspected.
+        programs: those of the exercise, which are started where the submission has them.
+        inspections: by which the whole package around what is started is inspected at the same
+            time; None for not at all.
+        interfaces: the exercise's, a type -> its definition.
+    """
+
+    executable: str | None = None
+    launch: LaunchAsked | None = None
+    is_started: bool = True
+    programs: tuple[str, ...] = ()
+    inspections: tuple[str, ...] | None = None
+    interfaces: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def usual(self) -> str:
+        """The name of what is started, where there are several."""
+        return self.programs[0] if self.programs else USUAL_NAME
