@@ -99,7 +99,16 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.submission.trace": below("grader", "strict_json", "message"),
     "grader.submission.answer": {"grader.strict_json", "grader.submission.trace"},
     "grader.submission.examining": below("grader", "limited", "linux", "strict_json", "message")
-    | below("grader.submission", "trace", "answer", "folder", "manifest", "request", "safe_files", "__init__"),
+    | below(
+        "grader.submission",
+        "trace",
+        "answer",
+        "folder",
+        "manifest",
+        "request",
+        "safe_files",
+        "__init__",
+    ),
     "grader.submission.examining.doubles": below("grader", "submission.examining", "message"),
     "grader.run": GROUND
     | below("grader", "submission", "recording", "scenes", "run", "rosidl.compiler")

@@ -22,7 +22,7 @@ from grader import strict_json
 from grader.cast import expressions
 from grader.cast.trace import TF
 from grader.message import msg
-from grader.recording.subject import Endpoint, EndpointKind
+from grader.recording.subject import Endpoint, EndpointKind, Role, RoleKind
 from grader.strict_json import OURS, not_negative
 from grader.yaml_file import Mistake, expect
 
@@ -241,6 +241,11 @@ _MET: Final[Mapping[str, EndpointKind]] = {
     **{"publishers": "publisher", "subscriptions": "subscription"},
     **{"services": "service", "actions": "action"},
 }
+#: What faces it in a program.
+_FACING: Final[Mapping[str, RoleKind]] = {
+    **{"publishers": "subscription", "subscriptions": "publisher"},
+    **{"services": "client", "calls": "service", "actions": "action_client", "goals": "action"},
+}
 #: Which attribute names it; where that is '', the name that it is listed by does.
 NAMED_BY: Final = {
     **dict.fromkeys(("publishers", "subscriptions"), "topic"),
@@ -296,6 +301,18 @@ def endpoints(peers: Mapping[str, Peer]) -> Iterator[Endpoint]:
                     yield Endpoint(met, name, each, absolute(node), entry.begin)
         for frame in peer.frames.values():
             yield Endpoint("publisher", frame.topic, TF, absolute(node))
+
+
+def roles(peers: Mapping[str, Peer]) -> Iterator[Role]:
+    """Yield what a program has on the graph that faces these peers."""
+    for peer in peers.values():
+        for kind, role in _FACING.items():
+            for entry in getattr(peer, kind).values():
+                yield Role(role, absolute(getattr(entry, NAMED_BY[kind])))
+        for frame in peer.frames.values():
+            yield Role("subscription", frame.topic)
+        for each in peer.parameters.values():
+            yield from (Role("parameter", name) for name in (*each.set, *each.get))
 
 
 def interfaces_folder(package: str, kind: str) -> Path | None:

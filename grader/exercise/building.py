@@ -60,6 +60,8 @@ MOST_FACTOR = 100
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 #: Of an exercise, a program, a package.
 NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
+#: A program's name, or a pattern of it: '*talker*'.
+_PROGRAM = re.compile(r"[A-Za-z0-9_*][\w.*-]*")
 
 
 def build(data: dict[str, Any], place: Place) -> Exercise:
@@ -243,11 +245,11 @@ def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
 def _programs(data: Mapping[str, Any]) -> tuple[str, ...]:
     """Read the names of the console scripts that are started together, or of the one."""
     one = data.get("program", "")
-    fits = isinstance(one, str) and (not one or NAME.fullmatch(one))
+    fits = isinstance(one, str) and (not one or _PROGRAM.fullmatch(one))
     expect(fits, ("program",), "expected the name of a console script, found {found}", one)
     several = data.get("programs", [one] if one else [])
     fits = isinstance(several, list) and len({*map(str, several)}) == len(several) <= MOST_PROGRAMS
-    fits = fits and all(isinstance(each, str) and NAME.fullmatch(each) for each in several)
+    fits = fits and all(isinstance(each, str) and _PROGRAM.fullmatch(each) for each in several)
     what = "expected names of console scripts, each once, at most {n}; found {found}"
     expect(fits, ("programs",), what, several, n=MOST_PROGRAMS)
     if one and "programs" in data:

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from grader.message import msg
-from grader.recording.subject import Endpoint
+from grader.recording.subject import Endpoint, Role
 from grader.yaml_file import Mistake, expect
 
 #: Scripted peers, topics that are recorded besides, arguments of the program; the cases.
@@ -54,6 +54,16 @@ class RunCase:
         from grader.cast import script  # here: most exercises have none
 
         return tuple(script.endpoints(script.parse(self.cast))) if self.cast else ()
+
+    @property
+    def roles(self) -> set[Role]:
+        """What a program has on the graph, for its peers and for the checks."""
+        if self.cast is None:
+            return set()
+        from grader.cast import script  # here: most exercises have none
+
+        heard = (Role("publisher", script.absolute(each)) for each in self.hears)
+        return {*script.roles(script.parse(self.cast)), *heard}
 
     def hearing(self, topics: Iterable[str]) -> RunCase:
         """Return it with more topics, which are recorded if anything is."""

@@ -21,7 +21,7 @@ from grader.exercise.check import Checks
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
 from grader.message import NOTHING, Message
-from grader.recording.subject import Endpoint, Start, Subject, load_subject
+from grader.recording.subject import Endpoint, Role, Start, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
@@ -42,6 +42,8 @@ class Opening(TypedDict, total=False):
     inspections: tuple[str, ...] | None
     cpu_s: float
     interfaces: Mapping[str, str]
+    name: str
+    roles: tuple[Role, ...]
 
 
 Range = tuple[float, float]
@@ -163,7 +165,12 @@ class Exercise:
     @property
     def opening(self) -> Opening:
         """The arguments for opening a submission to it."""
+        found: Opening = {}
+        if self.starter is not None and self.starter.suffix == ".py":
+            found["name"] = self.starter.stem
         return {
+            **found,
+            "roles": tuple(sorted(set().union(*(case.roles for case in self.cases)))),
             "is_started": self.is_started,
             "programs": self.programs,
             "inspections": self.inspections if self.looks_at_package else None,

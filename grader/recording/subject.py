@@ -116,6 +116,22 @@ class Endpoint(NamedTuple):
     begin_s: float = 0.0
 
 
+RoleKind = Literal[
+    "publisher", "subscription", "service", "client", "action", "action_client", "parameter"
+]
+
+
+class Role(NamedTuple):
+    """What a program has on the graph: an end of a topic, service or action, or a parameter.
+
+    Attributes:
+        name: with its namespace; of a parameter its own.
+    """
+
+    kind: RoleKind
+    name: str
+
+
 class Subject(ABC):
     """The subject of recordings. The abstract members are obligatory, the others have defaults."""
 

@@ -9,12 +9,11 @@ launch files, so an inspection evaluates them first, in a process confined like 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.message import NOTHING, Message
 from grader.run.limits import CpuBudget
@@ -36,25 +35,17 @@ def open_submission(
     executable: str | None = None,
     launch: LaunchAsked | None = None,
     *,
-    is_started: bool = True,
-    programs: Sequence[str] = (),
-    inspections: tuple[str, ...] | None = None,
     cpu_s: float = math.inf,
-    interfaces: Mapping[str, str] = MappingProxyType({}),
+    **of_exercise: Any,
 ) -> Iterator[Submission]:
     """Find what to start, in a copy that is removed when the context ends.
 
-    `executable` chooses among the console scripts or Python files of a folder or zip; a single
-    .py file leaves no choice. Where nothing is started (`is_started`), the submission is all of it,
-    a folder or an archive with a package; `executable` then chooses among packages.
+    Where nothing is started, the submission is all of it, a folder or an archive with a package.
 
     Args:
-        launch: the launch file that is asked for.
-        programs: those of the exercise, which are started where the submission has them.
-        inspections: by which the whole package around what is started is inspected at the same
-            time; None for not at all.
+        executable, launch: see `Request`.
         cpu_s: the processor time that it may use [s].
-        interfaces: the exercise's, a type -> its definition.
+        of_exercise: the other attributes of a `Request`, as `Exercise.opening` has them.
 
     Raises:
         SubmissionError: there is nothing to start, no way to tell what, or too much to be read.
@@ -62,7 +53,7 @@ def open_submission(
         OSError: something is wrong with the machine.
         GraderFailure: it could not be read or inspected, for a reason of ours.
     """
-    request = Request(executable, launch, is_started, tuple(programs), inspections, interfaces)
+    request = Request(executable, launch, **of_exercise)
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()

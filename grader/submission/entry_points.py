@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg
 from grader.submission.folder import SubmissionFolder, files_below, listed, near, shown
+from grader.submission.imports import read_imports
 from grader.submission.python_source import read_source
 from grader.submission.request import USUAL_NAME
+from grader.submission.roles import is_among, roles_in
 from grader.submission.set_ups import ConsoleScript, PackageFolder, read_package
+from grader.submission.start import EntryPoint, Program
 
 if TYPE_CHECKING:
+    from grader.recording.subject import Role
     from grader.submission.answer import SetUp
 
 Choice = tuple[PackageFolder, ConsoleScript]
@@ -39,11 +44,14 @@ class Packages:
     faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
 
     def choose(self) -> Choice | None:
-        """Choose the script asked for, else the usual one, else the only one; None without any."""
+        """Choose the script asked for, else the usual one, else the only one; None without any.
+
+        Of several it is the one whose source has most of what the exercise names.
+        """
         every = [(package, script) for package in self.readable for script in package.scripts]
         executable = self.submitted.request.executable
         wanted = executable or self.submitted.request.usual
-        matching = [choice for choice in every if choice[1].name == wanted]
+        matching = [choice for choice in every if fnmatchcase(choice[1].name, wanted)]
         if len(matching) == 1:
             return matching[0]
         if matching:
@@ -54,13 +62,37 @@ class Packages:
         if executable and every:
             raise no_such_executable(self.submitted, "console script", executable, names)
         if len(every) > 1:
+            fitting = self._fitting(every)
+            if len(fitting) == 1:
+                return fitting[0]
+            names = [script.name for _, script in fitting]
             raise self._several(names) if len(set(names)) > 1 else self._twice(every)
         return every[0] if every else None
+
+    def roles(self, package: PackageFolder | None, script: ConsoleScript | Path) -> set[Role]:
+        """Return what the source of a program has on the graph."""
+        if isinstance(script, Path):
+            return roles_in([script])
+        assert package is not None
+        try:
+            root = find_module(self.submitted, package, script).root
+        except SubmissionError:
+            return set()
+        entry = EntryPoint(script.module, script.function)
+        program = Program(script.name, package.name, script.name, entry, root)
+        return roles_in(read_imports(root, [program]).files)
+
+    def _fitting(self, every: list[Choice]) -> list[Choice]:
+        """Return the scripts that have most of what the exercise names, or all where none has."""
+        wanted = self.submitted.request.roles
+        found = [self.roles(*choice) for choice in every]
+        counts = [sum(is_among(role, roles) for role in wanted) for roles in found]
+        return [each for each, n in zip(every, counts, strict=True) if n == max(counts)]
 
     def together(self, names: Sequence[str]) -> list[Choice]:
         """Return the scripts of these names, or of several just as many others; else none."""
         every = [(package, script) for package in self.readable for script in package.scripts]
-        found = [[choice for choice in every if choice[1].name == name] for name in names]
+        found = [[each for each in every if fnmatchcase(each[1].name, name)] for name in names]
         if all(len(each) == 1 for each in found):
             return [each[0] for each in found]
         return every if len(every) == len(names) > 1 else []

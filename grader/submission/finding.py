@@ -2,18 +2,11 @@
 
 Nothing of it is run here; set-up and launch files are evaluated by an inspection.
 
-The rules, in order:
-
-0. An archive is unpacked first; so is the only one in a folder that holds no source beside it.
-1. A `.py` file is itself what to start.
-2. In a folder, console scripts of packages (setup.py, setup.cfg, pyproject.toml, by their
-   inspection): the one that is asked for, or those of the launch file that is; else the one that
-   the exercise names, where it is there; else those of the only launch file that starts several;
-   else all that the exercise names, or as many; else the usual one (`turtle_controller`), else the
-   only one.
-3. Else a Python file that starts itself or has a function `main`: the one that is asked for, else
-   the usual one, else `main.py`, else the only one. So in a package whose setup.py
-   names no console script.
+An archive is unpacked first; so is the only one in a folder that holds no source beside it. A
+`.py` file is itself what to start. For all else the table in docs/for-students.md has the rules, in
+their order. In a package whose setup.py names no console script it is a Python file that starts
+itself or has a function `main`: the one that is asked for, else the usual one, else `main.py`, else
+the only one.
 
 What these do not settle is a SubmissionError that lists the candidates.
 """
@@ -170,10 +163,16 @@ def _among(
 ) -> Submission:
     request, executable = submitted.request, submitted.request.executable
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
+    choice, refused = None, None
+    try:
+        choice = packages.choose()
+    except SubmissionError as error:
+        refused = error
     together = [] if executable or request.launch else packages.together(request.programs)
     notes: tuple[Message, ...] = ()
     if inspection and executable is None and len(together) != 1:
-        launched = find_launched(submitted, packages, inspection, is_needed=not together)
+        is_needed = refused is not None and not together
+        launched = find_launched(submitted, packages, inspection, is_needed=is_needed)
         notes = launched.notes
         if launched.scripts:
             found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
@@ -183,7 +182,9 @@ def _among(
         started = [StartedScript.plain(*each, number) for number, each in enumerate(together, 1)]
         found = _from_scripts(submitted, packages, started, unpacking.scratch)
         return replace(found, notes=(*notes, *found.notes))
-    if choice := packages.choose():
+    if refused is not None:
+        raise refused
+    if choice is not None:
         started = [StartedScript.plain(*choice)]
         return _from_scripts(submitted, packages, started, unpacking.scratch)
     candidates = [file for file in files if may_be_node(file)]

@@ -13,6 +13,7 @@ from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import SubmissionFolder, listed, shown
 from grader.submission.request import LaunchAsked
+from grader.submission.roles import is_among
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -97,8 +98,9 @@ def find_launched(
 ) -> Launched:
     """Find the launch file that is asked for, or the one that starts several programs.
 
-    Where the exercise is about several, it may be one that starts a single one. One that starts
-    nothing is returned where there is none, with notes.
+    Where the exercise is about several, it may be one that starts a single one. It is none that
+    starts more than an exercise names which is about one. One that starts nothing is returned where
+    there is none, with notes.
 
     Args:
         is_needed: else there is none where one would have to be chosen.
@@ -127,7 +129,7 @@ def find_launched(
         several = {
             each.scripts: each
             for each in reversed(every)
-            if len(each.scripts) + len(each.compiled) >= least
+            if len(each.scripts) + len(each.compiled) >= least and _is_needed(each, packages)
         }
         if len(several) > 1 and not is_needed:
             names = listed(each.file for each in reversed(several.values()))
@@ -158,6 +160,15 @@ def find_launched(
             most=MOST_PROGRAMS,
         )
     return found
+
+
+def _is_needed(launched: Launched, packages: Packages) -> bool:
+    """Whether each program has something that the exercise names, where it names the one."""
+    request = packages.submitted.request
+    if len(request.programs) > 1 or not request.roles:
+        return True
+    found = [packages.roles(each.package, each.script) for each in launched.scripts]
+    return all(any(is_among(role, roles) for role in request.roles) for roles in found)
 
 
 def undeclared(inspection: Inspection, asked: LaunchAsked) -> Iterator[Message]:

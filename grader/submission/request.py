@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.recording.subject import Role
 
 #: What the challenge asks for.
 USUAL_NAME = "turtle_controller"
@@ -31,7 +35,10 @@ class Request:
             nothing is started, among packages. A single .py file leaves no choice.
         launch: the launch file that is asked for.
         is_started: else all of it is inspected.
-        programs: those of the exercise, which are started where the submission has them.
+        programs: those of the exercise, names or patterns of names such as '*talker*', which are
+            started where the submission has them.
+        name: of what is started where there are several, and the exercise names no programs.
+        roles: what the exercise's programs have on the graph.
         inspections: by which the whole package around what is started is inspected at the same
             time; None for not at all.
         interfaces: the exercise's, a type -> its definition.
@@ -41,10 +48,12 @@ class Request:
     launch: LaunchAsked | None = None
     is_started: bool = True
     programs: tuple[str, ...] = ()
+    name: str = USUAL_NAME
+    roles: tuple[Role, ...] = ()
     inspections: tuple[str, ...] | None = None
     interfaces: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def usual(self) -> str:
-        """The name of what is started, where there are several."""
-        return self.programs[0] if self.programs else USUAL_NAME
+        """The name, or its pattern, of what is started where there are several."""
+        return self.programs[0] if self.programs else self.name

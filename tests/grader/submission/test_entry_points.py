@@ -2,7 +2,10 @@
 
 import pytest
 
+from grader.errors import SubmissionError
+from grader.recording.subject import Role
 from grader.run.opening import open_submission
+from grader.submission.roles import roles_in
 from grader.submission.start import EntryPoint
 from tests.files import lay
 from tests.grader.submission.copies import GUARDED, NODE, below, found_in, refused
@@ -161,3 +164,53 @@ def test_a_missing_init_file_is_added_to_a_copy(tmp_path):
         assert "with the missing turtlesim_challenge/__init__.py added" in str(submission.found)
     assert not submission.root.exists()
     assert not (tmp_path / "turtlesim_challenge/__init__.py").exists()
+
+
+def publishing(topic):
+    return f"def make(node):\n    node.create_publisher(str, {topic!r}, 10)\n\n\n{GUARDED}"
+
+
+FOUR = {"a": "'topic'", "b": "'/topic'", "c": "'other'", "d": "names[0]"}
+SOURCES = {f"spiral/{name}.py": publishing("x").replace("'x'", at) for name, at in FOUR.items()}
+
+
+@pytest.mark.parametrize(
+    ("scripts", "started"), [("acd", "a"), ("dcb", "b"), ("cd", None), ("ab", None), ("ba", None)]
+)
+def test_of_several_scripts_the_one_that_has_what_the_exercise_names_is_started(
+    tmp_path, scripts, started
+):
+    files = package("spiral", *(f"{each} = spiral.{each}:main" for each in scripts)) | SOURCES
+    asked = {"roles": (Role("publisher", "/topic"),), "name": "talker"}
+    lay(tmp_path, files)
+    if started is not None:
+        with open_submission(tmp_path, **asked) as submission:
+            assert submission.executable == started
+    else:
+        said = f"several console scripts: {', '.join(scripts)}. Expected one called talker"
+        with pytest.raises(SubmissionError, match=said), open_submission(tmp_path, **asked):
+            pass
+
+
+@pytest.mark.parametrize(("wanted", "started"), [("*draw*", "my_draw_node"), ("b", "b")])
+def test_an_exercise_may_name_its_program_by_a_pattern(tmp_path, wanted, started):
+    scripts = [f"{each} = {TARGET}" for each in ("a", "my_draw_node", "b")]
+    lay(tmp_path, package("spiral", *scripts))
+    with open_submission(tmp_path, programs=(wanted,)) as submission:
+        assert submission.executable == started
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("create_publisher(String, f'/{self.name}/cmd', 10)", "/*/cmd"),
+        ("create_publisher(String, 'a' + '/b', qos_profile=10)", "/a/b"),
+        ("create_publisher(String, topic='~/c')", "/*/c"),
+        ("create_publisher(String, TOPIC, 10)", "/of_a_constant"),
+        ("create_publisher(String, topics[0], 10)", "/*"),
+    ],
+)
+def test_a_name_is_read_as_far_as_the_source_has_it(tmp_path, text, name):
+    file = tmp_path / "node.py"
+    file.write_text(f"TOPIC = 'of_a_constant'\nself.{text}\n")
+    assert roles_in([file]) == {Role("publisher", name)}

@@ -179,15 +179,18 @@ def test_what_ros2_launch_would_not_find_is_told(tmp_path):
 OTHER = LIST.format(f"{PENS}, {DRIVE}")
 
 
-def test_of_two_launch_files_one_has_to_be_chosen(tmp_path):
-    lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER})
+def test_of_two_launch_files_one_has_to_be_chosen_where_no_script_fits(tmp_path):
+    renamed = TWO["setup.py"].replace("turtle_controller =", "drive_node =")
+    files = {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER}
+    files = {name: text.replace("turtle_controller", "drive_node") for name, text in files.items()}
+    lay(tmp_path, TWO | files | {"setup.py": renamed})
     with pytest.raises(SubmissionError) as caught:
         opened(tmp_path)
     said = "choose one with --launch launch/a.launch.py, --launch launch/b.launch.py"
     assert said in str(caught.value)
     for file in ("b.launch.py", "launch/b.launch.py", "./launch/b.launch.py"):
         chosen = opened(tmp_path, launch=LaunchAsked(file))
-        assert names(chosen) == ["pen_node-1", "turtle_controller-2"]
+        assert names(chosen) == ["pen_node-1", "drive_node-2"]
 
 
 def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_arguments(tmp_path):
@@ -210,6 +213,7 @@ def test_an_argument_that_is_not_declared_is_told(tmp_path):
 
 def test_of_two_launch_files_none_is_needed_where_the_exercise_names_the_programs(tmp_path):
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": OTHER})
+    assert names(opened(tmp_path)) == ["turtle_controller-1"]
     found = opened(tmp_path, programs=("pen_node", "turtle_controller"))
     assert names(found) == ["pen_node-1", "turtle_controller-2"]
     assert "several launch files start several programs, and none of them was used: " in " ".join(
