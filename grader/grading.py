@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from functools import partial
@@ -38,6 +38,7 @@ from grader.scenes.scene import Scene
 from grader.submission.folder import listed, shown
 from grader.submission.private_copy import missing_neighbours
 from grader.submission.reader import Marks
+from grader.submission.roles import is_among
 from grader.submission.start import Submission
 
 Progress = Callable[[float], None]
@@ -94,25 +95,41 @@ def exercise_for(path: Path, marks: Marks) -> tuple[str, Message]:
             )
         said = msg("Exercise: {name} (named in {file})", name=name, file=file)
         return name, NOTHING if name == DEFAULT else said
+    fitting = fitting_exercises(marks)
+    if len(fitting) == 1:
+        said = msg("Exercise: {name}, by what the source has; another one: --exercise NAME")
+        return fitting[0], said.given(name=fitting[0])
+    if fitting:
+        names = listed(fitting)
+        return DEFAULT, msg(
+            "It fits several exercises ({names}): choose one with --exercise"
+        ).given(names=names)
     return DEFAULT, NOTHING
 
 
-def fitting(marks: Marks, recordings: Recordings | None) -> str:
-    """Return the installed exercise that a submission plainly fits; '' for none.
+def fitting_exercises(marks: Marks) -> list[str]:
+    """Return the installed exercises that a submission fits best, none where the default one does.
 
-    Args:
-        recordings: of its program; None where nothing could be started.
+    It fits where it has all that an exercise names: on the graph, or, without a program, files.
     """
-    types = () if recordings is None else {each.type for each in recordings.nominal.topics}
-    files = () if marks.has_program or recordings is not None else marks.files
-    for name in places.names() if types or files else ():
-        with suppress(ExerciseError):
-            fits = load_exercise(name).fits
-            likely = product(files, fits.get("files", ()))
-            is_like = any(fnmatchcase(file.lower(), pattern) for file, pattern in likely)
-            if is_like or not {*types}.isdisjoint(fits.get("publishes", ())):
-                return name
-    return ""
+    if _worth(DEFAULT, marks):
+        return []
+    worth = {name: _worth(name, marks) for name in places.names()}
+    best = max(worth.values())
+    return [name for name, each in worth.items() if each == best > 0]
+
+
+def _worth(name: str, marks: Marks) -> int:
+    """Return how much of what an exercise names a submission has; 0 where it lacks some."""
+    try:
+        exercise = load_exercise(name)
+    except ExerciseError:
+        return 0
+    if not marks.programs:
+        files = product(marks.files, exercise.fits.get("files", ()))
+        return any(fnmatchcase(file.lower(), pattern) for file, pattern in files)
+    has_all = all(is_among(role, marks.roles) for role in exercise.roles)
+    return len(exercise.roles) if has_all and marks.programs >= len(exercise.programs) else 0
 
 
 def grade(

@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
-import shlex
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -20,11 +19,11 @@ from rich.console import Console
 
 from grader import files, grading, judging
 from grader.cli import options, say
-from grader.errors import SubmissionError, UsageError
+from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.grading import Finished
-from grader.message import NOTHING, Message, joined, msg
+from grader.message import msg
 from grader.recording import saving
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import (
@@ -38,7 +37,6 @@ from grader.result.result import (
 )
 from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
-from grader.submission.reader import Marks
 from grader.submission.request import LaunchAsked
 from grader.submission.start import Submission
 from grader.translations import tr
@@ -64,24 +62,16 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
     out = out_of(args)
     _withdraw(out, args)
     messages = Console(stderr=True, highlight=False)
-    marks = None if args.exercise else marks_of(args.submission)
-    if marks is not None:
-        args.named, said = grading.exercise_for(args.submission, marks)
+    if not args.exercise:
+        args.named, said = grading.exercise_for(args.submission, marks_of(args.submission))
         say(messages, said)
     exercise = load_exercise(args.exercise or args.named)
     with ExitStack() as held:
         opening = exercise.opening
-        try:
-            started = (args.submission, args.executable, _launch_asked(args.launch))
-            with open_submission(*started, **opening) as submission:
-                result, recordings = _run_and_judge(args, submission, exercise, out, held, live)
-        except SubmissionError as error:
-            if advice := _advice(args.submission, marks, None):
-                raise SubmissionError(joined([error.message, advice], " ")) from error
-            raise
+        started = (args.submission, args.executable, _launch_asked(args.launch))
+        with open_submission(*started, **opening) as submission:
+            result, recordings = _run_and_judge(args, submission, exercise, out, held, live)
         report = _report(args, result, recordings, out)
-        if not result.score:
-            say(messages, _advice(args.submission, marks, recordings))
         if live is not None:
             live.know(report)
     return result
@@ -101,14 +91,6 @@ def _launch_asked(words: list[str] | None) -> LaunchAsked | None:
                 found=each,
             )
     return LaunchAsked(file, dict(each.split(":=", 1) for each in given))
-
-
-def _advice(path: Path, marks: Marks | None, recordings: Recordings | None) -> Message:
-    """Say by which exercise to grade what names none and is plainly for another one."""
-    if marks is None or marks.exercises or not (name := grading.fitting(marks, recordings)):
-        return NOTHING
-    command = shlex.join(["grader", "run", str(path), "--exercise", name])
-    return msg("This looks like {name}: {command}", name=name, command=command)
 
 
 def out_of(args: argparse.Namespace) -> Path:

@@ -383,7 +383,7 @@ def _starter(where: object, place: Place) -> Path | None:
 
 def _fits(given: Any) -> dict[str, tuple[str, ...]]:
     expect(isinstance(given, dict), (FITS,), "expected names with lists, found {found}", given)
-    check_known(given, ("files", "publishes"), (FITS,))
+    check_known(given, ("files",), (FITS,))
     for key, value in given.items():
         is_list = isinstance(value, list) and all(isinstance(each, str) for each in value)
         expect(is_list, (FITS, key), "expected a list of texts, found {found}", value)

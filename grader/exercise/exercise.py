@@ -104,8 +104,8 @@ class Exercise:
         checks: the exercise's check functions.
         visible: check name -> what students see of it; everything for those that are not named.
         late: what a late submission costs; None for nothing.
-        fits: what a hand-in that names no exercise has where it is plainly for this one: `files`,
-            patterns of names, where it has no program; `publishes`, types of its topics.
+        fits: what a hand-in without a program has where it is plainly for this one: `files`,
+            patterns of names.
         explained: language -> tolerance -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
         interfaces: a type that it brings along, 'my_interfaces/msg/Num' -> its definition.
@@ -161,6 +161,14 @@ class Exercise:
     def is_started(self) -> bool:
         """Whether a submission is started; else it is only inspected."""
         return isinstance(self.subject, Scene)
+
+    @property
+    def roles(self) -> set[Role]:
+        """What programs have on the graph for its peers and checks; else what drives its scene."""
+        found = set[Role]().union(*(case.roles for case in self.cases))
+        if not found and isinstance(self.subject, Scene):
+            return {Role("publisher", each) for each in self.subject.introduction.topics[:1]}
+        return found
 
     @property
     def opening(self) -> Opening:

@@ -20,6 +20,7 @@ from grader import limited, strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
+from grader.recording.subject import Role
 from grader.submission import folder, python_source, whole
 from grader.submission.finding import find, find_evaluated, may_be_node
 from grader.submission.folder import is_source, shown
@@ -30,6 +31,7 @@ from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
 from grader.submission.refusals import readable
 from grader.submission.request import Request
+from grader.submission.roles import roles_in
 from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Imports, Submission, Whole
 from grader.text import clip
@@ -64,12 +66,14 @@ class Marks:
     Attributes:
         exercises: those that it names, each with the file that does.
         files: the names of its files, so many of them.
-        has_program: whether one of them may be a node.
+        programs: how many of them may be a node.
+        roles: what its source has on the graph.
     """
 
     exercises: Mapping[str, str] = field(default_factory=dict)
     files: tuple[str, ...] = ()
-    has_program: bool = False
+    programs: int = 0
+    roles: tuple[Role, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -258,7 +262,9 @@ def _marks(path: Path, scratch: Path) -> Marks:
     except (SubmissionError, UsageError, OSError):
         return Marks()
     names = tuple(shown(file.name) for file in files[:_MAX_MODULES])
-    return Marks(_some(exercises), names, any(map(may_be_node, files)))
+    programs = [file for file in files if may_be_node(file) and not file.is_symlink()]
+    roles = sorted(each for each in roles_in(programs) if len(each.name) <= _MAX_NAME)
+    return Marks(_some(exercises), names, len(programs), tuple(roles[:_MAX_MODULES]))
 
 
 def _answer(found: Callable[[], Submission | Unevaluated], name: str) -> _Answer:

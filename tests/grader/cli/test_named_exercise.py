@@ -10,7 +10,7 @@ from grader.cli import main
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.message import NOTHING
-from grader.recording.recording import PublishedTopic
+from grader.recording.subject import Role
 from grader.result.result import Result
 from grader.run.opening import marks_of
 from grader.submission.reader import Marks
@@ -119,25 +119,36 @@ def test_one_that_is_not_installed_is_asked_for(tmp_path, capsys, name):
         grader.grade(node)
 
 
-def test_a_package_that_is_plainly_for_another_one_is_told_which(tmp_path, capsys):
+def test_a_package_that_is_plainly_for_another_one_is_graded_by_that(tmp_path):
     mine = shutil.copytree(DESCRIPTION, tmp_path / "mine")
-    said = f"This looks like description_package: grader run {mine} --exercise description_package"
-    assert main(["run", str(mine), "--out", str(tmp_path / "out")]) == 2
-    assert said in capsys.readouterr().err
+    name, said = grading.exercise_for(mine, marks_of(mine))
+    assert name == "description_package"
+    assert "by what the source has; another one: --exercise NAME" in str(said)
 
 
-def test_so_is_a_node_that_publishes_what_another_one_asks_for(drawn):
-    for kind, name in (("sensor_msgs/msg/JointState", "state_publisher"), ("a/msg/B", "")):
-        topics = (PublishedTopic("/joint_states", kind),)
-        recordings = grader.Recordings(grader.Recording(drawn.trace, topics=topics))
-        assert grading.fitting(Marks(has_program=True), recordings) == name
+FITS = [
+    (["publisher /topic"], ["talker"]),
+    (["subscription /topic"], ["listener"]),
+    (["publisher /topic", "subscription /topic"], ["listener", "talker"]),
+    (["publisher /joint_states"], ["state_publisher"]),
+    (["service /draw_polygon", "publisher /turtle1/cmd_vel"], []),  # the default fits, too
+    (["publisher /turtle2/cmd_vel", "subscription /tf", "client /spawn"], ["tf2_listener"]),
+    (["publisher /turtle1/cmd_vel", "client /turtle1/set_pen"], []),
+    (["publisher /*", "publisher /elsewhere"], []),
+]
+
+
+@pytest.mark.parametrize(("roles", "names"), FITS)
+def test_a_hand_in_fits_the_exercise_of_which_it_has_all_on_the_graph(roles, names):
+    found = tuple(Role(*each.split()) for each in roles)
+    assert sorted(grading.fitting_exercises(Marks(programs=1, roles=found))) == names
 
 
 @pytest.mark.parametrize(
-    "marks", [Marks(files=("a.urdf", "node.py"), has_program=True), Marks(files=("package.xml",))]
+    "marks", [Marks(files=("a.urdf", "node.py"), programs=1), Marks(files=("package.xml",))]
 )
-def test_a_guess_is_not_told(marks):
-    assert grading.fitting(marks, None) == ""
+def test_files_are_those_of_an_exercise_only_without_a_program(marks):
+    assert grading.fitting_exercises(marks) == []
 
 
 def test_a_class_is_graded_by_the_exercise_that_its_hand_ins_name(
