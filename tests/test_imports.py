@@ -163,7 +163,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"grader.batch", "grader.result"}
     | below("grader.recording", "recording", "subject", "view")
     | below("grader.exercise", "exercise", "loading", "sentences", "verdict")
-    | below("grader.reports", "__init__", "beside", "csv", "wording", "page"),
+    | below("grader.reports", "__init__", "beside", "csv", "wording", "page")
+    | {"grader.submission.request"},
     # what was handed in is looked at before it is opened, and archives of a class are unpacked
     "grader.batch.find": GROUND
     | {"grader.batch"}
@@ -187,7 +188,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.batch.cluster": GROUND | {"grader.batch", "grader.run.processes.levels"},
     # a worker: its process, and what it opens
     "grader.batch.pool": GROUND
-    | {"grader.batch", "grader.recording.recording"}
+    | {"grader.batch", "grader.recording.recording", "grader.submission.request"}
     | below("grader.run", "fork_servers", "processes.fork_server"),
     "grader.batch.grade": GROUND
     | {"grader.batch"}

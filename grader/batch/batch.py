@@ -20,6 +20,7 @@ from grader.exercise.exercise import Exercise
 from grader.message import NOTHING, Message, joined, msg
 from grader.recording.recording import Clock
 from grader.result.visible import View
+from grader.submission.request import LaunchAsked
 from grader.translations import tr
 
 #: Does tasks, in any order: `grader.batch.pool.work` with a number of jobs, or a cluster.
@@ -40,6 +41,7 @@ class Order:
         secret: gives each hand-in a seed of its own; '' for none.
         hides_seed: whether recordings leave out the seeds.
         pseudonyms: shows which key gave the students their pseudonyms; '' where they have names.
+        executable, launch: what is started of each; see `Request`.
     """
 
     exercise: Exercise
@@ -51,6 +53,8 @@ class Order:
     secret: str = ""
     hides_seed: bool = False
     pseudonyms: str = ""
+    executable: str | None = None
+    launch: LaunchAsked | None = None
 
     def seed_of(self, hand_in: HandIn) -> int | None:
         """Return the seed of the varied runs of a hand-in; None: the exercise's own."""
@@ -62,6 +66,10 @@ class Order:
     def class_file(self) -> ClassFile:
         """The class.json of what is graded so, on this machine."""
         secret = content.of_bytes(f"class {self.secret}".encode())[:12] if self.secret else ""
+        start = f"--executable {self.executable}" if self.executable else ""
+        if self.launch is not None:
+            given = (f" {name}:={value}" for name, value in sorted(self.launch.given.items()))
+            start = f"--launch {self.launch.file}{''.join(given)}"
         return ClassFile(
             *(self.exercise.name, self.exercise.sha256, self.time, self.seed),
             grader=system.grader_version(),
@@ -70,6 +78,7 @@ class Order:
             isolation=self.isolation,
             seed_file=secret,
             pseudonyms=self.pseudonyms,
+            start=start,
         )
 
 
@@ -238,6 +247,8 @@ def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> 
         store.run(run) if store.has(run) and not is_again else None,
         Path(),
         hides_seed=order.hides_seed,
+        executable=order.executable,
+        launch=order.launch,
     )
 
 

@@ -34,6 +34,7 @@ _NAMED = {
     "seed": msg("the seed (--seed)"),
     "seed_file": msg("the secret (--seed-file)"),
     "pseudonyms": msg("the key of the pseudonyms (--pseudonyms)"),
+    "start": msg("what is started"),
     "grader": msg("the grader's version"),
     "ros": msg("the version of rclpy and the ROS release"),
     "python": msg("the version of Python"),
@@ -52,6 +53,7 @@ class ClassFile:
         seed: chose where the varied runs start; None: the exercise's own.
         seed_file: shows which secret gave each hand-in its seed; '' for none.
         pseudonyms: shows which key gave the students their pseudonyms; '' where they have names.
+        start: the option that says what is started of each; '' where the grader finds it.
         grader, ros, python: versions.
         hand_ins: how many there will be when the class is finished; 0 while that is unknown.
         isolation: the level at which all are run; '' before the first run, or where there is none.
@@ -68,6 +70,7 @@ class ClassFile:
     isolation: str = ""
     seed_file: str = ""
     pseudonyms: str = ""
+    start: str = ""
 
     def put(self, out: Path) -> None:
         """Write class.json."""

@@ -158,7 +158,9 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
             elif task.filename:  # and not by that of the export, which may be the student's
                 path = held.enter_context(scratch.make_folder()) / task.filename
                 path.symlink_to(submitted)
-            opened = held.enter_context(open_submission(path, **exercise.opening))
+            opened = held.enter_context(
+                open_submission(path, task.executable, task.launch, **exercise.opening)
+            )
             submission = _without_path(opened)
             runner = grading.runner(exercise, task.time)
             recordings = grading.run_all(

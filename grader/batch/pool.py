@@ -27,6 +27,7 @@ from grader.message import NOTHING, Message, Text, msg
 from grader.recording.recording import Clock
 from grader.run import fork_servers
 from grader.run.processes.fork_server import Branch, ServerLost
+from grader.submission.request import LaunchAsked
 from grader.translations import current
 
 
@@ -48,6 +49,7 @@ class Task:
         isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
         language: of the pages.
         hides_seed: whether recordings leave out the seed.
+        executable, launch: what is started; see `grader.submission.request.Request`.
     """
 
     key: str
@@ -63,6 +65,8 @@ class Task:
     isolation: str = ""
     language: str = field(default_factory=current)
     hides_seed: bool = False
+    executable: str | None = None
+    launch: LaunchAsked | None = None
 
 
 Ending = Literal["done", "failed", "exercise", "again", "unfit"]

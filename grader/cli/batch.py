@@ -60,6 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         tr("the clock that submissions live by"),
         tr("refuse to run submissions confined less well: {levels}", levels=", ".join(LEVELS)),
     )
+    options.add_of_start(parser)
     parser.add_argument("--pattern", metavar="P", help=tr("how names tell whose a submission is"))
     parser.add_argument(
         "--roster", type=Path, metavar="FILE", help=tr("names: a CSV with a column id")
@@ -135,6 +136,8 @@ def main(args: argparse.Namespace) -> int:
             hides_seed=options.hides_seed(args),
             pseudonyms="" if pseudonyms is None else pseudonyms.mark,
             isolation=begun_at(args.out, args.again, args.isolation or ""),
+            executable=args.executable,
+            launch=options.launch_asked(args.launch),
         )
         check_same_class(store, order.class_file, order.again)
         _grade(args, order, found, store, messages)

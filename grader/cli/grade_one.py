@@ -19,7 +19,6 @@ from rich.console import Console
 
 from grader import files, grading, judging
 from grader.cli import options, say
-from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.grading import Finished
@@ -37,7 +36,6 @@ from grader.result.result import (
 )
 from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
-from grader.submission.request import LaunchAsked
 from grader.submission.start import Submission
 from grader.translations import tr
 
@@ -68,29 +66,13 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
     exercise = load_exercise(args.exercise or args.named)
     with ExitStack() as held:
         opening = exercise.opening
-        started = (args.submission, args.executable, _launch_asked(args.launch))
+        started = (args.submission, args.executable, options.launch_asked(args.launch))
         with open_submission(*started, **opening) as submission:
             result, recordings = _run_and_judge(args, submission, exercise, out, held, live)
         report = _report(args, result, recordings, out)
         if live is not None:
             live.know(report)
     return result
-
-
-def _launch_asked(words: list[str] | None) -> LaunchAsked | None:
-    """Parse FILE ARG:=VALUE ... of the command line."""
-    if words is None:
-        return None
-    file, *given = words
-    for each in given:
-        if ":=" not in each:
-            raise UsageError(
-                "--launch: expected ARG:=VALUE behind {file}, found {found}; what is handed in "
-                "comes before --launch",
-                file=file,
-                found=each,
-            )
-    return LaunchAsked(file, dict(each.split(":=", 1) for each in given))
 
 
 def out_of(args: argparse.Namespace) -> Path:

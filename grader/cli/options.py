@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NoReturn
 from grader import files
 from grader.errors import GraderError, UsageError
 from grader.message import msg, msg_many
+from grader.submission.request import LaunchAsked
 from grader.translations import LANGUAGES, of_environment, tr, tr_many, use
 
 if TYPE_CHECKING:
@@ -229,3 +230,31 @@ def _max_score(args: argparse.Namespace) -> float | None:
         return round(sum(load_exercise(name).points.values()), 2)
     except Exception:  # this may be the error that is written
         return None
+
+
+def add_of_start(parser: argparse.ArgumentParser) -> None:
+    """Declare what is started of a submission."""
+    starts = parser.add_mutually_exclusive_group()
+    starts.add_argument("--executable", metavar="NAME", help=tr("which console script to start"))
+    starts.add_argument(
+        "--launch",
+        nargs="+",
+        metavar=("FILE", "ARG:=VALUE"),
+        help=tr("which launch file to start, with values of its arguments"),
+    )
+
+
+def launch_asked(words: Sequence[str] | None) -> LaunchAsked | None:
+    """Parse FILE ARG:=VALUE ... of --launch."""
+    if words is None:
+        return None
+    file, *given = words
+    for each in given:
+        if ":=" not in each:
+            raise UsageError(
+                "--launch: expected ARG:=VALUE behind {file}, found {found}; what is handed in "
+                "comes before --launch",
+                file=file,
+                found=each,
+            )
+    return LaunchAsked(file, dict(each.split(":=", 1) for each in given))

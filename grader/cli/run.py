@@ -7,6 +7,7 @@ import math
 from datetime import date
 from pathlib import Path
 
+from grader.cli import options
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.message import msg
@@ -50,14 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", type=Path, metavar="FILE", help=tr("write the result here as well")
     )
-    starts = parser.add_mutually_exclusive_group()
-    starts.add_argument("--executable", metavar="NAME", help=tr("which console script to start"))
-    starts.add_argument(
-        "--launch",
-        nargs="+",
-        metavar=("FILE", "ARG:=VALUE"),
-        help=tr("which launch file to start, with values of its arguments"),
-    )
+    options.add_of_start(parser)
     parser.add_argument(
         "--fail-under", type=points, metavar="POINTS", help=tr("exit 1 below this score")
     )

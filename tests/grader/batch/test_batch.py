@@ -106,6 +106,17 @@ def test_another_exercise_does_not_come_into_the_same_folder(small_class, out, e
     assert made_together(out) == before
 
 
+def test_what_is_started_of_each_may_be_said_for_the_whole_class(small_class, tmp_path, in_process):
+    files = {"alice/square.py": CONTROLLER, "alice/other.py": CONTROLLER}
+    lay(tmp_path / "handed_in", files)
+    words = replace(small_class, handed_in=tmp_path / "handed_in").words(tmp_path / "class")
+    assert batch(*words, "--executable", "square")[0] == 0
+    assert scores(tmp_path / "class")["alice"] == ("judged", 85.0)
+    code, messages = batch(*words)
+    assert code == 2
+    assert "something else (what is started: there --executable square, here none)" in messages
+
+
 def test_who_is_named_by_again_is_run_again(call, out, in_process):
     at = when(out, "right", "crashes")
     code, said = call("--again", "crashes")
