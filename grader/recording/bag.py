@@ -34,15 +34,16 @@ _LONG: Final = re.compile(r"(?m)^(?=.{81})( *)(\w+:) (\S+)$")
 _VERSION: Final = 9
 
 
-def write(trace: Trace, subject: Subject, folder: Path) -> Path:
-    """Write a bag; returns its .mcap, which is named like the folder. Last comes metadata.yaml.
+def pack(trace: Trace, subject: Subject, name: str = "recording") -> tuple[bytes, dict[str, Any]]:
+    """Return a bag: its .mcap, and what its metadata.yaml says.
 
     The same trace gives the same bytes.
+
+    Raises:
+        ValueError: a type has no definition, or messages are not in the order of their times.
     """
     types = BagTypes(subject.definitions_of(trace))
-    folder.mkdir(parents=True)
-    mcap = folder / f"{folder.name}.mcap"
-    writer = McapWriter(mcap)
+    writer = McapWriter()
     #: topic -> the number of its channel, its type and the hash of that
     channels: dict[str, tuple[int, str, str]] = {}
 
@@ -53,21 +54,30 @@ def write(trace: Trace, subject: Subject, folder: Path) -> Path:
             channels[topic] = number, kind, type_hash
         return channels[topic][0]
 
-    try:
-        for topic, kind in subject.bag_topics(trace):
-            channel(topic, kind)
-        for time_ns, topic, kind, data in subject.to_messages(trace):
-            writer.write(channel(topic, kind), time_ns, data)
-        topics = [
-            (topic, kind, type_hash, writer.counts[number])
-            for topic, (number, kind, type_hash) in channels.items()
-        ]
-        about = _about(mcap.name, writer.times_ns, topics)
-        writer.finish(_yaml(about).strip())
-    finally:
-        writer.close()
+    for topic, kind in subject.bag_topics(trace):
+        channel(topic, kind)
+    last_ns = 0
+    for time_ns, topic, kind, data in subject.to_messages(trace):
+        if time_ns < last_ns:
+            raise ValueError(f"to_messages() of {subject.name} is not in the order of times")
+        writer.write(channel(topic, kind), time_ns, data)
+        last_ns = time_ns
+    topics = [
+        (topic, kind, type_hash, writer.counts[number])
+        for topic, (number, kind, type_hash) in channels.items()
+    ]
+    about = _about(f"{name}.mcap", writer.times_ns, topics)
+    return writer.finish(_yaml(about).strip()), {"rosbag2_bagfile_information": about}
+
+
+def write(trace: Trace, subject: Subject, folder: Path) -> Path:
+    """Write a bag; returns its .mcap, which is named like the folder. Last comes metadata.yaml."""
+    data, metadata = pack(trace, subject, folder.name)
+    folder.mkdir(parents=True)
+    mcap = folder / f"{folder.name}.mcap"
+    mcap.write_bytes(data)
     whole = mcap.with_name("metadata.yaml.tmp")
-    whole.write_text(_yaml({"rosbag2_bagfile_information": about}), encoding="utf-8")
+    whole.write_text(_yaml(metadata), encoding="utf-8")
     whole.replace(whole.with_suffix(""))
     return mcap
 
@@ -139,6 +149,21 @@ def _yaml(about: Mapping[str, Any]) -> str:
 # Reading --------------------------------------------------------------------------------------
 
 
+def parse_channels(
+    channels: Sequence[Channel], subject: Subject, duration_ns: int, sha256: str
+) -> Trace:
+    """Parse the channels of a bag whose trace had a hash.
+
+    Raises:
+        ValueError: the subject reads something else than it wrote.
+        Exception: the subject's own.
+    """
+    trace = subject.from_channels(channels, duration_ns)
+    if trace.sha256() != sha256:
+        raise ValueError("from_channels() gives back another sha256() than to_messages() got")
+    return trace
+
+
 def read_channels(mcap: Path) -> list[Channel]:
     """Read the channels of a bag, in their order; beside its .mcap lies its metadata.yaml.
 
@@ -146,7 +171,7 @@ def read_channels(mcap: Path) -> list[Channel]:
         ValueError: it is damaged, or is none of ours.
         Exception: PyYAML's own.
     """
-    channels = read_mcap(mcap)
+    channels = read_mcap(mcap.read_bytes())
     _check_metadata(mcap, channels)
     return channels
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from pathlib import Path
+from io import BytesIO
 from struct import Struct, error, pack, unpack_from
 from typing import Final
 
@@ -38,16 +38,15 @@ _NEVER: Final = (2**63 - 1, 0)
 
 
 class McapWriter:
-    """Writes one file; messages come by time.
+    """Makes the bytes of one file; messages come by time.
 
     Attributes:
         counts: the number of messages of each channel.
         times_ns: the first and the last time of a message [ns].
     """
 
-    def __init__(self, path: Path) -> None:
-        """Create the file."""
-        self._file = path.open("xb")
+    def __init__(self) -> None:
+        self._file = BytesIO()
         self._file.write(MAGIC)
         self._record(HEADER, _string("ros2") + _string(LIBRARY))
         self.counts: dict[int, int] = {}
@@ -90,8 +89,8 @@ class McapWriter:
         if len(chunk) > CHUNK_BYTES:
             self._close_chunk()
 
-    def finish(self, metadata: str) -> None:
-        """Write the rest, with rosbag2's metadata, and close the file."""
+    def finish(self, metadata: str) -> bytes:
+        """Write the rest, with rosbag2's metadata; return the file."""
         if self._chunk:
             self._close_chunk()
         place = self._file.tell()
@@ -123,11 +122,7 @@ class McapWriter:
             self._record(SUMMARY_OFFSET, offset)
         self._record(FOOTER, pack("<QQI", summary, end, 0))
         self._file.write(MAGIC)
-        self.close()
-
-    def close(self) -> None:
-        """Close the file, finished or not."""
-        self._file.close()
+        return self._file.getvalue()
 
     def _close_chunk(self) -> None:
         times_ns, size = self._chunk_times_ns, len(self._chunk)
@@ -164,15 +159,20 @@ def _string(text: str) -> bytes:
 # Reading ----------------------------------------------------------------------------------------
 
 
-def read_mcap(path: Path) -> list[Channel]:
-    """Read a file of `McapWriter`'s; return its channels, in their order.
+def read_mcap(data: bytes, most_bytes: int = MOST_BYTES) -> list[Channel]:
+    """Parse a file of `McapWriter`'s; return its channels, in their order.
 
     All is in its chunks: what stands behind the data is for readers that want part of it.
+
+    Args:
+        most_bytes: what it may decompress to.
+
+    Raises:
+        ValueError: it is damaged, or is none of these.
     """
-    data = path.read_bytes()
     if not (data.startswith(MAGIC) and data.endswith(MAGIC)):
         raise ValueError("it does not begin and end as an MCAP file")
-    found = _Found()
+    found = _Found(most_bytes)
     try:
         for kind, begin, end in _records(data, len(MAGIC)):
             if kind == DATA_END:
@@ -192,7 +192,8 @@ def read_mcap(path: Path) -> list[Channel]:
 class _Found:
     """What the chunks of a file hold."""
 
-    def __init__(self) -> None:
+    def __init__(self, most_bytes: int) -> None:
+        self._most_bytes = most_bytes
         self._schemas: dict[int, str] = {}
         #: topics and types of the channels, and number of a channel -> its place among them
         self._topics: list[tuple[str, str]] = []
@@ -210,8 +211,8 @@ class _Found:
         if compression not in ("zstd", "") or len(packed) != length:
             raise ValueError(f"expected a chunk compressed by zstd, found {compression!r:.20}")
         before, self._size = self._size, self._size + size
-        if self._size > MOST_BYTES:
-            raise ValueError(f"expected {MOST_BYTES:,} bytes at most, found {self._size:,}")
+        if self._size > self._most_bytes:
+            raise ValueError(f"expected {self._most_bytes:,} bytes at most, found {self._size:,}")
         chunk = zstd.decompress(packed, size) if compression else packed
         self._chunks.append(chunk)
         for kind, begin, end in _records(chunk, 0):

@@ -13,7 +13,7 @@ from grader import content, limited, strict_json
 from grader.errors import RecordingError
 from grader.limited import WorkLimits
 from grader.message import Message, msg
-from grader.recording import bag, transfer
+from grader.recording import bag
 from grader.recording.beside import CastKeeper, apart
 from grader.recording.observations import Observations
 from grader.recording.recording import (
@@ -61,9 +61,7 @@ SIZES = {
 #: An exercise has no more.
 MOST_VARIED_RUNS = 100
 #: Limits of reading one bag.
-READING = WorkLimits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
-#: Begins an answer of the process that reads bags: a trace follows, or an error.
-_TRACE, _ERROR = b"=", b"!"
+READING = WorkLimits(cpu_s=60.0, wall_s=300.0)
 
 
 def load(path: Path) -> Recording:
@@ -197,9 +195,9 @@ class _Header:
     subject: Subject
     output: str
 
-    @property
-    def kept(self) -> Subject:
-        return CastKeeper(self.subject) if self.facts.get("cast") else self.subject
+    def read_trace(self) -> Trace:
+        kept = CastKeeper(self.subject) if self.facts.get("cast") else self.subject
+        return bag.read(self.folder / BAG, kept, round(self.run.simulated_s * 1e9))
 
 
 def _read_header(folder: Path) -> _Header:
@@ -219,31 +217,28 @@ def _read_header(folder: Path) -> _Header:
 
 
 def _loaded(found: Sequence[_Header]) -> list[Recording]:
-    """Read the bags of recordings, in one copy of this process with limits of time and memory.
+    """Read the bags of recordings, each once a copy of this process with limits has read it.
 
-    Nobody knows how much a bag unpacks to.
+    Nobody knows before how much a bag unpacks to, and how long its reader takes.
     """
 
-    def answers() -> Iterator[bytes]:
+    def errors() -> Iterator[bytes]:
         for header in found:
             try:
-                kept, end_ns = header.kept, round(header.run.simulated_s * 1e9)
-                trace = bag.read(header.folder / BAG, kept, end_ns)
-                yield _TRACE + transfer.pack(trace, kept)
+                header.read_trace()
+                yield b""
             except RecordingError as error:
-                yield _ERROR + json.dumps(error.message.serialise()).encode()
+                yield json.dumps(error.message.serialise()).encode()
 
     made: list[Recording] = []
     many = len(found)
     limits = replace(READING, cpu_s=many * READING.cpu_s, wall_s=many * READING.wall_s)
     try:
-        with closing(limited.stream(answers, limits)) as read:
-            for header, answer in zip(found, read, strict=False):  # asks for no more than that
-                if answer.startswith(_ERROR):
-                    message = json.loads(answer.removeprefix(_ERROR))
-                    raise RecordingError(Message.parse(message))
-                trace = transfer.unpack(answer.removeprefix(_TRACE), header.kept)
-                made.append(_recording(header, trace))
+        with closing(limited.stream(errors, limits)) as answers:
+            for header, error in zip(found, answers, strict=False):  # asks for no more than that
+                if error:
+                    raise RecordingError(Message.parse(json.loads(error)))
+                made.append(_recording(header, header.read_trace()))
     except limited.LimitHit as hit:
         folder = str(found[len(made)].folder)
         raise RecordingError(

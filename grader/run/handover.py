@@ -1,8 +1,8 @@
 """The plan that the grader passes to a simulator's process, and the recording that comes back.
 
-The plan is an argument. The recording is a file: its topics as JSON, after their length in eight
-bytes, then the trace (`grader.recording.transfer`). Nothing is unpickled: a pickle could have the
-grader do anything.
+The plan is an argument. The recording is a file: facts as JSON, after their length in eight bytes,
+then the bag (`grader.recording.bag`). Nothing is unpickled: a pickle could have the grader do
+anything.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from typing import Any, Self
 from grader import strict_json
 from grader.errors import GraderFailure, SceneFailure
 from grader.message import Message, msg
-from grader.recording import transfer
+from grader.recording import bag
 from grader.recording.beside import CastKeeper, together
+from grader.recording.mcap import read_mcap
 from grader.recording.recording import PublishedTopic
 from grader.recording.subject import Start, Subject, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
@@ -95,6 +96,21 @@ _LENGTH = Struct("<Q")
 USUAL = ("/rosout", "/parameter_events")
 
 
+@dataclass(frozen=True)
+class _Facts:
+    """What a file has before its bag.
+
+    Attributes:
+        topics: on which the submission has published, with their types.
+        duration_ns: how long was recorded [ns].
+        sha256: of the trace.
+    """
+
+    topics: Mapping[str, str]
+    duration_ns: int
+    sha256: str
+
+
 def leave(
     path: Path, scene: Subject, trace: Trace, published: Mapping[str, str], cast: Any = None
 ) -> None:
@@ -107,25 +123,33 @@ def leave(
     is_beside = cast is not None and not scene.has_cast
     kept, by = together(trace, cast.trace(trace.ticks) if is_beside else None, scene)
     topics = {topic: kind for topic, kind in sorted(published.items()) if topic not in USUAL}
-    facts = json.dumps(topics).encode()
-    path.write_bytes(_LENGTH.pack(len(facts)) + facts + transfer.pack(kept, by))
+    facts = strict_json.to_json(_Facts(topics, kept.duration_ns, kept.sha256()), strict_json.OURS)
+    head = json.dumps(facts).encode()
+    path.write_bytes(_LENGTH.pack(len(head)) + head + bag.pack(kept, by)[0])
 
 
 def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]:
-    """Read the file from an open descriptor, in the grader's process."""
+    """Read the file from an open descriptor, in the grader's process.
+
+    Raises:
+        SceneFailure: the scene's own `from_channels` fails.
+        GraderFailure: it is no such file.
+    """
+    failure = GraderFailure
     try:
         data = read_bounded(file, RECORDING_BYTES)
         (length,) = _LENGTH.unpack_from(data)
         end = _LENGTH.size + length
         # of bytes, json.loads would guess the encoding
-        text = data[_LENGTH.size : end].decode("utf-8")
-        topics = strict_json.from_json(dict[str, str], json.loads(text), strict_json.OURS)
-        trace = transfer.unpack(data[end:], scene)
-        return trace, tuple(PublishedTopic(topic, kind) for topic, kind in topics.items())
+        head = json.loads(data[_LENGTH.size : end].decode("utf-8"))
+        facts = strict_json.from_json(_Facts, head, strict_json.OURS)
+        channels = read_mcap(data[end:], RECORDING_BYTES)
+        failure = SceneFailure
+        trace = bag.parse_channels(channels, scene, facts.duration_ns, facts.sha256)
+        return trace, tuple(PublishedTopic(*topic) for topic in facts.topics.items())
     except Exception as error:
-        failure = SceneFailure if isinstance(error, transfer.NotRead) else GraderFailure
-        why = msg("the simulator left no recording: {why}", why=str(error)[:200])
-        raise failure(why) from error
+        why = f"{type(error).__name__}: {error}"[:200]
+        raise failure(msg("the simulator left no recording: {why}", why=why)) from error
 
 
 def read_bounded(file: int, most_bytes: int) -> bytes:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import GraderFailure
-from grader.recording import transfer
+from grader.recording import bag
 from grader.recording.recording import PublishedTopic
 from grader.run.handover import fetch, leave
 from grader.scenes import load_scene
@@ -86,21 +86,25 @@ class Trap:
 
 
 def test_what_is_none_is_a_failure_and_nothing_else(file, left, scene, trace):
-    data, trap = transfer.pack(trace, scene), pickle.dumps(Trap())
-    no_topics = (
+    data, trap = bag.pack(trace, scene)[0], pickle.dumps(Trap())
+    end = 8 + int.from_bytes(left[:8], "little")
+    facts = json.loads(left[8:end])
+    others = [{"topics": value} for value in (3, [], {"/a": 3}, {"/a": [""]})]
+    others += [{"duration_ns": value} for value in (None, "many", 3, 1.0)] + [{"sha256": "0"}]
+    no_facts = (
         b"",
         b"{",
         b"3",
         b"\xff\xfe",
         b"[" * 100_000,
         b"[3]",
-        b'{"/a": 3}',
-        b'{"/a": [""]}',
+        b"{}",
+        *(json.dumps({**facts, **other}).encode() for other in others),
     )
     for found in (
         *(left[: int(len(left) * part)] for part in (0.0, 0.00001, 0.01, 0.5, 0.99, 0.99999)),
         *(pack("<Q", length) + left[8:] for length in (1, 2**40, 2**64 - 1)),
-        *(pack("<Q", len(topics)) + topics + data for topics in no_topics),
+        *(pack("<Q", len(head)) + head + data for head in no_facts),
         *(trap, pack("<Q", 2) + b"{}" + trap, pack("<Q", len(trap)) + trap),
     ):
         put(file, found)

@@ -106,9 +106,9 @@ RAISED = "ZeroDivisionError: no lamp has this"
 SENTENCES = {
     "ticks": f"the scene ticks raised {RAISED} (mistakes.py, line ",
     "traces": f"the scene traces raised {RAISED} (mistakes.py, line ",
-    "reads": f"the simulator left no recording: no trace of reads: {RAISED}",
+    "reads": f"the simulator left no recording: {RAISED}",
     "exits": "the scene exits raised SystemExit: 0 (mistakes.py, line ",
-    "loses": "no trace of loses: ValueError: from_channels() gives back another sha256()",
+    "loses": "left no recording: ValueError: from_channels() gives back another sha256()",
     "nothing": "the scene nothing returned None, expected one of '', 'rest', ",
     "sleeps": "the scene sleeps raised Overdue: it did not return (mistakes.py, line ",
     "sha256": f"the scene sha256 raised {RAISED} (mistakes.py, line ",

@@ -43,7 +43,7 @@ class DefinesNothing(Turtlesim):
     ("scene", "told"),
     [
         (Forgets, "from_channels() gives back another sha256() than to_messages() got"),
-        (LacksATurtle, "from_channels() cannot read to_messages(): no trace of turtlesim: KeyErr"),
+        (LacksATurtle, "from_channels() cannot read to_messages(): KeyError"),
         (DefinesNothing, "message_definitions() lacks "),
     ],
 )
