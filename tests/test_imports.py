@@ -94,7 +94,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined", "rosidl"),
     # what the source shows, as it is recorded; what CMake would generate, and what of that parses
     "grader.submission": GROUND
-    | below("grader", "submission", "recording", "rosidl.cdr", "rosidl.definitions"),
+    | below("grader", "submission", "recording")
+    | below("grader.rosidl", "cdr", "definitions", "fields"),
     # a package is examined in the submission's process, which sees little of ours
     "grader.submission.trace": below("grader", "strict_json", "message"),
     "grader.submission.answer": {"grader.strict_json", "grader.submission.trace"},
@@ -135,7 +136,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "run.limits", "run.simulator")
     | {"turtlesim_py.ros.program"},
     "grader.exercise": GROUND
-    | below("grader", "recording", "scenes.scene", "rosidl.definitions", "cast"),
+    | below("grader", "recording", "scenes.scene", "cast")
+    | below("grader.rosidl", "definitions", "fields"),
     # columns with names, and nothing of turtles but how they move
     "grader.exercise.driven_path": GROUND
     | below("grader", "exercise", "recording", "scenes.scene")
@@ -144,7 +146,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "recording", "scenes.turtlesim", "exercise", "cast.trace")
     | below("grader", "submission.trace")
     | {"turtlesim_py.world"},
-    "grader.diagnosis": GROUND | below("grader", "recording", "exercise.verdict"),
+    "grader.diagnosis": GROUND | below("grader", "recording", "exercise.verdict", "rosidl.fields"),
     "grader.result": GROUND | below("grader", "recording", "exercise", "diagnosis.diagnosis"),
     "grader.reports": GROUND
     | below("grader", "recording", "exercise.verdict", "result", "diagnosis.diagnosis")

@@ -18,6 +18,7 @@ from grader.diagnosis.known_exceptions import Hint
 from grader.diagnosis.lint_findings import in_other_order
 from grader.message import NOTHING, Message, as_message, msg
 from grader.recording.observations import LintFinding, LintKind, Raised
+from grader.rosidl.fields import readable
 from grader.text import misspelt
 
 #: So much of an exception's text is searched [characters].
@@ -25,7 +26,6 @@ _LONGEST = 1000
 _GIVEN = re.compile(r"(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w")
 _VARIABLE = re.compile(r"variable '(\w{1,60})'")
 _NO_FIELD = re.compile(r"(?:has no attribute '|passed to constructor: )(\w{1,60})")
-_FIELD = re.compile(r"^[ \t]*[\w/\[\]<=]{1,100}[ \t]+([a-z]\w{0,60})", re.MULTILINE)
 _NO_ATTRIBUTE = re.compile(r"has no attribute '(\w{1,60})'")
 _OF_A_SERVICE = re.compile(r"(\w{1,60})(?:\.__init__)?\(\) (?:got an unexpected k|takes no arg)")
 #: What an exception shows not to have been begun -> what the source lacks.
@@ -223,7 +223,7 @@ def _misspelt_field(case: Case, raised: Raised) -> Iterator[Hint]:
     """A field of an interface of the hand-in's, with the name that it has there."""
     found = _NO_FIELD.search(raised.text[:_LONGEST])
     for name, text in case.recording.interfaces.texts.items() if found is not None else ():
-        for field in _FIELD.findall(text):
+        for field in (each.name for each in readable(text) if each.value is None):
             if found is not None and field != found[1] and misspelt(field, found[1]):
                 words = {"field": field, "name": excerpt(found[1]), "type": name}
                 yield Hint(

@@ -16,12 +16,11 @@ from grader.cast import script
 from grader.cast.expressions import is_pattern
 from grader.exercise.comparing import is_number, is_range
 from grader.message import msg
-from grader.recording.recording import OwnInterfaces
+from grader.rosidl.fields import Field, parse
 from grader.yaml_file import Mistake
 
 #: The parts of a definition, which lines of --- separate.
 _PARTS: Final = {"request": 0, "response": 1, "goal": 0, "result": 1, "feedback": 2}
-_ARRAY: Final = re.compile(r"(.+?)\[.*\]")
 _WHOLE: Final = re.compile(r"u?int(8|16|32|64)|byte|char")
 #: What a peer says, by its kind -> the part of the definition that it is, and the one whose fields
 #: its expressions may use, with more names; None for what is no message, or for no such fields.
@@ -64,21 +63,15 @@ class KnownTypes:
             at, msg("{package} has no {type}; it has {near}", package=package, type=name, near=near)
         )
 
-    def fields(self, name: str, part: str = "") -> dict[str, str]:
-        """Return the fields of a type and their types; none where it is not known.
+    def fields(self, name: str, part: str = "") -> dict[str, Field]:
+        """Return the fields of a type by their names; none where it is not known.
 
         Args:
             part: of a service or an action: `request`, `response`, `goal`, `result`, `feedback`.
         """
         own = self._definitions.get(name)
-        parts: list[dict[str, str]] = [{}]
-        for line in OwnInterfaces.fields(_definition(name) if own is None else own):
-            if line == "---":
-                parts.append({})
-            elif " " in line:
-                inner, _, field = line.partition(" ")
-                parts[-1][field] = inner
-        return parts[_PARTS.get(part, 0)] if _PARTS.get(part, 0) < len(parts) else {}
+        parts = parse(_definition(name) if own is None else own)[_PARTS.get(part, 0) :]
+        return {field.name: field for field in next(iter(parts), []) if field.value is None}
 
     def check(
         self, values: Any, name: str, part: str, at: tuple[str, ...], *, is_expected: bool = False
@@ -108,18 +101,19 @@ class KnownTypes:
             self._check(value, fields[field], name, here, is_expected=is_expected)
 
     def _check(
-        self, value: Any, kind: str, within: str, at: tuple[str, ...], *, is_expected: bool
+        self, value: Any, field: Field, within: str, at: tuple[str, ...], *, is_expected: bool
     ) -> None:
         """Check the value of a field of a type that stands in another."""
         if _is_open(value, is_expected=is_expected):
             return
-        if array := _ARRAY.fullmatch(kind):
+        if field.array:
             if not isinstance(value, list):
                 raise Mistake(at, "expected a list, found {found}", found=repr(value)[:80])
             for n, each in enumerate(value):
-                self._check(each, array[1], within, (*at, str(n)), is_expected=is_expected)
+                element = field._replace(array="")
+                self._check(each, element, within, (*at, str(n)), is_expected=is_expected)
             return
-        base = kind.partition("<")[0]
+        base = field.base
         if base in ("string", "wstring"):
             fits, wanted = isinstance(value, str), msg("a text")
         elif base == "bool":
@@ -131,13 +125,13 @@ class KnownTypes:
         elif not isinstance(value, Mapping) and not is_expected:
             fits, wanted = False, msg("fields with values")
         else:
-            package = base.partition("/")[0] if "/" in base else within.partition("/")[0]
+            package = field.package or within.partition("/")[0]
             inner = f"{package}/msg/{base.rpartition('/')[2]}"
             self.check(value, inner, "", at, is_expected=is_expected)
             return
         if not fits:
             what = "expected {wanted}, since it is a {type}; found {found}"
-            raise Mistake(at, what, wanted=wanted, type=kind, found=repr(value)[:80])
+            raise Mistake(at, what, wanted=wanted, type=field.type, found=repr(value)[:80])
 
     def check_each(
         self,

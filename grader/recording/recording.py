@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import io
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -19,8 +18,6 @@ from grader.recording.subject import Start, Trace, load_subject
 from grader.recording.view import Pictures, Pixels
 from grader.strict_json import SPARSE
 
-#: A constant of a definition, which is no field.
-_CONSTANT = re.compile(r"\S+ \w+ ?=")
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed", "not_run"]
 Clock = Literal["virtual", "real"]
 #: Of what each program has printed, a run keeps so much beside the output of all [characters].
@@ -107,14 +104,6 @@ class OwnInterfaces:
     def importable(self) -> dict[str, str]:
         """Those without a fault."""
         return {name: text for name, text in self.texts.items() if name not in self.faults}
-
-    @staticmethod
-    def fields(text: str) -> list[str]:
-        """Return the fields of a definition, and its lines of ---, without values."""
-        lines = (line.partition("#")[0].split() for line in text.splitlines())
-        return [
-            " ".join(each[:2]) for each in lines if each and not _CONSTANT.match(" ".join(each))
-        ]
 
     @property
     def packages(self) -> set[str]:

@@ -1,20 +1,20 @@
 """Message types by the definitions in a bag: their hashes there, and messages as plain data.
 
-Needs no ROS, so that recordings are read anywhere, and is imported quickly. `definitions` knows the
-whole language, by ROS's own parser.
+Needs no ROS, so that recordings are read anywhere, and is imported quickly.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import re
 from collections.abc import Callable, Mapping
-from typing import Any, Final, NamedTuple
+from itertools import chain
+from typing import Any, Final
 
 import numpy as np
 
 from grader.rosidl.cdr import NUMBERS, CdrReader, Number
+from grader.rosidl.fields import Field, parse
 
 #: Basic type -> how it is stored; None for a string.
 _STORED: Final[dict[str, Number | None]] = {
@@ -29,10 +29,6 @@ _IDS: Final = {
 }
 #: ... of a string with a bound; what is added for arrays, sequences with a bound, and without.
 _BOUNDED_STRING, _ARRAY, _BOUNDED, _UNBOUNDED = 21, 48, 96, 144
-#: A type with its bounds, a name, and of a constant its value.
-_LINE: Final = re.compile(
-    r"([A-Za-z][\w/]*)(?:<=(\d+))?(\[(?:<=)?(\d*)\])?[ \t]+([A-Za-z]\w*)[ \t]*(?:=[ \t]*(.*))?"
-)
 #: What every definition may use.
 _ALWAYS: Final = {
     f"builtin_interfaces/msg/{name}": "int32 sec\nuint32 nanosec\n" for name in ("Time", "Duration")
@@ -43,38 +39,18 @@ _Read = Callable[[CdrReader], Any]
 _ReadMany = Callable[[CdrReader, int], list[Any]]
 
 
-class _Field(NamedTuple):
-    """A field of a message.
-
-    Attributes:
-        base: its type without bounds: 'float64', 'geometry_msgs/msg/Point'.
-        longest: the bound of a string; 0 for none.
-        array: '', '[]', '[3]' or '[<=3]'.
-        size: that number; 0 for none.
-    """
-
-    name: str
-    base: str
-    longest: int = 0
-    array: str = ""
-    size: int = 0
-
-    def line(self) -> str:
-        """Return its line in a definition."""
-        bound = f"<={self.longest}" if self.longest else ""
-        return f"{_short(self.base)}{bound}{self.array} {self.name}\n"
-
-    def described(self) -> dict[str, Any]:
-        number = _BOUNDED_STRING if self.longest else _IDS.get(self.base, 1)
-        if self.array:
-            number += _BOUNDED if "<" in self.array else _ARRAY if self.size else _UNBOUNDED
-        facts = {"type_id": number, "capacity": self.size, "string_capacity": self.longest}
-        nested = "" if self.base in _IDS else self.base
-        return {"name": self.name, "type": {**facts, "nested_type_name": nested}}
+def _described(field: Field) -> dict[str, Any]:
+    """Return a field as REP 2016 describes it."""
+    number = _BOUNDED_STRING if field.longest else _IDS.get(field.base, 1)
+    if field.array:
+        number += _BOUNDED if "<" in field.array else _ARRAY if field.size else _UNBOUNDED
+    facts = {"type_id": number, "capacity": field.size, "string_capacity": field.longest}
+    nested = "" if field.base in _IDS else field.base
+    return {"name": field.name, "type": {**facts, "nested_type_name": nested}}
 
 
 #: What stands for the fields of an empty message.
-_NO_FIELDS: Final = (_Field("structure_needs_at_least_one_member", "uint8"),)
+_NO_FIELDS: Final = (Field("structure_needs_at_least_one_member", "uint8"),)
 
 
 class BagTypes:
@@ -87,7 +63,7 @@ class BagTypes:
     def __init__(self, texts: Mapping[str, str]) -> None:
         self._texts = {**_ALWAYS, **texts}
         #: type -> the lines of its constants, and its fields
-        self._parsed: dict[str, tuple[list[str], list[_Field]]] = {}
+        self._parsed: dict[str, tuple[list[str], list[Field]]] = {}
         self._readers: dict[str, _Read] = {}
 
     def definition(self, kind: str) -> str:
@@ -95,7 +71,7 @@ class BagTypes:
         made: list[str] = []
         for name in self._within(kind, {}):
             constants, fields = self._parse(name)
-            lines = "".join([*constants, *(field.line() for field in fields)])
+            lines = "".join([*constants, *(f"{_short(f.type)} {f.name}\n" for f in fields)])
             made.append(f"MSG: {_short(name)}\n{lines}" if made else lines)
         return f"{'=' * 80}\n".join(made)
 
@@ -104,7 +80,7 @@ class BagTypes:
         types = {
             name: {
                 "type_name": name,
-                "fields": [each.described() for each in self._parse(name)[1] or _NO_FIELDS],
+                "fields": [_described(each) for each in self._parse(name)[1] or _NO_FIELDS],
             }
             for name in sorted(self._within(kind, {}))
         }
@@ -116,24 +92,20 @@ class BagTypes:
         """Return a message, in CDR, as plain data: objects with fields, lists, numbers, texts."""
         return self._reader(kind, 0)(CdrReader(data))
 
-    def _parse(self, kind: str) -> tuple[list[str], list[_Field]]:
+    def _parse(self, kind: str) -> tuple[list[str], list[Field]]:
         if kind not in self._parsed:
             if kind not in self._texts:
                 raise ValueError(f"there is no definition of {kind}")
             constants, fields = self._parsed[kind] = [], []
-            lines = (line.partition("#")[0].strip() for line in self._texts[kind].splitlines())
-            for line in filter(None, lines):
-                if (found := _LINE.match(line)) is None:
-                    raise ValueError(f"{kind}: expected a type and a name, found {line!r:.80}")
-                base, longest, array, size, name, value = found.groups()
-                if value is not None:
-                    constants.append(f"{base} {name}={value}\n")
-                    continue
-                if base not in _IDS:
-                    package = base if "/" in base else kind
-                    base = f"{package.split('/')[0]}/msg/{base.split('/')[-1]}"
-                bounds = int(longest or 0), array or "", int(size or 0)
-                fields.append(_Field(name, base, *bounds))
+            for each in chain(*parse(self._texts[kind])):
+                if each.value is not None:
+                    constants.append(f"{each.base} {each.name}={each.value}\n")
+                elif each.base in _IDS:
+                    fields.append(each)
+                else:
+                    package = each.package or kind.partition("/")[0]
+                    base = f"{package}/msg/{each.base.rpartition('/')[2]}"
+                    fields.append(each._replace(base=base))
         return self._parsed[kind]
 
     def _within(self, kind: str, found: dict[str, None]) -> dict[str, None]:
@@ -157,7 +129,7 @@ class BagTypes:
             )
         return self._readers[kind]
 
-    def _field_reader(self, field: _Field, depth: int) -> _Read:
+    def _field_reader(self, field: Field, depth: int) -> _Read:
         if field.base not in _IDS:
             one, many = _one_by_one(self._reader(field.base, depth + 1))
         elif (number := _STORED[field.base]) is None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -16,6 +15,7 @@ from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
 from grader.submission.examining import cmake
 from grader.submission.examining.known import DESKTOP
+from grader.rosidl.fields import field_lines, readable
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
 
@@ -33,8 +33,6 @@ _OPTIONS: Final = (
     "SKIP_GROUP_MEMBERSHIP_CHECK",
     "ADD_LINTER_TESTS",
 )
-#: The packages whose types are used.
-_USED: Final = re.compile(r"^[ \t]*([a-z]\w{0,100})/", re.MULTILINE)
 #: In a word of CMake's with a variable that nobody knows here: it may be any.
 _UNKNOWN: Final = "${"
 #: colcon passes by a folder with this file.
@@ -80,7 +78,7 @@ def find_interfaces(
             faults[name] = msg("{file} is not UTF-8: save it as UTF-8.", file=called)
         else:
             texts[name] = text
-            notes += undeclared(folder / FILE, {*_USED.findall(text), _RUNTIME})
+            notes += undeclared(folder / FILE, {*_used_packages(text), _RUNTIME})
     return OwnInterfaces(texts, faults), list(dict.fromkeys(notes))
 
 
@@ -280,16 +278,21 @@ def _lack(package: _Package, path: PurePath, called: str, text: str) -> Message:
             **{"file": called, "cmake": package.cmake},
             **{"path": f'"{path}"', "call": f"{_GENERATE}()"},
         )
-    used = set(_USED.findall(text)) - {package.name, *package.needed}
+    used = _used_packages(text) - {package.name, *package.needed}
     line = f"DEPENDENCIES {min(used, default='')} in {_GENERATE}()"
     return _LACKS.given(file=package.cmake, line=line, what=called) if used else NOTHING
+
+
+def _used_packages(text: str) -> set[str]:
+    """Return the packages whose types a definition names."""
+    return {field.package for field in readable(text)} - {""}
 
 
 def _difference(name: str, own: str, theirs: str) -> Message:
     """Say how a type is defined otherwise than its exercise has it."""
     package, kind, stem = name.split("/")
     words = {"package": package, "file": f"{stem}.{kind}"}
-    for mine, other in zip_longest(*map(OwnInterfaces.fields, (own, theirs)), fillvalue="---"):
+    for mine, other in zip_longest(*map(field_lines, (own, theirs)), fillvalue="---"):
         if mine != other:
             return msg(
                 "{file} of {package} has `{own}` where the exercise's has `{theirs}`",

@@ -25,6 +25,7 @@ from grader.exercise.expect import expectations as e
 from grader.exercise.verdict import Evidence, Finding
 from grader.message import Message, chained, msg
 from grader.recording.recording import Recording, Recordings
+from grader.rosidl.fields import field_lines
 from grader.scenes.scene import STEP_NS
 from grader.text import without_controls
 
@@ -741,9 +742,8 @@ def _interface(_: CastTrace, wanted: e.ExpectedInterface, recording: Recording) 
     if name not in own.texts:
         text = msg("There is no {name} in what you handed in; there is {names}.")
         raise Lacks(text.given(name=name, names=_listed(sorted(own.texts))))
-    for found, right in zip_longest(
-        *map(own.fields, (own.texts[name], wanted.definition)), fillvalue="-"
-    ):
+    both = own.texts[name], wanted.definition
+    for found, right in zip_longest(*map(field_lines, both), fillvalue="-"):
         if found != right:
             raise Lacks(
                 msg("{name} has `{found}`, expected `{right}`.",

@@ -90,7 +90,7 @@ DAMAGED = {
     "each other": ({"own/msg/A": "B[] b", "own/msg/B": "A a"}, "at most 64 messages within each"),
     "more than there is": ({"own/msg/A": "float64[4000000000] a"}, "cut off"),
     "texts without end": ({"own/msg/A": "string[4000000000] a"}, "no end"),
-    "a length that is none": ({"own/msg/A": f"int8[{'9' * 5000}] a"}, "digits"),
+    "a length that is none": ({"own/msg/A": f"int8[{'9' * 5000}] a"}, "a type and a name, found"),
 }
 
 

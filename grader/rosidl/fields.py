@@ -1,0 +1,91 @@
+"""Parses the lines of .msg, .srv and .action as names and types; needs no ROS.
+
+Values are not understood, and mistakes not told: `definitions` does both, by ROS's own parser.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+#: A type with its bounds, a name, and of a constant its value.
+_LINE: Final = re.compile(
+    r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<longest>\d{1,18}))?"
+    r"(?P<array>\[(?:<=)?(?P<size>\d{0,18})\])?[ \t]+(?P<name>[A-Za-z]\w*)[ \t]*"
+    r"(?:=[ \t]*(?P<value>.*))?"
+)
+
+
+class Field(NamedTuple):
+    """A field or a constant of a message.
+
+    Attributes:
+        base: its type without bounds: 'float64', 'Num', 'geometry_msgs/Point'.
+        longest: the bound of a string; 0 for none.
+        array: '', '[]', '[3]' or '[<=3]'.
+        size: that number; 0 for none.
+        value: a constant's, as it stands there; None for a field.
+    """
+
+    name: str
+    base: str
+    longest: int = 0
+    array: str = ""
+    size: int = 0
+    value: str | None = None
+
+    @property
+    def type(self) -> str:
+        """The type with its bounds: 'string<=5[]'."""
+        return f"{self.base}{f'<={self.longest}' if self.longest else ''}{self.array}"
+
+    @property
+    def package(self) -> str:
+        """The package that its type names; '' for none."""
+        return self.base.rpartition("/")[0].partition("/")[0]
+
+
+def parse(text: str) -> list[list[Field]]:
+    """Parse a definition: the fields and constants of a message, or of each part.
+
+    Raises:
+        ValueError: a line is no such one.
+    """
+    parts: list[list[Field]] = [[]]
+    for line in _lines(text):
+        if line == "---":
+            parts.append([])
+        elif (field := _field(line)) is not None:
+            parts[-1].append(field)
+        else:
+            raise ValueError(f"expected a type and a name, found {line!r:.80}")
+    return parts
+
+
+def readable(text: str) -> list[Field]:
+    """Return what can be read of a definition that may have any mistake."""
+    return [field for field in map(_field, _lines(text)) if field is not None]
+
+
+def field_lines(text: str) -> list[str]:
+    """Return the fields of a definition as 'float64 x', and whatever else stands in its lines."""
+    made = []
+    for line in _lines(text):
+        if (field := _field(line)) is None:
+            made.append(line)  # as ---
+        elif field.value is None:
+            made.append(f"{field.type} {field.name}")
+    return made
+
+
+def _lines(text: str) -> Iterator[str]:
+    """Yield the lines without comments."""
+    return filter(None, (line.partition("#")[0].strip() for line in text.splitlines()))
+
+
+def _field(line: str) -> Field | None:
+    if (found := _LINE.match(line)) is None:
+        return None
+    base, longest, array, size, name, value = found.groups()
+    return Field(name, base, int(longest or 0), array or "", int(size or 0), value)
