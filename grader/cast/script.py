@@ -12,6 +12,7 @@ templates (`expressions`); times are simulated seconds from the start of the run
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, fields, replace
@@ -317,13 +318,9 @@ def roles(peers: Mapping[str, Peer]) -> Iterator[Role]:
 
 def interfaces_folder(package: str, kind: str) -> Path | None:
     """Return the folder of an installed package's definitions of a kind; None where it has none."""
-    from ament_index_python import get_package_share_directory
-
-    try:
-        folder = Path(get_package_share_directory(package), kind)
-    except LookupError:
-        return None
-    return folder if folder.is_dir() else None
+    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    folders = (Path(prefix, "share", package, kind) for prefix in prefixes if prefix)
+    return next(filter(Path.is_dir, folders), None)
 
 
 def _peer(name: Any, parts: Any, at: tuple[str, ...]) -> Peer:

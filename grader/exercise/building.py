@@ -190,8 +190,6 @@ def _interfaces(where: Any, place: Place) -> dict[str, str]:
     """Read the definitions in a folder of packages, PACKAGE/msg/NAME.msg; {} for none."""
     if where is None:
         return {}
-    from grader.rosidl.definitions import Definitions  # here: most exercises have none
-
     files = sorted((place.folder / str(where)).glob("*/*/*"))
     texts = {
         f"{each.parts[-3]}/{each.parts[-2]}/{each.stem}": each.read_text("utf-8", "replace")
@@ -206,6 +204,10 @@ def _interfaces(where: Any, place: Place) -> dict[str, str]:
         where,
         most=LONGEST_INTERFACES,
     )
+    try:
+        from grader.rosidl.definitions import Definitions  # here: most exercises have none
+    except ImportError:  # without ROS recordings are judged, whose runs had these
+        return texts
     for wrong in Definitions(texts).errors.values():
         raise Mistake((INTERFACES,), wrong.message)
     return texts
