@@ -222,7 +222,8 @@ MAY_IMPORT: dict[str, set[str]] = {
 EXTENSION = {
     "grader_robots.__init__": set(),
     "grader_robots.scene": GROUND
-    | below("grader", "recording", "rosidl.cdr", "scenes.scene", "scenes.by_hand")
+    | below("grader", "recording", "scenes.scene", "scenes.by_hand")
+    | below("grader.rosidl", "bag_types", "cdr")
     | {"grader.submission.trace", "robot_py", "turtlesim_py.ros.program"},
     "grader_robots.inspection": {"grader.message"}
     | below("grader", "recording", "submission")

@@ -10,12 +10,6 @@ from grader.rosidl.cdr import CdrWriter, string
 
 TICKS = 300
 _STRING, _FLOAT, _LOG = "std_msgs/msg/String", "std_msgs/msg/Float64", "rcl_interfaces/msg/Log"
-_DEFINITIONS = {
-    _STRING: "string data\n",
-    _FLOAT: "float64 data\n",
-    _LOG: "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\n"
-    "string function\nuint32 line\n",
-}
 _ENDPOINT = {"type": _STRING, "reliability": 1, "durability": 2, "depth": 10}
 
 
@@ -57,7 +51,7 @@ def odd_traces() -> Mapping[str, CastTrace]:
 
 def _trace(*events: Mapping[str, Any], sent: list[SentMessage] | None = None) -> CastTrace:
     messages = tuple(sorted(sent or [], key=lambda each: each.time_ns))
-    return CastTrace(TICKS, messages, events, ("/peer",), _DEFINITIONS)
+    return CastTrace(TICKS, messages, events, ("/peer",))
 
 
 def _endpoint(node: str, channel: str, **more: Any) -> dict[str, Any]:

@@ -100,14 +100,10 @@ class GraphScene(Scene):
     def untouched(self, start: Start | None) -> Trace:
         return CastTrace()
 
-    def message_definitions(self) -> Mapping[str, str]:
-        """Those of events; a trace has those of its messages."""
-        return {trace.STRING: "string data\n"}
-
     def definitions_of(self, made: Trace) -> Mapping[str, str]:
-        """Return those of a trace's own types as well."""
+        """Return those of its messages."""
         assert isinstance(made, CastTrace)
-        return {**made.definitions, **self.message_definitions()}
+        return made.definitions
 
     def view(self, made: Trace) -> View:
         """Return a table of what was exchanged, as much of it as a page shows at once."""

@@ -49,9 +49,6 @@ class CastKeeper(Subject):
     def untouched(self, start: Start | None) -> Trace:
         return Both(self._scene.untouched(start), self._cast.untouched(None))
 
-    def message_definitions(self) -> Mapping[str, str]:
-        return {**self._cast.message_definitions(), **self._scene.message_definitions()}
-
     def definitions_of(self, trace: Trace) -> Mapping[str, str]:
         assert isinstance(trace, Both)
         own = self._scene.definitions_of(trace.trace)

@@ -25,7 +25,7 @@ DEFAULT_SCENE: Final = "turtlesim"
 #: Hooks of a subject, and of a scene, and what they may raise; `from_channels` and `decode` may
 #: raise anything.
 HOOKS: Final[Mapping[str, tuple[type[Exception], ...]]] = {
-    **dict.fromkeys(("untouched", "message_definitions", "definitions_of", "to_messages"), ()),
+    **dict.fromkeys(("untouched", "definitions_of", "to_messages"), ()),
     **dict.fromkeys(("bag_topics", "encode", "scenario", "view", "pictures"), ()),
     **dict.fromkeys(("remarks", "endpoints", "wrong_setting", "adapted", "how_to_try"), ()),
     **dict.fromkeys(("odd_traces", "simulate", "preload", "starts"), ()),
@@ -161,13 +161,12 @@ class Subject(ABC):
     def untouched(self, start: Start | None) -> Trace:
         """The trace of a run in which nothing could be recorded, not even the time."""
 
-    @abstractmethod
-    def message_definitions(self) -> Mapping[str, str]:
-        """The definitions of the ROS types in its bags, and of the types of their fields."""
-
     def definitions_of(self, trace: Trace) -> Mapping[str, str]:
-        """The same, with those that only a trace knows."""
-        return self.message_definitions()
+        """The definitions of the ROS types in its bag, and of the types of their fields.
+
+        Those of `grader.rosidl.bag_types` need none.
+        """
+        return {}
 
     @abstractmethod
     def to_messages(self, trace: Trace) -> list[BagMessage]:

@@ -29,9 +29,30 @@ _IDS: Final = {
 }
 #: ... of a string with a bound; what is added for arrays, sequences with a bound, and without.
 _BOUNDED_STRING, _ARRAY, _BOUNDED, _UNBOUNDED = 21, 48, 96, 144
-#: What every definition may use.
-_ALWAYS: Final = {
-    f"builtin_interfaces/msg/{name}": "int32 sec\nuint32 nanosec\n" for name in ("Time", "Duration")
+#: ROS's own types of scenes' bags, Jazzy's: where ROS is not sourced there may be no share/ to ask.
+OF_ROS: Final = {
+    "builtin_interfaces/msg/Duration": "int32 sec\nuint32 nanosec\n",
+    "builtin_interfaces/msg/Time": "int32 sec\nuint32 nanosec\n",
+    "std_msgs/msg/Float64": "float64 data\n",
+    "std_msgs/msg/Header": "builtin_interfaces/Time stamp\nstring frame_id\n",
+    "std_msgs/msg/String": "string data\n",
+    "geometry_msgs/msg/Quaternion": "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n",
+    "geometry_msgs/msg/Transform": "Vector3 translation\nQuaternion rotation\n",
+    "geometry_msgs/msg/TransformStamped": "std_msgs/Header header\nstring child_frame_id\n"
+    "Transform transform\n",
+    "geometry_msgs/msg/Twist": "Vector3 linear\nVector3 angular\n",
+    "geometry_msgs/msg/Vector3": "float64 x\nfloat64 y\nfloat64 z\n",
+    "rcl_interfaces/msg/Log": "uint8 DEBUG=10\nuint8 INFO=20\nuint8 WARN=30\nuint8 ERROR=40\n"
+    "uint8 FATAL=50\nbuiltin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\n"
+    "string file\nstring function\nuint32 line\n",
+    "sensor_msgs/msg/Image": "std_msgs/Header header\nuint32 height\nuint32 width\n"
+    "string encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n",
+    "sensor_msgs/msg/JointState": "std_msgs/Header header\nstring[] name\nfloat64[] position\n"
+    "float64[] velocity\nfloat64[] effort\n",
+    "tf2_msgs/msg/TFMessage": "geometry_msgs/TransformStamped[] transforms\n",
+    "turtlesim/msg/Color": "uint8 r\nuint8 g\nuint8 b\n",
+    "turtlesim/msg/Pose": "float32 x\nfloat32 y\nfloat32 theta\nfloat32 linear_velocity\n"
+    "float32 angular_velocity\n",
 }
 #: How many messages may be within each other.
 _DEEPEST: Final = 64
@@ -57,11 +78,12 @@ class BagTypes:
     """The types of a bag; methods raise ValueError where a definition is missing or damaged.
 
     Args:
-        texts: type, 'std_msgs/msg/String' -> its definition; also of the types of its fields.
+        texts: type, 'my_interfaces/msg/Num' -> its definition; also of the types of its fields.
+            Some of ROS's own need none.
     """
 
     def __init__(self, texts: Mapping[str, str]) -> None:
-        self._texts = {**_ALWAYS, **texts}
+        self._texts = {**OF_ROS, **texts}
         #: type -> the lines of its constants, and its fields
         self._parsed: dict[str, tuple[list[str], list[Field]]] = {}
         self._readers: dict[str, _Read] = {}

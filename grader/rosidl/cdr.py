@@ -21,7 +21,6 @@ import numpy as np
 import numpy.typing as npt
 
 MARK: Final = b"\x00\x01\x00\x00"
-_DOUBLE: Final = np.dtype("<f8")
 _UNIT: Final = np.dtype("<u4")
 
 
@@ -87,15 +86,9 @@ class CdrReader:
             raise ValueError("a string has no end")
         return encoded.removesuffix(b"\x00").decode("utf-8", errors)
 
-    def numbers(self) -> tuple[float, ...]:
-        return tuple(self.array(self.count()).tolist())
-
-    def array(self, count: int, dtype: np.dtype[Any] = _DOUBLE) -> npt.NDArray[Any]:
+    def array(self, count: int, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
         self._at += -self._at % dtype.itemsize if count else 0
         return np.frombuffer(self._read(dtype.itemsize * count), dtype.newbyteorder("<"))
-
-    def texts(self) -> tuple[str, ...]:
-        return tuple(self.text() for _ in range(self.count()))
 
     def octets(self) -> bytes:
         return self._read(self.number("I"))

@@ -52,10 +52,6 @@ class PackageSubject(Subject):
         """What is left where nobody could look."""
         return PackageTrace()
 
-    def message_definitions(self) -> Mapping[str, str]:
-        """That of the one message that holds the trace."""
-        return {_TYPE: "string data\n"}
-
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
         return [(_TOPIC, _TYPE)]
 

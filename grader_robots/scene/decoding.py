@@ -1,27 +1,15 @@
-"""Messages out of their bytes, as plain data; their definitions, and nothing of ROS."""
+"""Messages out of their bytes, as plain data; nothing of ROS is needed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any, Final, NamedTuple
 
-from grader.rosidl.cdr import CdrReader, string_of
+from grader.rosidl.bag_types import BagTypes
 
 JOINT_STATE, TF_MESSAGE = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 STRING = "std_msgs/msg/String"
-#: Where ROS is not sourced there may be no share/ to ask. ROS's own, of Jazzy.
-DEFINITIONS = {
-    STRING: "string data\n",
-    "std_msgs/msg/Header": "builtin_interfaces/Time stamp\nstring frame_id\n",
-    JOINT_STATE: "std_msgs/Header header\nstring[] name\nfloat64[] position\n"
-    "float64[] velocity\nfloat64[] effort\n",
-    "geometry_msgs/msg/Vector3": "float64 x\nfloat64 y\nfloat64 z\n",
-    "geometry_msgs/msg/Quaternion": "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n",
-    "geometry_msgs/msg/Transform": "Vector3 translation\nQuaternion rotation\n",
-    "geometry_msgs/msg/TransformStamped": "std_msgs/Header header\nstring child_frame_id\n"
-    "Transform transform\n",
-    TF_MESSAGE: "geometry_msgs/TransformStamped[] transforms\n",
-}
+TYPES: Final = BagTypes({})
 
 
 class HeardJointState(NamedTuple):
@@ -65,31 +53,22 @@ class Transform(NamedTuple):
 
 def joint_states(tick: int, data: bytes) -> HeardJointState:
     """A sensor_msgs/JointState."""
-    read = CdrReader(data)
-    stamp_ns, _ = read.stamp_ns(), read.text()
-    names, positions = read.texts(), read.numbers()
-    read.numbers(), read.numbers()  # velocities and efforts
-    read.end()
-    return HeardJointState(tick, stamp_ns, names, positions)
+    found = TYPES.values(data, JOINT_STATE)
+    names, positions = tuple(found["name"]), tuple(found["position"])
+    return HeardJointState(tick, _stamp_ns(found), names, positions)
 
 
 def transforms(tick: int, data: bytes, number: int, topic: str, publisher: str) -> list[Transform]:
     """Those of a tf2_msgs/TFMessage."""
-    read = CdrReader(data)
-    found = []
-    for _ in range(read.number("I")):
-        stamp_ns, parent, child = read.stamp_ns(), read.text(), read.text()
-        x, y, z, *rotation = read.array(7).tolist()
-        a, b, c, d = rotation
-        placed = (parent, child, (x, y, z), (a, b, c, d))
-        found.append(Transform(tick, number, topic, publisher, stamp_ns, *placed))
-    read.end()
-    return found
+    made = []
+    for found in TYPES.values(data, TF_MESSAGE)["transforms"]:
+        sent = tick, number, topic, publisher, _stamp_ns(found)
+        frames = found["header"]["frame_id"], found["child_frame_id"]
+        moved, turned = (tuple(part.values()) for part in found["transform"].values())
+        made.append(Transform(*sent, *frames, moved, turned))
+    return made
 
 
-#: By the type of a message: reads its bytes, or raises ValueError.
-READERS: dict[str, Callable[[bytes], Any]] = {
-    STRING: string_of,
-    JOINT_STATE: lambda data: joint_states(0, data),
-    TF_MESSAGE: lambda data: transforms(0, data, 0, "", ""),
-}
+def _stamp_ns(found: Mapping[str, Any]) -> int:
+    stamp = found["header"]["stamp"]
+    return int(stamp["sec"]) * 1_000_000_000 + int(stamp["nanosec"])

@@ -20,7 +20,7 @@ from grader.recording.subject import (
 from grader.recording.view import Pictures, View
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
 from grader.translations import tr
-from grader_robots.scene import decoding, driving, trace, view
+from grader_robots.scene import driving, trace, view
 from grader_robots.scene.trace import DESCRIPTION, JOINT_STATES, TF, TF_STATIC, TOPICS, RobotTrace
 from robot_py.robot_state import RefusedDescription, Robot
 
@@ -99,10 +99,6 @@ class RobotScene(Scene):
 
     def untouched(self, start: Start | None) -> Trace:
         return RobotTrace(0)
-
-    def message_definitions(self) -> Mapping[str, str]:
-        """Those of joint states, transforms and texts."""
-        return decoding.DEFINITIONS
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
         """All four, also where nothing was heard."""

@@ -235,4 +235,4 @@ def _check(trace: RobotTrace) -> None:
         if not before <= tick <= trace.ticks + 1:
             raise ValueError(f"{topic}: a message at tick {tick} of {trace.ticks}")
         before = tick
-        decoding.READERS[TOPICS[topic]](data)
+        decoding.TYPES.values(data, TOPICS[topic])

@@ -34,22 +34,6 @@ Value = TypeVar("Value")
 
 POSE, COLOR, TWIST = "turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"
 STRING, LOG, IMAGE = "std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"
-VECTOR, HEADER = "geometry_msgs/msg/Vector3", "std_msgs/msg/Header"
-#: Definitions of the types, since there may be no share/ where ROS is not sourced; Jazzy's.
-DEFINITIONS = {
-    POSE: "float32 x\nfloat32 y\nfloat32 theta\n"
-    "float32 linear_velocity\nfloat32 angular_velocity\n",
-    COLOR: "uint8 r\nuint8 g\nuint8 b\n",
-    VECTOR: "float64 x\nfloat64 y\nfloat64 z\n",
-    TWIST: "Vector3 linear\nVector3 angular\n",
-    STRING: "string data\n",
-    HEADER: "builtin_interfaces/Time stamp\nstring frame_id\n",
-    LOG: "uint8 DEBUG=10\nuint8 INFO=20\nuint8 WARN=30\nuint8 ERROR=40\nuint8 FATAL=50\n"
-    "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\n"
-    "string function\nuint32 line\n",
-    IMAGE: "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
-    "uint8 is_bigendian\nuint32 step\nuint8[] data\n",
-}
 #: A pose, a colour and a command as CDR: the mark of little-endian plain CDR, then the fields.
 _CDR_MARK = tuple(MARK)
 _POSE_CDR = np.dtype([("mark", "u1", 4), ("fields", "<f4", 5)])

@@ -115,10 +115,6 @@ class Turtlesim(Scene):
 
         return drive(lambda *_: None, 0, start)[0]
 
-    def message_definitions(self) -> Mapping[str, str]:
-        """Return the definitions of all messages in its bags."""
-        return messages.DEFINITIONS
-
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
         """List the topics of every turtle, even if it published nothing."""
         for turtle in TurtleTrace.of(made).trajectories:

@@ -9,7 +9,7 @@ from ament_index_python.packages import get_search_paths
 from rosbags.typesys import Stores, get_typestore
 
 from grader.cast.messages import Types, make
-from grader.rosidl.bag_types import BagTypes
+from grader.rosidl.bag_types import OF_ROS, BagTypes
 from grader.rosidl.cdr import MARK, serialise
 from tests.grader.recording.slow_bag import plain, types_of
 
@@ -31,6 +31,16 @@ def test_the_hashes_are_those_that_are_published_with_the_installed_interfaces()
             each["hash_string"] for each in published["type_hashes"] if each["type_name"] == name
         )
         assert INSTALLED.type_hash(name) == expected, name
+
+
+def test_those_of_ros_are_jazzy_s_and_our_turtlesim_s():
+    jazzy, known = get_typestore(Stores.ROS2_JAZZY), BagTypes({})
+    for name in OF_ROS:
+        if name.startswith("turtlesim/"):
+            assert known.definition(name) == INSTALLED.definition(name)
+        else:
+            assert known.type_hash(name) == jazzy.hash_rihs01(name)
+            assert known.definition(name) == jazzy.generate_msgdef(name, ros_version=2)[0]
 
 
 def test_the_definitions_are_those_that_rosbags_writes():

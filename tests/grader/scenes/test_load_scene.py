@@ -46,7 +46,7 @@ sys.modules["rclpy"] = None
 from grader.recording.subject import load_subject
 from grader.scenes.scene import Scene
 subject = load_subject({name!r})
-print(subject.message_definitions(), subject.plane)
+print(subject.untouched(None), subject.plane)
 if isinstance(subject, Scene):
     print(subject.starts(2, 1, 0.5, 1.0), subject.introduction)
 """

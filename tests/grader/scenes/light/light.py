@@ -87,7 +87,7 @@ class Light(Scene):
     def untouched(self, start):
         return LightTrace(0)
 
-    def message_definitions(self):
+    def definitions_of(self, trace):
         return {LIGHT: "string<=20 name\nuint8[3] colour\n"}
 
     def to_messages(self, trace):
