@@ -223,7 +223,7 @@ EXTENSION = {
     "grader_robots.__init__": set(),
     "grader_robots.scene": GROUND
     | below("grader", "recording", "scenes.scene", "scenes.by_hand")
-    | below("grader.rosidl", "bag_types", "cdr")
+    | below("grader.rosidl", "bag_types", "cdr", "messages")
     | {"grader.submission.trace", "robot_py", "turtlesim_py.ros.program"},
     "grader_robots.inspection": {"grader.message"}
     | below("grader", "recording", "submission")

@@ -20,10 +20,11 @@ from rclpy.task import Future
 
 from grader.cast import script
 from grader.cast.expressions import ExpressionError, filled
-from grader.cast.messages import NoType, Types, make, plain, plain_value
 from grader.cast.recorder import CastRecorder
 from grader.cast.script import absolute
 from grader.cast.trace import TF
+from grader.cast.types import NoType, Types
+from grader.rosidl.messages import make, plain, plain_value
 
 #: So often a peer is served in a tick at most; and after its last message: a callback of a future
 #: is a task of the executor's, which may set another.

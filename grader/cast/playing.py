@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any, Protocol
 
-from grader.cast.messages import Types
 from grader.cast.peers import PeerNode
 from grader.cast.recorder import CastRecorder
 from grader.cast.script import Peer, endpoints, heard
 from grader.cast.trace import CastTrace
+from grader.cast.types import Types
 from grader.message import Message
 from grader.scenes.scene import STEP_NS
 

@@ -20,10 +20,10 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
-from grader.cast.messages import NoType, Types, plain
 from grader.cast.trace import EVENTS, ROSOUT, CastTrace, Event, SentMessage
+from grader.cast.types import NoType, Types
 from grader.message import Message, msg
-from grader.rosidl.cdr import deserialise, serialise
+from grader.rosidl.messages import deserialise, plain, serialise
 
 #: The most messages, bytes of them and of what is in events, and events of a recording.
 MOST_MESSAGES, MOST_BYTES, MOST_EVENTS = 20_000, 20_000_000, 10_000

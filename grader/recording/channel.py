@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,25 +56,3 @@ class Channel:
 
     def __len__(self) -> int:
         return len(self.times_ns)
-
-
-def divided(
-    topics: Sequence[tuple[str, str]],
-    times_ns: Ints,
-    numbers: Ints,
-    begins: Ints,
-    ends: Ints,
-    data: npt.NDArray[np.uint8],
-) -> list[Channel]:
-    """Divide the messages of a bag, in its order, among their topics.
-
-    Args:
-        topics: each with its ROS type.
-        numbers: which of the topics each message is of, (n,).
-        begins, ends: where in `data` the CDR of each is, (n,).
-    """
-    made = []
-    for number, (topic, msgtype) in enumerate(topics):
-        rows = np.flatnonzero(numbers == number)
-        made.append(Channel(topic, msgtype, times_ns[rows], rows, data, begins[rows], ends[rows]))
-    return made

@@ -18,7 +18,8 @@ from typing import Any, Final
 import numpy as np
 import rosidl_parser.definition as idl
 
-from grader.rosidl.cdr import NUMBERS, members, module_of, number_of, value_type
+from grader.rosidl.cdr import NUMBERS
+from grader.rosidl.messages import members, module_of, number_of, value_type
 
 #: The class of a field's type; asked when a message is made.
 Find = Callable[[Any], Any]

@@ -30,8 +30,8 @@ import rosidl_parser.definition as idl
 from grader.errors import SubmissionError
 from grader.message import Message, msg
 from grader.rosidl import uncompiled
-from grader.rosidl.cdr import installed, module_of, number_of, value_type
 from grader.rosidl.classes import classes_of, described, parts
+from grader.rosidl.messages import installed, module_of, number_of, value_type
 
 #: The longest line, and the longest definitions in all [characters].
 LONGEST_LINE: Final = 2_000

@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from grader.recording.subject import Trace
-from grader.rosidl import cdr
+from grader.rosidl.cdr import string
+from grader.rosidl.messages import serialise
 from grader_robots.scene.trace import (
     DESCRIPTION,
     JOINT_STATES,
@@ -41,7 +42,7 @@ def drive(controller: Controller, ticks: int, description: str) -> RobotTrace:
         recorder.publishes(topic, data)
         recorder.hears(topic, data)
 
-    send(DESCRIPTION, cdr.string(description))
+    send(DESCRIPTION, string(description))
     send(*tf(*recorder.fixed(EPOCH_NS), topic=TF_STATIC))
     for tick in range(1, ticks + 1):
         now_ns = EPOCH_NS + tick * TICK_NS
@@ -57,14 +58,14 @@ def joint_state(stamp_ns: int, names: Sequence[str], positions: Sequence[float])
 
     message = JointState(name=names, position=positions)
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp_ns, 10**9)
-    return JOINT_STATES, cdr.serialise(message)
+    return JOINT_STATES, serialise(message)
 
 
 def tf(*placed: Placed, topic: str = TF) -> Said:
     """A message on /tf, or another topic."""
     from robot_py.robot_state_publisher import tf_message
 
-    return topic, cdr.serialise(tf_message(placed))
+    return topic, serialise(tf_message(placed))
 
 
 # Odd things that a robot's node may publish ------------------------------------------------------

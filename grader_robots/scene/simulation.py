@@ -11,7 +11,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from grader.message import Message
-from grader.rosidl import cdr
+from grader.rosidl.messages import serialise
 from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Simulation, arrived
 from grader_robots.scene.trace import (
     DESCRIPTION,
@@ -119,10 +119,10 @@ class StateNode(Node):
         """Take what has arrived, answer the joint states of it."""
         for topic, subscription in self._heard:
             for message in arrived(subscription):
-                answer = self._recorder.answer(topic, cdr.serialise(message), now_ns)
+                answer = self._recorder.answer(topic, serialise(message), now_ns)
                 if answer is not None:
                     self._send(TF, tf_message(answer))
 
     def _send(self, topic: str, message: Any) -> None:
-        self._recorder.publishes(topic, cdr.serialise(message))
+        self._recorder.publishes(topic, serialise(message))
         self._publishers_of[topic].publish(message)

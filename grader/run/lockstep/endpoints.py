@@ -21,8 +21,8 @@ from rclpy.qos import QoSProfile
 from grader import system
 from grader.message import msg
 from grader.rosidl import classes, handles
-from grader.rosidl.cdr import deserialise, is_made, serialise
 from grader.rosidl.definitions import Definitions, UncompiledPackages
+from grader.rosidl.messages import deserialise, is_made, serialise
 from grader.rosidl.uncompiled import KINDS
 from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.registry import (

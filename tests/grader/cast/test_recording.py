@@ -12,13 +12,14 @@ from rosbags.rosbag2 import Reader
 from std_msgs.msg import Float64, String
 
 from grader.cast import recorder
-from grader.cast.messages import Types, plain
 from grader.cast.recorder import CastRecorder
 from grader.cast.trace import EVENTS, CastTrace, from_channels
+from grader.cast.types import Types
 from grader.recording import bag
 from grader.recording.channel import Channel
 from grader.recording.subject import load_subject
-from grader.rosidl.cdr import serialise, string
+from grader.rosidl.cdr import string
+from grader.rosidl.messages import plain, serialise
 from grader.run.lockstep.protocol import EndpointInfo
 
 STRING = "std_msgs/msg/String"

@@ -16,8 +16,8 @@ from rosbags.highlevel import AnyReader
 from grader.recording import bag, mcap, saving
 from grader.recording.recording import Recordings
 from grader.rosidl.bag_types import OF_ROS
-from grader.rosidl.cdr import serialise
 from grader.rosidl.definitions import Definitions
+from grader.rosidl.messages import serialise
 from grader.scenes import load_scene
 from tests.grader.driving import drive, pen, twist
 from tests.grader.recording.slow_bag import Rosbag2Writer, types_of

@@ -8,8 +8,15 @@ import numpy as np
 import rosidl_parser.definition as idl
 from rclpy.serialization import deserialize_message, serialize_message
 
-from grader.rosidl.cdr import deserialise, member_class, members, number_of, serialise, value_type
 from grader.rosidl.classes import whole_range
+from grader.rosidl.messages import (
+    deserialise,
+    member_class,
+    members,
+    number_of,
+    serialise,
+    value_type,
+)
 
 #: What no field, or not every field, takes.
 WRONG = (

@@ -8,9 +8,10 @@ import pytest
 from ament_index_python.packages import get_search_paths
 from rosbags.typesys import Stores, get_typestore
 
-from grader.cast.messages import Types, make
+from grader.cast.types import Types
 from grader.rosidl.bag_types import OF_ROS, BagTypes
-from grader.rosidl.cdr import MARK, serialise
+from grader.rosidl.cdr import MARK
+from grader.rosidl.messages import make, serialise
 from tests.grader.recording.slow_bag import plain, types_of
 
 FILES = {

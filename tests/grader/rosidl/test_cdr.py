@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.rosidl.cdr import MARK, deserialise, serialise
+from grader.rosidl.cdr import MARK
 from grader.rosidl.definitions import Definitions
+from grader.rosidl.messages import deserialise, serialise
 
 TEXTS = {
     "mine/msg/E": "",

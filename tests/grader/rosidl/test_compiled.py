@@ -10,8 +10,8 @@ import pytest
 from ament_index_python import get_search_paths
 
 from grader.rosidl import building
-from grader.rosidl.cdr import installed
 from grader.rosidl.definitions import Definitions, slot_of
+from grader.rosidl.messages import installed
 from grader.run import compiling
 from tests.grader.rosidl.comparing import differences
 from tests.grader.rosidl.drawing import package

@@ -9,9 +9,9 @@ from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.type_support import NoTypeSupportImportedException
 
 from grader.errors import SubmissionError
-from grader.rosidl.cdr import deserialise, serialise
 from grader.rosidl.classes import described, parts
 from grader.rosidl.definitions import DEEPEST, LONGEST, LONGEST_LINE, Definitions, parse
+from grader.rosidl.messages import deserialise, serialise
 
 
 def fields(text):

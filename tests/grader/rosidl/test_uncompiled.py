@@ -5,8 +5,8 @@ from importlib.util import find_spec
 import pytest
 
 from grader.rosidl import uncompiled
-from grader.rosidl.cdr import deserialise, serialise
 from grader.rosidl.definitions import Definitions, UncompiledPackages
+from grader.rosidl.messages import deserialise, serialise
 
 DEFINITIONS = {
     "mine_first/msg/Num": "int64 num 3\ngeometry_msgs/Point at\n",

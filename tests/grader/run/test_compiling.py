@@ -13,8 +13,8 @@ from grader import scratch
 from grader.message import msg
 from grader.recording.recording import OwnInterfaces
 from grader.rosidl import compiler
-from grader.rosidl.cdr import installed
 from grader.rosidl.definitions import Definitions, slot_of
+from grader.rosidl.messages import installed
 from grader.run import compiling, real_time, run_context
 from grader.run.handover import Plan
 from grader.run.opening import open_submission

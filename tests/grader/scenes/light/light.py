@@ -10,7 +10,8 @@ import numpy as np
 
 from grader.message import msg
 from grader.recording.subject import BagMessage
-from grader.rosidl.cdr import CdrReader, serialise
+from grader.rosidl.cdr import CdrReader
+from grader.rosidl.messages import serialise
 from grader.scenes.scene import STEP_NS, Introduction, Scene, Simulation, arrived
 
 SHOWN, MIXED, LIGHT = "/light", "/mixed", "light_interfaces/msg/Light"

@@ -1,14 +1,13 @@
-"""Messages of ROS out of plain data and back, in the simulator's process."""
+"""The classes of types that a cast speaks, and their definitions; in the simulator's process."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, Final
 
 from grader.cast.script import interfaces_folder
-from grader.rosidl.cdr import member_class, members, value_type
 from grader.rosidl.definitions import Definitions
+from grader.rosidl.messages import members, value_type
 
 #: Basic types, where a definition has other names.
 _BASIC: Final = {"boolean": "bool", "octet": "uint8", "float": "float32", "double": "float64"}
@@ -84,59 +83,3 @@ def _written(slot: Any) -> str:
     else:
         raise NoType("no reader of bags knows lists of wstring")
     return base if inner is slot else f"{base}[{getattr(slot, 'size', '')}]"
-
-
-def make(kind: Any, values: Any) -> Any:
-    """Make a message of plain data: fields with values, or of its only field the value."""
-    slots = dict(members(kind))
-    if not isinstance(values, Mapping):
-        if len(slots) != 1:
-            raise ValueError(f"expected values of {', '.join(slots)}, found {values!r:.80}")
-        values = {next(iter(slots)): values}
-    if unknown := sorted(values.keys() - slots.keys()):
-        raise ValueError(f"{kind.__name__} has no field {unknown[0]}, only {', '.join(slots)}")
-    message = kind(check_fields=True)
-    for name, value in values.items():
-        try:
-            setattr(message, name, _made(kind, slots[name], value))
-        except (AssertionError, TypeError, OverflowError) as error:
-            raise ValueError(f"{kind.__name__}.{name}: {error!s:.200}") from None
-    return message
-
-
-def _made(kind: Any, slot: Any, value: Any) -> Any:
-    inner = value_type(slot)
-    if inner is not slot:
-        if not isinstance(value, (list, tuple)):
-            raise TypeError(f"expected a list, found {value!r:.80}")
-        return [_made(kind, inner, each) for each in value]
-    if hasattr(inner, "namespaces"):
-        if not isinstance(value, Mapping):
-            raise TypeError(f"expected fields with values, found {value!r:.80}")
-        return make(member_class(kind, inner), value)
-    typename = getattr(inner, "typename", "")
-    if typename in ("float", "double") and isinstance(value, int):
-        return float(value)
-    if typename == "octet" and isinstance(value, int):
-        return value.to_bytes(1, "little")
-    if isinstance(value, str):
-        value.encode("utf-8")  # else no message can hold it
-    return value
-
-
-def plain(message: Any) -> dict[str, Any]:
-    """Return the values of a message as plain data that fits JSON."""
-    return {name: plain_value(getattr(message, name)) for name, _ in members(type(message))}
-
-
-def plain_value(value: Any) -> Any:
-    """Return a value of a message as plain data that fits JSON."""
-    if hasattr(value, "SLOT_TYPES"):
-        return plain(value)
-    if isinstance(value, bytes):
-        return value[0] if len(value) == 1 else list(value)
-    if hasattr(value, "tolist"):
-        return plain_value(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [plain_value(each) for each in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from grader.cast.messages import NoType, Types, make, plain
+from grader.cast.types import NoType, Types
 from grader.rosidl.bag_types import BagTypes
-from grader.rosidl.cdr import deserialise, serialise
+from grader.rosidl.messages import deserialise, make, plain, serialise
 from tests.grader.recording.slow_bag import plain as plain_of_rosbags
 from tests.grader.recording.slow_bag import types_of
 
