@@ -95,7 +95,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # what the source shows, as it is recorded; what CMake would generate, and what of that parses
     "grader.submission": GROUND
     | below("grader", "submission", "recording")
-    | below("grader.rosidl", "cdr", "definitions", "fields"),
+    | below("grader.rosidl", "bag_types", "cdr", "definitions", "fields"),
     # a package is examined in the submission's process, which sees little of ours
     "grader.submission.trace": below("grader", "strict_json", "message"),
     "grader.submission.answer": {"grader.strict_json", "grader.submission.trace"},

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from grader.rosidl.cdr import NUMBERS, CdrReader, Number
-from grader.rosidl.fields import Field, parse
+from grader.rosidl.fields import Field, lines, parse
 
 #: Basic type -> how it is stored; None for a string.
 _STORED: Final[dict[str, Number | None]] = {
@@ -60,8 +60,24 @@ _Read = Callable[[CdrReader], Any]
 _ReadMany = Callable[[CdrReader, int], list[Any]]
 
 
+def description(kind: str, text: str) -> list[Any]:
+    """Return the fields of a definition as REP 2016 describes them, whatever their types hold."""
+    return [
+        _described(_qualified(line, kind)) if isinstance(line, Field) else line
+        for line in lines(text)
+        if isinstance(line, str) or line.value is None
+    ]
+
+
+def _qualified(field: Field, kind: str) -> Field:
+    """Return a field of a type with the whole name of its own type."""
+    if field.base in _IDS:
+        return field
+    package = field.package or kind.partition("/")[0]
+    return field._replace(base=f"{package}/msg/{field.base.rpartition('/')[2]}")
+
+
 def _described(field: Field) -> dict[str, Any]:
-    """Return a field as REP 2016 describes it."""
     number = _BOUNDED_STRING if field.longest else _IDS.get(field.base, 1)
     if field.array:
         number += _BOUNDED if "<" in field.array else _ARRAY if field.size else _UNBOUNDED
@@ -93,8 +109,8 @@ class BagTypes:
         made: list[str] = []
         for name in self._within(kind, {}):
             constants, fields = self._parse(name)
-            lines = "".join([*constants, *(f"{_short(f.type)} {f.name}\n" for f in fields)])
-            made.append(f"MSG: {_short(name)}\n{lines}" if made else lines)
+            text = "".join([*constants, *(f"{_short(f.type)} {f.name}\n" for f in fields)])
+            made.append(f"MSG: {_short(name)}\n{text}" if made else text)
         return f"{'=' * 80}\n".join(made)
 
     def type_hash(self, kind: str) -> str:
@@ -122,12 +138,8 @@ class BagTypes:
             for each in chain(*parse(self._texts[kind])):
                 if each.value is not None:
                     constants.append(f"{each.base} {each.name}={each.value}\n")
-                elif each.base in _IDS:
-                    fields.append(each)
                 else:
-                    package = each.package or kind.partition("/")[0]
-                    base = f"{package}/msg/{each.base.rpartition('/')[2]}"
-                    fields.append(each._replace(base=base))
+                    fields.append(_qualified(each, kind))
         return self._parsed[kind]
 
     def _within(self, kind: str, found: dict[str, None]) -> dict[str, None]:

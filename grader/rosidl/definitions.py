@@ -11,7 +11,6 @@ import ast
 import codecs
 import importlib
 import importlib.machinery
-import json
 import keyword
 import math
 import re
@@ -141,32 +140,6 @@ class Definitions:
         if name not in self._classes:
             self._classes[name] = classes_of(self._elements[name], self.find)
         return self._classes[name]
-
-    def type_hash(self, name: str) -> str:
-        """Return the hash of one of these: RIHS01, of REP-2011; its imports take 0.1 s."""
-        import rosidl_generator_type_description as rihs
-        from ament_index_python import get_package_share_directory
-
-        filler = idl.Member(idl.BasicType("uint8"), "structure_needs_at_least_one_member")
-        add = {idl.Message: rihs.add_msg, idl.Service: rihs.add_srv, idl.Action: rihs.add_action}
-        known: dict[str, Any] = {}
-        others = (Definitions(uncompiled.texts(package)) for package in uncompiled.packages())
-        for each in (*others, self):
-            for own in each._extents:
-                add[type(each._elements[own])](each._elements[own], known)
-        describe = rihs.serialize_individual_type_description
-        types = {
-            own: describe(made.namespaced_type, made.members or [filler])
-            for own, made in known.items()
-        }
-        fields = (field for made in known.values() for field in made.members)
-        needed = {rihs.field_type_nested_type_name(field.type) for field in fields}
-        for package, kind, other in (each.split("/") for each in needed - types.keys() - {""}):
-            file = Path(get_package_share_directory(package), kind, f"{other}.json")
-            published = json.loads(file.read_text("utf-8"))["type_description_msg"]
-            for each in (published["type_description"], *published["referenced_type_descriptions"]):
-                types.setdefault(each["type_name"], each)
-        return str(rihs.calculate_type_hash(rihs.extract_full_type_description(name, types)))
 
     # as importlib has it -----------------------------------------------------------------------
 

@@ -6,7 +6,6 @@ Values are not understood, and mistakes not told: `definitions` does both, by RO
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 #: A type with its bounds, a name, and of a constant its value.
@@ -46,6 +45,12 @@ class Field(NamedTuple):
         return self.base.rpartition("/")[0].partition("/")[0]
 
 
+def lines(text: str) -> list[Field | str]:
+    """Return the lines of a definition without comments; what is no field as it stands, as ---."""
+    found = filter(None, (line.partition("#")[0].strip() for line in text.splitlines()))
+    return [_field(line) or line for line in found]
+
+
 def parse(text: str) -> list[list[Field]]:
     """Parse a definition: the fields and constants of a message, or of each part.
 
@@ -53,11 +58,11 @@ def parse(text: str) -> list[list[Field]]:
         ValueError: a line is no such one.
     """
     parts: list[list[Field]] = [[]]
-    for line in _lines(text):
-        if line == "---":
+    for line in lines(text):
+        if isinstance(line, Field):
+            parts[-1].append(line)
+        elif line == "---":
             parts.append([])
-        elif (field := _field(line)) is not None:
-            parts[-1].append(field)
         else:
             raise ValueError(f"expected a type and a name, found {line!r:.80}")
     return parts
@@ -65,23 +70,16 @@ def parse(text: str) -> list[list[Field]]:
 
 def readable(text: str) -> list[Field]:
     """Return what can be read of a definition that may have any mistake."""
-    return [field for field in map(_field, _lines(text)) if field is not None]
+    return [line for line in lines(text) if isinstance(line, Field)]
 
 
 def field_lines(text: str) -> list[str]:
     """Return the fields of a definition as 'float64 x', and whatever else stands in its lines."""
-    made = []
-    for line in _lines(text):
-        if (field := _field(line)) is None:
-            made.append(line)  # as ---
-        elif field.value is None:
-            made.append(f"{field.type} {field.name}")
-    return made
-
-
-def _lines(text: str) -> Iterator[str]:
-    """Yield the lines without comments."""
-    return filter(None, (line.partition("#")[0].strip() for line in text.splitlines()))
+    return [
+        f"{line.type} {line.name}" if isinstance(line, Field) else line
+        for line in lines(text)
+        if isinstance(line, str) or line.value is None
+    ]
 
 
 def _field(line: str) -> Field | None:

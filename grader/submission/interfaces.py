@@ -9,12 +9,13 @@ from dataclasses import replace
 from difflib import get_close_matches
 from itertools import takewhile, zip_longest
 from pathlib import Path, PurePath
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
 from grader.submission.examining import cmake
 from grader.submission.examining.known import DESKTOP
+from grader.rosidl.bag_types import description
 from grader.rosidl.fields import field_lines, readable
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
@@ -93,14 +94,11 @@ def completed(found: OwnInterfaces, theirs: Mapping[str, str]) -> OwnInterfaces:
     own = Definitions(texts)
     faults = {**found.faults, **{name: error.message for name, error in own.errors.items()}}
     both = [name for name in texts if name in theirs and name not in own.errors]
-    if all(texts[name] == theirs[name] for name in both):
-        return OwnInterfaces(texts, faults)
-    known = Definitions(theirs)
-    unlike = {
-        name: _difference(name, texts[name], theirs[name])
-        for name in both
-        if own.type_hash(name) != known.type_hash(name)
-    }
+    described = {name: description(name, texts[name]) for name in both}
+    changed = {n for n in both if described[n] != description(n, theirs[n])}
+    while more := {n for n in both if changed & _used_types(described[n])} - changed:
+        changed |= more
+    unlike = {n: _difference(n, texts[n], theirs[n]) for n in both if n in changed}
     return OwnInterfaces(texts, faults, unlike)
 
 
@@ -286,6 +284,11 @@ def _lack(package: _Package, path: PurePath, called: str, text: str) -> Message:
 def _used_packages(text: str) -> set[str]:
     """Return the packages whose types a definition names."""
     return {field.package for field in readable(text)} - {""}
+
+
+def _used_types(fields: Sequence[Any]) -> set[str]:
+    """Return the messages in a message that is described."""
+    return {each["type"]["nested_type_name"] for each in fields if isinstance(each, dict)}
 
 
 def _difference(name: str, own: str, theirs: str) -> Message:

@@ -160,7 +160,6 @@ def test_types_of_other_packages_are_those_that_are_installed():
     kind = made.type("mine/msg/At")
     assert type(kind().at) is Point
     assert deserialise(serialise(kind(at=Point(x=1.0))), kind).at.x == 1.0
-    assert made.type_hash("mine/msg/At").startswith("RIHS01_")
 
 
 def test_an_unknown_type_is_told():
