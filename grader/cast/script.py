@@ -12,11 +12,9 @@ templates (`expressions`); times are simulated seconds from the start of the run
 from __future__ import annotations
 
 import math
-import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, fields, replace
-from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
 from grader import strict_json
@@ -314,13 +312,6 @@ def roles(peers: Mapping[str, Peer]) -> Iterator[Role]:
             yield Role("subscription", frame.topic)
         for each in peer.parameters.values():
             yield from (Role("parameter", name) for name in (*each.set, *each.get))
-
-
-def interfaces_folder(package: str, kind: str) -> Path | None:
-    """Return the folder of an installed package's definitions of a kind; None where it has none."""
-    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    folders = (Path(prefix, "share", package, kind) for prefix in prefixes if prefix)
-    return next(filter(Path.is_dir, folders), None)
 
 
 def _peer(name: Any, parts: Any, at: tuple[str, ...]) -> Peer:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from grader.cast.script import interfaces_folder
-from grader.rosidl.definitions import Definitions
+from grader.rosidl.definitions import Definitions, is_installed, slot_of
 from grader.rosidl.messages import members, value_type
 
 #: Basic types, where a definition has other names.
@@ -38,7 +37,7 @@ class Types:
             NoType: there is none.
         """
         try:
-            if name not in self._texts and not _is_installed(name):
+            if name not in self._texts and not is_installed(slot_of(name)):
                 raise ImportError(name)  # else any module would be imported
             return self._own.type(name)
         except (ImportError, AttributeError) as error:
@@ -61,12 +60,6 @@ class Types:
                     self.use("/".join((*each.namespaces, each.name)))
             self.used[name] = text
         return found
-
-
-def _is_installed(name: str) -> bool:
-    """Whether a package of interfaces is installed that may have a type."""
-    package, kind, _ = name.split("/")
-    return kind in ("msg", "srv", "action") and interfaces_folder(package, kind) is not None
 
 
 def _written(slot: Any) -> str:

@@ -7,9 +7,11 @@ nothing is checked.
 from __future__ import annotations
 
 import difflib
+import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any, Final
 
 from grader.cast import script
@@ -55,7 +57,7 @@ class KnownTypes:
         """
         package, kind, _ = name.split("/")
         known = [each for each in self._definitions if each.startswith(f"{package}/")]
-        known = known or _installed(package, kind)
+        known = known or [*_installed(package, kind)]
         if not known or name in known:
             return
         near = ", ".join(difflib.get_close_matches(name, known, 3, 0.5) or known[:3])
@@ -212,20 +214,23 @@ def check_time(time_s: Any, end_s: float, at: tuple[str, ...]) -> None:
 
 
 @cache
-def _installed(package: str, kind: str) -> list[str]:
-    """Return the names of the types of a kind that an installed package has."""
-    folder = script.interfaces_folder(package, kind)
-    files = folder.glob(f"*.{kind}") if folder else ()
-    return sorted(f"{package}/{kind}/{file.stem}" for file in files)
+def _installed(package: str, kind: str) -> dict[str, Path]:
+    """Return the types of a kind that an installed package has, and the files of their definitions.
+
+    They are found as ament_index does, which is there beside ROS alone.
+    """
+    for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
+        files = sorted(Path(prefix, "share", package, kind).glob(f"*.{kind}"))
+        if files:
+            return {f"{package}/{kind}/{file.stem}": file for file in files}
+    return {}
 
 
-@cache
 def _definition(name: str) -> str:
     """Return the definition of a type of an installed package; '' where there is none."""
-    package, kind, own = name.split("/")
-    folder = script.interfaces_folder(package, kind)
-    file = folder / f"{own}.{kind}" if folder is not None else None
-    return file.read_text("utf-8", "replace") if file is not None and file.is_file() else ""
+    package, kind, _ = name.split("/")
+    file = _installed(package, kind).get(name)
+    return "" if file is None else file.read_text("utf-8", "replace")
 
 
 def _is_open(value: Any, *, is_expected: bool) -> bool:

@@ -218,11 +218,11 @@ class Definitions:
                 why = self._roots.get(name, self.errors[name].message)
                 what = msg("`{type}` has a mistake itself: {why}", type=shown, why=why)
                 raise SubmissionError(what) from None
-        if _is_installed(slot):
+        if is_installed(slot):
             return INSTALLED, 1
         title = name.rpartition("/")[2]
         for package in _USUAL:
-            if _is_installed(idl.NamespacedType([package, "msg"], title)):
+            if is_installed(idl.NamespacedType([package, "msg"], title)):
                 meant = f"{package}/{title}"
                 raise SubmissionError(
                     "`{type}` is not known. Write {meant}.", type=shown, meant=meant
@@ -263,8 +263,10 @@ def name_of(slot: Any) -> str:
     return "/".join((*getattr(slot, "namespaces", ()), getattr(slot, "name", "")))
 
 
-def _is_installed(slot: Any) -> bool:
-    """Whether a message's class can be imported; nothing is imported to find out."""
+def is_installed(slot: Any) -> bool:
+    """Whether the class of a type can be imported; nothing is imported to find out."""
+    if slot.namespaces[-1] not in uncompiled.KINDS:
+        return False
     module = Path(*module_of(slot).split(".")).with_suffix(".py")
     if any(Path(folder, module).is_file() for folder in sys.path):
         return True
