@@ -9,6 +9,7 @@ from typing import Final
 
 from grader.recording.channel import Channel
 from grader.recording.subject import CAST_SCENE, BagMessage, Start, Subject, Trace, load_subject
+from grader.rosidl.bag_types import OF_ROS
 
 #: Before the topics of a cast: a scene may have some of the same names.
 PREFIX: Final = "/cast"
@@ -51,8 +52,10 @@ class CastKeeper(Subject):
 
     def definitions_of(self, trace: Trace) -> Mapping[str, str]:
         assert isinstance(trace, Both)
-        own = self._scene.definitions_of(trace.trace)
-        return {**self._cast.definitions_of(trace.cast), **own}
+        others = self._cast.definitions_of(trace.cast)
+        # those of ROS's own may have constants that a cast does not record: a scene's log
+        usual = {name: text for name, text in OF_ROS.items() if name in others}
+        return {**others, **usual, **self._scene.definitions_of(trace.trace)}
 
     def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
         assert isinstance(trace, Both)

@@ -13,12 +13,13 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from grader.recording import bag, mcap, saving
+from grader.recording import bag, mcap, reading, saving
 from grader.recording.recording import Recordings
 from grader.rosidl.bag_types import OF_ROS
 from grader.rosidl.definitions import Definitions
 from grader.rosidl.messages import serialise
 from grader.scenes import load_scene
+from tests import archive
 from tests.grader.driving import drive, pen, twist
 from tests.grader.recording.slow_bag import Rosbag2Writer, types_of
 
@@ -222,3 +223,12 @@ def test_a_channel_may_have_a_type_of_a_hand_ins(recorded, tmp_path):
         digest = reader.typestore.hash_rihs01("mine/msg/Nums")
         assert channel.metadata["topic_type_hash"] == digest
         assert reader.topics["/nums"].msgtype == "mine/msg/Nums"
+
+
+@pytest.mark.parametrize("name", ["follow_me", "talker_listener", "state_publisher"])
+def test_a_recording_that_is_read_and_saved_again_has_the_same_bytes(name, tmp_path):
+    folder = archive.folder(name, "right")
+    saving.save_all(reading.load_all(folder), tmp_path / "again")
+    for file in filter(Path.is_file, folder.rglob("*")):
+        again = tmp_path / "again" / file.relative_to(folder)
+        assert again.read_bytes() == file.read_bytes(), again
