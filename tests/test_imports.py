@@ -87,7 +87,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.scenes.joined": GROUND | below("grader", "recording") | {"turtlesim_py.__init__"},
     "grader.scenes.turtlesim": GROUND
     | below("grader", "recording", "scenes.scene", "scenes.live", "scenes.joined")
-    | below("grader.rosidl", "cdr", "uncompiled")
+    | below("grader.rosidl", "bag_types", "cdr", "uncompiled")
     | below("turtlesim_py", "__init__", "world", "scenario", "ros", "live"),
     # scripted peers, which any scene may have beside it
     "grader.cast": GROUND

@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from grader.cast.trace import ROSOUT, CastTrace, SentMessage
-from grader.rosidl.cdr import CdrWriter, string
+from grader.rosidl.bag_types import BagTypes
+from grader.rosidl.cdr import string
 
 TICKS = 300
 _STRING, _FLOAT, _LOG = "std_msgs/msg/String", "std_msgs/msg/Float64", "rcl_interfaces/msg/Log"
+_TYPES = BagTypes({})
 _ENDPOINT = {"type": _STRING, "reliability": 1, "durability": 2, "depth": 10}
 
 
@@ -28,7 +30,7 @@ def odd_traces() -> Mapping[str, CastTrace]:
             SentMessage(10**9, name, _STRING, "/node", string("\x1b[2J \ud800")) for name in names
         ]),
         "numbers that are none": _trace(*writers, sent=[
-            SentMessage(10**8 * n, name, _FLOAT, "/node", _number(value))
+            SentMessage(10**8 * n, name, _FLOAT, "/node", _TYPES.data(_FLOAT, {"data": value}))
             for n, value in enumerate((float("nan"), float("inf"), -1e308, 0.0))
             for name in names
         ]),
@@ -59,18 +61,6 @@ def _endpoint(node: str, channel: str, **more: Any) -> dict[str, Any]:
     return {**facts, **_ENDPOINT, **more}
 
 
-def _number(value: float) -> bytes:
-    made = CdrWriter()
-    made.number("d", value)
-    return made.message()
-
-
 def _log(level: int, text: str) -> bytes:
-    made = CdrWriter()
-    made.number("i", 1)
-    made.number("I", 0)
-    made.number("B", level)
-    for each in ("node", text, "", ""):
-        made.text(each)
-    made.number("I", 1)
-    return made.message()
+    line = {"stamp": {"sec": 1, "nanosec": 0}, "level": level, "name": "node", "msg": text}
+    return _TYPES.data(_LOG, {**line, "file": "", "function": "", "line": 1})

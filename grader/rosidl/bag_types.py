@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.rosidl.cdr import NUMBERS, CdrReader, Number
+from grader.rosidl.cdr import NUMBERS, CdrReader, CdrWriter, Number
 from grader.rosidl.fields import Field, lines, parse
 
 #: Basic type -> how it is stored; None for a string.
@@ -129,6 +129,30 @@ class BagTypes:
     def values(self, data: bytes, kind: str) -> Any:
         """Return a message, in CDR, as plain data: objects with fields, lists, numbers, texts."""
         return self._reader(kind, 0)(CdrReader(data))
+
+    def data(self, kind: str, values: Mapping[str, Any]) -> bytes:
+        """Return the CDR of a message of plain data, which has all its fields."""
+        out = CdrWriter()
+        self._write(out, Field("", kind), values)
+        return out.message()
+
+    def _write(self, out: CdrWriter, field: Field, value: Any) -> None:
+        number = _STORED.get(field.base)
+        if field.array:
+            if "<" in field.array or not field.size:
+                out.number("I", len(value))
+            if number is not None:
+                out.array(value, number.dtype)
+            else:
+                for each in value:
+                    self._write(out, field._replace(array=""), each)
+        elif field.base not in _IDS:
+            for inner in self._parse(field.base)[1]:
+                self._write(out, inner, value[inner.name])
+        elif number is None:
+            out.text(value)
+        else:
+            out.number(number.code, value)
 
     def _parse(self, kind: str) -> tuple[list[str], list[Field]]:
         if kind not in self._parsed:

@@ -103,10 +103,6 @@ class CdrReader:
     def octets(self) -> bytes:
         return self._read(self.number("I"))
 
-    def stamp_ns(self) -> int:
-        """Read a builtin_interfaces/Time [ns]."""
-        return int(self.number("i")) * 1_000_000_000 + int(self.number("I"))
-
     def end(self) -> None:
         """Check that the message ends here, but for padding to a multiple of four bytes."""
         if len(self._data) - self._at > 3:

@@ -24,7 +24,8 @@ import numpy.typing as npt
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage
 from grader.recording.view import Times
-from grader.rosidl.cdr import MARK, CdrReader, CdrWriter, string, string_of
+from grader.rosidl.bag_types import BagTypes
+from grader.rosidl.cdr import MARK, CdrReader, string, string_of
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace, check
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import CmdVel, Event, EventError, from_json, to_json
@@ -34,6 +35,7 @@ Value = TypeVar("Value")
 
 POSE, COLOR, TWIST = "turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"
 STRING, LOG, IMAGE = "std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"
+_TYPES = BagTypes({})
 #: A pose, a colour and a command as CDR: the mark of little-endian plain CDR, then the fields.
 _CDR_MARK = tuple(MARK)
 _POSE_CDR = np.dtype([("mark", "u1", 4), ("fields", "<f4", 5)])
@@ -100,33 +102,20 @@ def _input(event: Event) -> BagMessage:
 
 
 def _log(tick: int, severity: str, name: str, text: str) -> bytes:
-    made = CdrWriter()
-    _stamp(made, tick)
-    made.number("B", LEVELS[severity])
-    for each in (name, text, "", ""):  # no file, no function
-        made.text(each)
-    made.number("I", 0)  # no line
-    return made.message()
+    values = {"stamp": _stamp(tick), "level": LEVELS[severity], "name": name, "msg": text}
+    return _TYPES.data(LOG, {**values, "file": "", "function": "", "line": 0})
 
 
 def _image(pixels: Pixels, encoding: str, tick: int) -> bytes:
     height, width, channels = pixels.shape
-    made = CdrWriter()
-    _stamp(made, tick)
-    made.text("")
-    made.number("I", height)
-    made.number("I", width)
-    made.text(encoding)
-    made.number("B", 0)
-    made.number("I", width * channels)
-    made.octets(pixels.tobytes())
-    return made.message()
+    values = {"header": {"stamp": _stamp(tick), "frame_id": ""}, "height": height, "width": width}
+    layout = {"encoding": encoding, "is_bigendian": 0, "step": width * channels}
+    return _TYPES.data(IMAGE, {**values, **layout, "data": pixels.ravel()})
 
 
-def _stamp(made: CdrWriter, tick: int) -> None:
+def _stamp(tick: int) -> dict[str, int]:
     seconds, nanoseconds = divmod(tick * TICK_NS, 1_000_000_000)
-    made.number("i", seconds)
-    made.number("I", nanoseconds)
+    return {"sec": seconds, "nanosec": nanoseconds}
 
 
 # Channels to a trace --------------------------------------------------------------------------
@@ -204,12 +193,8 @@ def _inputs(channel: Channel) -> Iterator[Event]:
 
 def _logs(channel: Channel) -> Iterator[Log]:
     for tick, data in zip(_ticks(channel).tolist(), channel.messages(), strict=True):
-        read = CdrReader(data)
-        read.stamp_ns()
-        severity, name, text = SEVERITIES[read.number("B")], read.text(), read.text()
-        read.text(), read.text(), read.number("I")
-        read.end()
-        yield Log(tick, severity, name, text)
+        values = _TYPES.values(data, LOG)
+        yield Log(tick, SEVERITIES[values["level"]], values["name"], values["msg"])
 
 
 def _trajectory(poses: Channel, colors: Channel) -> Trajectory:
@@ -224,7 +209,7 @@ def _picture(channel: Channel) -> Pixels:
         found = f"{len(channel)} of {channel.msgtype}"
         raise ValueError(f"{channel.topic}: expected one {IMAGE}, found {found}")
     read = CdrReader(next(channel.messages()))
-    read.stamp_ns(), read.text()
+    read.number("i"), read.number("I"), read.text()  # its header
     height, width, encoding = read.number("I"), read.number("I"), read.text()
     read.number("B"), read.number("I")
     data = read.octets()

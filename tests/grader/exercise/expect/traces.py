@@ -7,57 +7,40 @@ from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import parse
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recording, Recordings, Run
+from grader.rosidl.bag_types import BagTypes
 from grader.scenes.scene import STEP_NS
-from tests.grader.recording.slow_bag import types_of
 
-DEFINITIONS = {
-    "std_msgs/msg/String": "string data",
-    "std_msgs/msg/Float64": "float64 data",
-    "rcl_interfaces/msg/Log": "uint8 level\nstring msg",
-    "std_msgs/msg/Header": "string frame_id",
-    "geometry_msgs/msg/Vector3": "float64 x\nfloat64 y\nfloat64 z",
-    "geometry_msgs/msg/Quaternion": "float64 x\nfloat64 y\nfloat64 z\nfloat64 w",
-    "geometry_msgs/msg/Transform": "Vector3 translation\nQuaternion rotation",
-    "geometry_msgs/msg/TransformStamped": (
-        "std_msgs/Header header\nstring child_frame_id\nTransform transform"
-    ),
-    "tf2_msgs/msg/TFMessage": "geometry_msgs/TransformStamped[] transforms",
-}
-TYPES = types_of(DEFINITIONS)
+TYPES, NOW = BagTypes({}), {"sec": 0, "nanosec": 0}
 TICKS_A_S = 1_000_000_000 / STEP_NS
 
 
-def sent(at_s: float, topic: str, kind: str, *values: Any, node: str = "/node") -> SentMessage:
+def sent(at_s: float, topic: str, kind: str, *, node: str = "/node", **values: Any) -> SentMessage:
     """Make a message with these values of its fields."""
-    message = TYPES.types[kind](*values)
-    return SentMessage(
-        round(at_s * 1e9), topic, kind, node, bytes(TYPES.serialize_cdr(message, kind))
-    )
+    return SentMessage(round(at_s * 1e9), topic, kind, node, TYPES.data(kind, values))
 
 
 def text(at_s: float, topic: str, value: str, **more: Any) -> SentMessage:
-    return sent(at_s, topic, "std_msgs/msg/String", value, **more)
+    return sent(at_s, topic, "std_msgs/msg/String", data=value, **more)
 
 
 def number(at_s: float, topic: str, value: float, **more: Any) -> SentMessage:
-    return sent(at_s, topic, "std_msgs/msg/Float64", value, **more)
+    return sent(at_s, topic, "std_msgs/msg/Float64", data=value, **more)
 
 
 def line(at_s: float, value: str, level: int = 20) -> SentMessage:
-    return sent(at_s, "/rosout", "rcl_interfaces/msg/Log", level, value)
+    values = {"stamp": NOW, "name": "", "file": "", "function": "", "line": 0}
+    return sent(at_s, "/rosout", "rcl_interfaces/msg/Log", level=level, msg=value, **values)
 
 
 def transform(
     at_s: float, parent: str, child: str, *numbers: float, topic: str = "/tf"
 ) -> SentMessage:
     """A transform by x, y, z and a quaternion."""
-    made = TYPES.types
-    move = made["geometry_msgs/msg/Vector3"](*numbers[:3])
-    turn = made["geometry_msgs/msg/Quaternion"](*numbers[3:])
-    each = made["geometry_msgs/msg/TransformStamped"](
-        made["std_msgs/msg/Header"](parent), child, made["geometry_msgs/msg/Transform"](move, turn)
-    )
-    return sent(at_s, topic, "tf2_msgs/msg/TFMessage", [each])
+    move = dict(zip("xyz", numbers[:3], strict=True))
+    turn = dict(zip("xyzw", numbers[3:], strict=True))
+    header, moved = {"stamp": NOW, "frame_id": parent}, {"translation": move, "rotation": turn}
+    each = {"header": header, "child_frame_id": child, "transform": moved}
+    return sent(at_s, topic, "tf2_msgs/msg/TFMessage", transforms=[each])
 
 
 def endpoint(
@@ -79,7 +62,7 @@ def trace(*parts: Any, length_s: float = 10) -> CastTrace:
     )
     events = tuple(p for p in parts if isinstance(p, dict))
     ticks = round(length_s * TICKS_A_S)
-    return CastTrace(ticks, tuple(messages), events, ("/peer",), DEFINITIONS)
+    return CastTrace(ticks, tuple(messages), events, ("/peer",))
 
 
 def judged(
