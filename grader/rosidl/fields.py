@@ -10,9 +10,8 @@ from typing import Final, NamedTuple
 
 #: A type with its bounds, a name, and of a constant its value.
 _LINE: Final = re.compile(
-    r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<longest>\d{1,18}))?"
-    r"(?P<array>\[(?:<=)?(?P<size>\d{0,18})\])?[ \t]+(?P<name>[A-Za-z]\w*)[ \t]*"
-    r"(?:=[ \t]*(?P<value>.*))?"
+    r"([A-Za-z][\w/]*)(?:<=(\d{1,18}))?(\[(?:<=)?(\d{0,18})\])?"
+    r"[ \t]+([A-Za-z]\w*)[ \t]*(?:=[ \t]*(.*))?"
 )
 
 
