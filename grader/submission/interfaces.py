@@ -13,10 +13,10 @@ from typing import Any, Final, NamedTuple
 
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
-from grader.submission.examining import cmake
-from grader.submission.examining.known import DESKTOP
 from grader.rosidl.bag_types import description
 from grader.rosidl.fields import field_lines, readable
+from grader.submission.examining import cmake
+from grader.submission.examining.known import DESKTOP
 from grader.submission.folder import SubmissionFolder, read_bounded, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
 
