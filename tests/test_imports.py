@@ -38,6 +38,7 @@ GROUND = below(
     "grader",
     *("message", "translations", "errors", "text", "files", "scratch", "removal", "system"),
     *("linux", "requirements", "strict_json", "limited", "content", "extensions", "yaml_file"),
+    "expressions",
 )
 #: What the rooms above a run may import of those below it.
 RECORDED = below("grader", "recording", "exercise", "result")

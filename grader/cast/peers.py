@@ -19,11 +19,11 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.task import Future
 
 from grader.cast import script
-from grader.cast.expressions import ExpressionError, filled
 from grader.cast.recorder import CastRecorder
 from grader.cast.script import absolute
 from grader.cast.trace import TF
 from grader.cast.types import NoType, Types
+from grader.expressions import ExpressionError, filled
 from grader.rosidl.messages import make, plain, plain_value
 
 #: So often a peer is served in a tick at most; and after its last message: a callback of a future

@@ -17,8 +17,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any, Final, Literal
 
-from grader import strict_json
-from grader.cast import expressions
+from grader import expressions, strict_json
 from grader.cast.trace import TF
 from grader.message import msg
 from grader.recording.subject import Endpoint, EndpointKind, Role, RoleKind

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.cast import script
-from grader.cast.expressions import is_pattern
 from grader.exercise.comparing import is_number, is_range
+from grader.expressions import is_pattern
 from grader.message import msg
 from grader.rosidl.fields import Field, parse
 from grader.yaml_file import Mistake

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import ast
 import math
-import operator
-from collections.abc import Callable, Iterable, Iterator
-from itertools import pairwise
+from collections.abc import Iterable, Iterator
 from typing import Any
 
+from grader.expressions import Expression, ExpressionError
 from grader.submission.scopes import Found, Function, Source, last, scope_nodes
 
 #: The window's side [m], as turtlesim draws it.
@@ -34,28 +33,9 @@ _RING = [
     (MIDDLE_M + RING_M * math.cos(turn), MIDDLE_M + RING_M * math.sin(turn))
     for turn in (0.3, 1.2, 1.9, 2.8, 3.5, 4.4, 5.1, 6.0)
 ]
-_OPERATORS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-    ast.Pow: operator.pow,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-}
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "min": min,
-    "max": max,
-    "abs": abs,
-    "fabs": abs,
-    "float": float,
-    "hypot": math.hypot,
-    "sqrt": math.sqrt,
-}
-
-
+#: What is known of what stands in a source; its ints are floats.
+_SIGNS = ast.Add | ast.Sub | ast.Mult | ast.Div | ast.Pow | ast.Lt | ast.LtE | ast.Gt | ast.GtE
+_FUNCTIONS = {"fabs": "abs", **{n: n for n in ("min", "max", "abs", "float", "hypot", "sqrt")}}
 #: Methods that change what a list or a dict holds.
 _CHANGES = ("append", "extend", "insert", "pop", "remove", "clear", "update", "setdefault")
 
@@ -109,51 +89,43 @@ class Values:
         """
         self._steps = 0
         try:
-            found = self._of(node, x, y)
-        except (ArithmeticError, ValueError, TypeError, RecursionError) as error:
+            found = Expression("", self._resolve(node)).value({"x": x, "y": y})
+        except (ExpressionError, ArithmeticError, RecursionError) as error:
             raise Unknown from error
         if not isinstance(found, bool | float) or math.isnan(found):
             raise Unknown
         return found
 
-    def _of(self, node: ast.expr, x: float, y: float) -> Any:
+    def _resolve(self, node: ast.expr) -> ast.expr:
+        """Return an expression with what its names stand for: of numbers, x and y alone."""
         self._steps += 1
         if self._steps > MOST_STEPS:
             raise Unknown
-
-        def value(part: ast.expr) -> Any:
-            return self._of(part, x, y)
-
         match node:
             case ast.Constant(value=int() | float() as number):
-                return float(number)
-            case ast.UnaryOp(op=ast.USub(), operand=part):
-                return -value(part)
-            case ast.UnaryOp(op=ast.Not(), operand=part):
-                return not value(part)
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
-                return _OPERATORS[type(op)](value(left), value(right))
-            case ast.BoolOp(op=op, values=parts):
-                known = [value(part) for part in parts]
-                return all(known) if isinstance(op, ast.And) else any(known)
-            case ast.Compare(ops=ops) if all(type(op) in _OPERATORS for op in ops):
-                pairs = pairwise(map(value, (node.left, *node.comparators)))
-                each = [_OPERATORS[type(o)](*pair) for o, pair in zip(ops, pairs, strict=True)]
-                return all(each)
+                return ast.Constant(float(number))
+            case ast.UnaryOp(op=ast.USub() | ast.Not() as sign, operand=part):
+                return ast.UnaryOp(sign, self._resolve(part))
+            case ast.BinOp(left=left, op=sign, right=right) if isinstance(sign, _SIGNS):
+                return ast.BinOp(self._resolve(left), sign, self._resolve(right))
+            case ast.BoolOp(op=sign, values=parts):
+                return ast.BoolOp(sign, [*map(self._resolve, parts)])
+            case ast.Compare(ops=signs) if all(isinstance(sign, _SIGNS) for sign in signs):
+                others = [*map(self._resolve, node.comparators)]
+                return ast.Compare(self._resolve(node.left), signs, others)
             case ast.Call(func=called, args=args, keywords=[]) if last(called) in _FUNCTIONS:
-                return _FUNCTIONS[last(called)](*map(value, args))
+                name = ast.Name(_FUNCTIONS[last(called)])
+                return ast.Call(name, [*map(self._resolve, args)], [])
             case ast.Attribute(value=ast.Attribute(attr="linear" | "angular")):
                 raise Unknown
-            case ast.Attribute(attr="x") | ast.Name(id="x"):
-                return x
-            case ast.Attribute(attr="y") | ast.Name(id="y"):
-                return y
+            case ast.Attribute(attr="x" | "y" as name) | ast.Name(id="x" | "y" as name):
+                return ast.Name(name)
             case ast.Attribute() | ast.Name():
                 match self.assigned(last(node)):
                     case [ast.expr() as kept]:
-                        return value(kept)
+                        return self._resolve(kept)
             case ast.List(elts=parts) | ast.Tuple(elts=parts):
-                return [*map(value, parts)]
+                return ast.List([*map(self._resolve, parts)])
         raise Unknown
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from grader.cast import expressions, script
+from grader import expressions
+from grader.cast import script
 from grader.exercise.cases import USUAL, RunCase
 from grader.exercise.check import Checks
 from grader.exercise.expect import judging

@@ -16,13 +16,13 @@ from dataclasses import replace
 from itertools import pairwise, zip_longest
 from typing import Any, Final
 
-from grader.cast.expressions import MOST_STEPS, ExpressionError, filled
 from grader.cast.script import absolute
 from grader.cast.trace import ROSOUT, CastTrace, Event, SentMessage
 from grader.exercise.cases import USUAL
 from grader.exercise.comparing import LONGEST_MATCHED, differences, shown
 from grader.exercise.expect import expectations as e
 from grader.exercise.verdict import Evidence, Finding
+from grader.expressions import MOST_STEPS, ExpressionError, filled
 from grader.message import Message, chained, msg
 from grader.recording.recording import Recording, Recordings
 from grader.rosidl.fields import field_lines

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from grader.cast.expressions import LONGEST_TEXT, MOST_STEPS, ExpressionError, check, filled, parse
+from grader.expressions import LONGEST_TEXT, MOST_STEPS, ExpressionError, check, filled, parse
 
 NAMES = {
     **{"n": 3, "text": "abc", "data": [1.5, 2.5], "pose": {"x": 1.0}, "zero": 0},

@@ -1,4 +1,4 @@
-"""Expressions in an exercise: `"=a + b"`, and texts with some: `"Hello World: {n}"`.
+"""Expressions of plain data: an exercise's `"=a + b"`, `"Hello World: {n}"`, a source's conditions.
 
 A fixed part of Python's syntax over plain data (numbers, texts, lists, and objects with fields),
 which is interpreted here: nothing can be imported, called or looked up but what is listed. What it
