@@ -35,11 +35,11 @@ from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
 from grader.run.simulator_process import Audience
 from grader.scenes.scene import Scene
-from grader.submission.folder import listed, shown
 from grader.submission.private_copy import missing_neighbours
 from grader.submission.reader import Marks
 from grader.submission.roles import is_among
 from grader.submission.start import Submission
+from grader.text import listed, shown
 
 Progress = Callable[[float], None]
 REPEATED = msg("repeated, because the first try failed in the grader")

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
-from difflib import SequenceMatcher
+from difflib import SequenceMatcher, get_close_matches
 from functools import cache
+from itertools import islice
 from typing import Any
 
-from grader.message import Message, msg, plain_text
+from grader.message import Message, Text, joined, msg, plain_text
 
 _ESCAPE_SEQUENCES = re.compile(
     r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)?|[@-Z\\^_])"
@@ -37,6 +38,8 @@ _SPELLED = str.maketrans(
 _ALIKE = 0.85
 #: Words of a name that are shorter are no misspellings of each other: last_x, last_y.
 _SHORT = 3
+#: A name is compared with so many others of this length at most: the time grows with its cube.
+_MOST_NAMES, _LONGEST_NAME = 200, 100
 
 
 def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str:
@@ -129,6 +132,29 @@ def clip_middle(text: str, limit: int) -> str:
     half = limit // 2
     left_out = len(text) - 2 * half
     return f"{text[:half]}\n[… {left_out} characters left out …]\n{text[-half:]}"
+
+
+def shown(text: object, limit: int = 300) -> str:
+    """Return a stranger's text or name as a sentence has it: one line of `limit` characters."""
+    return clip_inside(one_line(plain(clip_inside(str(text), 4 * limit))), limit)
+
+
+def listed(names: Iterable[Text], limit: int = 10) -> Message:
+    """Join names of strangers as in "a, b, c and 4 more"."""
+    every = list(names)
+    first = joined([shown(n) if isinstance(n, str) else n for n in every[:limit]], ", ")
+    if len(every) <= limit:
+        return first
+    return msg("{names} and {n:,} more", names=first, n=len(every) - limit)
+
+
+def nearest(wanted: str, names: Iterable[str], most: int = 3) -> list[str]:
+    """Pick the names that `wanted` may have meant: a typing error or another case; best first."""
+    if len(wanted) > _LONGEST_NAME:
+        return []
+    some = islice((name for name in names if len(name) <= _LONGEST_NAME), _MOST_NAMES)
+    by_folded = {name.casefold(): name for name in reversed(list(some))}
+    return [by_folded[name] for name in get_close_matches(wanted.casefold(), by_folded, most)]
 
 
 def points(value: float) -> str:

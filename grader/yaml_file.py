@@ -6,7 +6,6 @@ import math
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ import yaml
 
 from grader.errors import ExerciseError
 from grader.message import Message, joined, msg
+from grader.text import nearest
 
 #: The keys that lead to a value in a file.
 Keys = tuple[str, ...]
@@ -163,11 +163,10 @@ def check_known(
 def did_you_mean(key: object, known: Iterable[object]) -> Message:
     """Suggest what an unknown key may have meant, and list those that there are."""
     names = [str(name) for name in known]
-    near = get_close_matches(str(key), names, n=1)
-    listed = ", ".join(names)
-    if not near:
-        return msg("there are {names}", names=listed)
-    return msg("did you mean {near}? There are {names}", near=repr(near[0]), names=listed)
+    there = {"names": ", ".join(names)}
+    if near := nearest(str(key), names):
+        return msg("did you mean {near}? There are {names}", near=repr(near[0]), **there)
+    return msg("there are {names}", **there)
 
 
 def is_amount(value: object) -> bool:

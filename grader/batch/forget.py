@@ -7,7 +7,6 @@ where a call is cut off, the same one finds the student again, and does the rest
 
 from __future__ import annotations
 
-import difflib
 import os
 import shutil
 from collections.abc import Sequence
@@ -29,7 +28,7 @@ from grader.reports import Report, render
 from grader.reports.beside import Beside
 from grader.result.result import PAGE, RESULT
 from grader.result.visible import View
-from grader.submission.folder import listed
+from grader.text import listed, nearest
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ def _find(student: str, kept: Sequence[Entry]) -> Person:
     ids = ids or [id for id, texts in called.items() if wanted in texts]
     if len(ids) == 1:
         return people[ids[0]]
-    like = difflib.get_close_matches(wanted, {text for texts in called.values() for text in texts})
+    like = nearest(wanted, {text for texts in called.values() for text in texts})
     ids = ids or [id for id, texts in called.items() if texts & {*like}]
     if not ids:
         raise UsageError(

@@ -157,7 +157,7 @@ def _named(found: Found, messages: Console) -> str:
     """Return the one exercise that hand-ins name, else the default one."""
     from grader import grading
     from grader.run.opening import marks_of
-    from grader.submission.folder import listed
+    from grader.text import listed
 
     named: dict[str, list[str]] = {}
     said = NOTHING
@@ -264,7 +264,7 @@ def _grade(
     from grader.batch import batch, class_file, pool
     from grader.batch.store import ASIDE
     from grader.cli import class_progress
-    from grader.submission.folder import listed
+    from grader.text import listed
 
     planned = batch.plan(found.hand_ins, order, store)
     if args.scheduler:

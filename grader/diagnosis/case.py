@@ -1,4 +1,4 @@
-"""A run as the rules see it, and their words for a place, a time and an excerpt of its text.
+"""A run as the rules see it, and their words for a place and a time.
 
 Where a process has reported no observations, its output is searched for how it ended. What a
 program prints is as untrusted as what it reports.
@@ -28,7 +28,7 @@ from grader.recording.observations import (
 )
 from grader.recording.recording import ProgramRun, Recording, Run
 from grader.recording.subject import Endpoint, EndpointKind, load_subject
-from grader.text import clip, one_line, plain
+from grader.text import shown
 
 #: The endpoint that an end of the submission's needs on the other side.
 OPPOSITE: dict[EndKind, EndpointKind] = {
@@ -37,7 +37,6 @@ OPPOSITE: dict[EndKind, EndpointKind] = {
     "client": "service",
     "action_client": "action",
 }
-_LONGEST = 200
 #: Shown as 0.0 [s].
 _AT_ONCE_S = 0.05
 #: So much of the end of an output is searched [characters].
@@ -208,11 +207,6 @@ def first_of(case: Case, kind: LintKind) -> SourceLine | None:
     return next((finding.place for finding in of_kind(case, kind)), None)
 
 
-def excerpt(text: str) -> str:
-    """Return a text of the submission's, clipped to one safe line; the same in any language."""
-    return clip(one_line(plain(text[: 4 * _LONGEST])), _LONGEST)
-
-
 def sentences(*texts: Message) -> Message:
     """Join sentences by blanks; empty ones are left out."""
     return joined([text for text in texts if text], " ")
@@ -222,12 +216,12 @@ def line(place: SourceLine | None) -> Message:
     """' (drive.py, line 39)', with a space before it; '' for no place."""
     if place is None:
         return NOTHING
-    return msg(" ({file}, line {line})", file=excerpt(place.file), line=place.line)
+    return msg(" ({file}, line {line})", file=shown(place.file), line=place.line)
 
 
 def function(place: SourceLine | None) -> str:
     """'on_pose()'; '' for no function."""
-    name = excerpt(place.function).rpartition(".")[2] if place is not None else ""
+    name = shown(place.function).rpartition(".")[2] if place is not None else ""
     return f"{name}()" if name else ""
 
 
@@ -260,10 +254,10 @@ def filled(sentence: Message, words: Mapping[str, Any]) -> Message:
 
 def words_of(finding: LintFinding) -> dict[str, Any]:
     """Return the words of sentences about a lint finding."""
-    code, where = excerpt(finding.place.text), line(finding.place)
+    code, where = shown(finding.place.text), line(finding.place)
     return {
-        "name": excerpt(finding.name),
-        "near": excerpt(finding.near),
+        "name": shown(finding.name),
+        "near": shown(finding.near),
         "code": code,
         "where": where,
     }

@@ -11,12 +11,13 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from grader.diagnosis import lint_findings, standstill
-from grader.diagnosis.case import OPPOSITE, Case, at, diagnosed, excerpt, of_kind, since
+from grader.diagnosis.case import OPPOSITE, Case, at, diagnosed, of_kind, since
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg
 from grader.recording.observations import End, EndKind
 from grader.recording.subject import Endpoint
+from grader.text import shown
 
 #: So alike two names have to be, 0 to 1, for one to be meant by the other.
 _ALIKE = 0.75
@@ -73,7 +74,7 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
             if near.type == wait.type:
                 continue
             rest = msg(
-                " as {type}, but it is of type {wanted}", type=excerpt(wait.type), wanted=near.type
+                " as {type}, but it is of type {wanted}", type=shown(wait.type), wanted=near.type
             )
         elif any(e.name == wait.name for e in there):
             continue
@@ -181,7 +182,7 @@ def is_defined_otherwise(case: Case) -> Diagnosis | None:
                 ),
                 msg("Define it as the exercise does, or leave the package out."),
                 end.place,
-                type=excerpt(end.type),
+                type=shown(end.type),
                 how=how,
             )
     return None
@@ -256,8 +257,8 @@ def _first(
             cause if end.used else of_unused or cause,
             fix,
             place,
-            name=excerpt(end.name),
-            type=excerpt(end.type),
+            name=shown(end.name),
+            type=shown(end.type),
             what=_served(kind, end.name),
             the_thing=case.whose(near),
             wanted=near.type if end.name == near.name else _near(end, near),
@@ -343,8 +344,8 @@ def _meets_itself(case: Case, end: End) -> bool:
 def _served(kind: EndKind, name: str) -> Message:
     """Name what a client of this kind calls: 'the service /spawn'."""
     if kind == "action_client":
-        return msg("the action {name}", name=excerpt(name))
-    return msg("the service {name}", name=excerpt(name))
+        return msg("the action {name}", name=shown(name))
+    return msg("the service {name}", name=shown(name))
 
 
 def _near(end: End, near: Endpoint) -> str | Message:

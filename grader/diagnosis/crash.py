@@ -9,20 +9,12 @@ from dataclasses import replace
 from signal import Signals
 
 from grader.diagnosis import lint_findings, lint_hints
-from grader.diagnosis.case import (
-    Case,
-    diagnosed,
-    excerpt,
-    line,
-    of_kind,
-    sentences,
-    thread_exception,
-)
+from grader.diagnosis.case import Case, diagnosed, line, of_kind, sentences, thread_exception
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import Hint
 from grader.message import NOTHING, Message, msg, plain_text
 from grader.recording.observations import Raised, SourceLine
-from grader.text import clip
+from grader.text import clip, shown
 
 #: The error of a generated message class that refuses a value.
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
@@ -67,7 +59,7 @@ def unreadable(case: Case) -> Diagnosis | None:
     raised = case.raised
     if raised is None:
         return None
-    text = excerpt(raised.text)
+    text = shown(raised.text)
     help_ = msg(
         "Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."
     )
@@ -86,8 +78,8 @@ def unreadable(case: Case) -> Diagnosis | None:
             "Look at that line and the one above it: a bracket, quote or colon that"
             " is missing is noticed only where something else begins."
         )
-        shown = f"{text}\n{raised.place.text if raised.place is not None else ''}"
-        fitting = (advice for sign, advice in _NOT_PYTHON.items() if re.search(sign, shown))
+        whole = f"{text}\n{raised.place.text if raised.place is not None else ''}"
+        fitting = (advice for sign, advice in _NOT_PYTHON.items() if re.search(sign, whole))
         help_ = next(fitting, help_)
         if raised.type != "SyntaxError":
             help_ = msg(
@@ -110,7 +102,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
     given = lint_findings.given_at(case, found["field"], _fitting(found["what"]))
     place = given.place if given is not None else place
     number = given.near if given is not None else ""
-    what, help_ = _wanted(found["field"], excerpt(found["what"]), place, number)
+    what, help_ = _wanted(found["field"], shown(found["what"]), place, number)
     for finding in of_kind(case, "comma"):
         if place is not None and re.search(rf"\b{re.escape(finding.name)}\b", place.text):
             place = finding.place
@@ -121,7 +113,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
     cause = msg(
         "The field {field} of a message must be {what}; something else was given{at}{where}."
     )
-    field = excerpt(found["field"])
+    field = shown(found["field"])
     return diagnosed("wrong_value", cause, help_, place, when, field=field, what=what)
 
 
@@ -143,7 +135,7 @@ def _wanted(
     """Return what a field must be, and how to write it; `number`: that it was given, or ''."""
     text = place.text if place is not None else ""
     literal = re.search(rf"\b{field}\s*=\s*([-+]?\d{{1,20}}(?:\.\d{{0,20}})?)(?![\w.])", text)
-    number = literal[1] if literal else excerpt(number)
+    number = literal[1] if literal else shown(number)
     if (size := re.search(r"sequence with length (?:<= )?(\d{1,9})", what)) is not None:
         is_most = "<=" in size[0]
         listed = msg("a list of at most {n} values") if is_most else msg("a list of {n} values")
@@ -191,7 +183,7 @@ def _wanted(
             )
         return msg("a {name}", name=name), msg(
             "Set the parts of {field} one by one, as in msg.{field}.{part} = 1.0.",
-            field=excerpt(field),
+            field=shown(field),
             part="z" if field == "angular" else "x",
         )
     return plain_text(what.rstrip(".")), msg(
@@ -213,8 +205,8 @@ def unanswered(case: Case) -> Diagnosis | None:
                 msg("Write `return {answer}` at the end of {name}()."),
                 finding.place,
                 _when(case, raised),
-                name=excerpt(finding.name),
-                answer=excerpt(finding.near),
+                name=shown(finding.name),
+                answer=shown(finding.near),
             )
     return None
 
@@ -233,16 +225,16 @@ def ended_itself(case: Case) -> Diagnosis | None:
             if finding.place.line == getattr(raised.place, "line", 0):
                 help_ = msg(
                     "That line is reached where `{test}` is true: is that the right way round?",
-                    test=excerpt(finding.name),
+                    test=shown(finding.name),
                 )
-        text = excerpt(raised.text)
+        text = shown(raised.text)
         value = text if text.isdecimal() else repr(text)
         cause = msg("Your program ended itself{at} by sys.exit({value}){where}.", value=value)
         return diagnosed("ended_itself", cause, help_, raised.place, _when(case, raised))
     if raised is not None:
         return None
     cause = msg("Your program ended with exit code {exit_code}, by no exception.")
-    if last := excerpt(case.last_line):
+    if last := shown(case.last_line):
         cause = msg(
             "Your program ended with exit code {exit_code}, by no exception; the last that it "
             "printed is: {last!r}."
@@ -290,7 +282,7 @@ def misses_message(case: Case) -> bool:
 
 def _error(raised: Raised, hint: Hint) -> Message:
     """Return ': TypeError: its text', or ' (TypeError): ' and the hint's text."""
-    name, text = excerpt(raised.type).rpartition(".")[2], excerpt(raised.text).rstrip(".")
+    name, text = shown(raised.type).rpartition(".")[2], shown(raised.text).rstrip(".")
     if hint.text:
         return msg(" ({name}): {error}", name=name, error=hint.text)
     text = clip(text, _LONGEST_ERROR)
@@ -310,7 +302,7 @@ def killed(case: Case) -> Diagnosis | None:
     if run.outcome != "killed":
         return None
     raised = case.raised
-    name = excerpt(raised.type) if raised is not None else _signal(run.exit_code)
+    name = shown(raised.type) if raised is not None else _signal(run.exit_code)
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     signal = msg(" by the signal {name}", name=name) if name else ""
     cause = msg("Your program was killed{at}{signal}{where}.", signal=signal)

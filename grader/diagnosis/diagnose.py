@@ -23,14 +23,14 @@ from grader.diagnosis import (
     standstill,
     unnoticed,
 )
-from grader.diagnosis.case import Case, excerpt, first_of, line, sentences
+from grader.diagnosis.case import Case, first_of, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.verdict import Verdict
 from grader.message import msg
 from grader.recording.observations import LintKind
 from grader.recording.recording import Recordings
 from grader.recording.subject import Endpoint
-from grader.text import in_one_line
+from grader.text import in_one_line, shown
 
 Rule = Callable[[Case], Diagnosis | None]
 #: Rules about what keeps a run from going on.
@@ -129,7 +129,7 @@ def _in_run(found: Diagnosis, case: Case, number: int) -> Diagnosis:
     """Add the run's number to a diagnosis, and whose it is; make it fit to be shown."""
     cause = found.cause
     if case.failed is not None:
-        cause = msg("{program}: {cause}", program=excerpt(case.failed.name), cause=cause)
+        cause = msg("{program}: {cause}", program=shown(case.failed.name), cause=cause)
     if number:
         cause = msg("In varied run {number}: {cause}", number=number, cause=cause)
     return _shown(replace(found, run=number, cause=cause))
@@ -140,9 +140,9 @@ def _shown(found: Diagnosis) -> Diagnosis:
     if place is not None:
         place = replace(
             place,
-            file=excerpt(place.file),
-            function=excerpt(place.function),
-            text=excerpt(place.text),
+            file=shown(place.file),
+            function=shown(place.function),
+            text=shown(place.text),
         )
     cause, help_ = in_one_line(found.cause), in_one_line(found.help)
     return replace(found, cause=cause, help=help_, place=place)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 import sys
 
-from grader.diagnosis.case import Case, diagnosed, excerpt, filled, of_kind, words_of
+from grader.diagnosis.case import Case, diagnosed, filled, of_kind, words_of
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg
 from grader.recording.observations import Raised
-from grader.text import misspelt
+from grader.text import misspelt, shown
 
 #: Python's suffix to some errors, which helps nobody.
 _PATH = re.compile(r" \((/[^()]*|unknown location)\)$")
@@ -47,7 +47,7 @@ def not_importable(case: Case) -> Diagnosis | None:
     hidden = hidden or _not_generated(case, raised)
     if hidden is not None:
         return hidden
-    text = _PATH.sub("", excerpt(raised.text))
+    text = _PATH.sub("", shown(raised.text))
     cause = msg("Your program cannot import what it needs: {type}: {text}{where}.")
     help_ = msg(
         "Compare the name with the one in the exercise or in ROS's "
@@ -88,7 +88,7 @@ def _better(text: str) -> Message | None:
         return msg(
             "{name} is not installed where your node is graded: leave it out. A module of your "
             "own has to be in what you hand in. Compare the name.",
-            name=excerpt(found[1]),
+            name=shown(found[1]),
         )
     return None
 
@@ -147,7 +147,7 @@ def _of_own_module(case: Case, raised: Raised) -> Message | None:
             has = msg("Your module {module} has {near}, not {name}: write that.")
             if "," in finding.near:
                 has = msg("Your module {module} has no {name}; it has: {near}.")
-            return filled(has, words_of(finding) | {"module": excerpt(found[2])})
+            return filled(has, words_of(finding) | {"module": shown(found[2])})
     return None
 
 
@@ -157,7 +157,7 @@ def _circular(case: Case, raised: Raised) -> Diagnosis | None:
         return None
     found = sorted(of_kind(case, "circular"), key=lambda each: each.near, reverse=True)
     for finding in found:  # first one that nothing uses
-        here, there = excerpt(finding.place.file), excerpt(finding.name)
+        here, there = shown(finding.place.file), shown(finding.name)
         help_ = msg("Move what both of them need into a third file, and import that in both.")
         if finding.near:
             help_ = msg("Take that import out: {file} uses nothing of it.", file=here)
@@ -178,7 +178,7 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
     is_named_so = file == f"{name}.py"
     if not is_named_so and (found.re is _FROM or name in sys.stdlib_module_names):
         return None
-    name = excerpt(name)
+    name = shown(name)
     which = (
         msg("Your file is itself called {name}.py", name=name)
         if is_named_so
@@ -201,9 +201,9 @@ def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
     finding = next((each for each in found if f"'{each.name}'" in raised.text), None)
     if finding is None:
         return None
-    name, near = excerpt(finding.name), excerpt(finding.near)
+    name, near = shown(finding.name), shown(finding.near)
     package = near.rpartition(".")[0]
-    written = excerpt(finding.place.text)
+    written = shown(finding.place.text)
     instead = f"from {package} import {name}"
     if written.startswith(f"from {name} import "):
         instead = written.replace(f"from {name} ", f"from {near} ", 1)

@@ -10,9 +10,10 @@ import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.diagnosis.case import excerpt, filled
+from grader.diagnosis.case import filled
 from grader.message import NOTHING, Message, msg
 from grader.recording.observations import Caught, Raised, SourceLine
+from grader.text import shown
 
 #: So much of an exception's text is searched [characters].
 _LONGEST = 1000
@@ -130,7 +131,7 @@ class _Rule(NamedTuple):
         in_code = re.search(pattern, code or "")
         if in_code is None:
             return None
-        return {name: excerpt(word) for name, word in (words | in_code.groupdict()).items()}
+        return {name: shown(word) for name, word in (words | in_code.groupdict()).items()}
 
 
 _RULES = (

@@ -9,11 +9,12 @@ import math
 import re
 from collections.abc import Callable
 
-from grader.diagnosis.case import Case, diagnosed, diagnosed_by, excerpt, first_of, line, of_kind
+from grader.diagnosis.case import Case, diagnosed, diagnosed_by, first_of, line, of_kind
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.standstill import hears_once, never_spins
 from grader.message import Message, msg
 from grader.recording.observations import LintFinding, SourceLine
+from grader.text import shown
 
 #: Words of checks about a stop that did not come, or came at once.
 _ABOUT_STOPPING = ("wall", "zeros")
@@ -63,7 +64,7 @@ def given_at(case: Case, field: str, fits: Callable[[str], bool]) -> LintFinding
 
 def in_other_order(finding: LintFinding) -> tuple[Message, Message]:
     """Say that a function is given its arguments in another order, and what to do."""
-    name, takes = excerpt(finding.name), excerpt(finding.near)
+    name, takes = shown(finding.name), shown(finding.near)
     return (
         msg("{name}() takes ({takes}), and is given them in another order", name=name, takes=takes),
         msg("Give them in the order of `def {name}`: ({takes}).", name=name, takes=takes),
@@ -176,7 +177,7 @@ def awaits(case: Case) -> Diagnosis | None:
             "Send the request by call_async(request) and go on, without "
             "spin_until_future_complete()."
         )
-        cause = cause.given(call=excerpt(finding.near))
+        cause = cause.given(call=shown(finding.near))
         return diagnosed_by(finding, "stuck_in_callback", cause, help_)
     for finding in of_kind(case, "awaits"):
         return diagnosed_by(
@@ -198,7 +199,7 @@ def called_at_once(case: Case) -> Diagnosis | None:
     """A function that was to run in a thread runs in the main program, which gets no further."""
     sends = any(end.used for end in case.observed.ends if end.kind == "publisher")
     for finding in of_kind(case, "called"):
-        name, near = excerpt(finding.name), excerpt(finding.near)
+        name, near = shown(finding.name), shown(finding.near)
         is_spin = name.rpartition(".")[2] == "spin"
         goes_on = sends if is_spin else never_spins(case) is None
         if goes_on and case.observed.spun_s is not None:

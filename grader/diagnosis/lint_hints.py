@@ -13,13 +13,13 @@ from itertools import chain
 from typing import Any
 
 from grader.diagnosis import known_exceptions
-from grader.diagnosis.case import Case, excerpt, filled, function, of_kind, words_of
+from grader.diagnosis.case import Case, filled, function, of_kind, words_of
 from grader.diagnosis.known_exceptions import Hint
 from grader.diagnosis.lint_findings import in_other_order
 from grader.message import NOTHING, Message, as_message, msg
 from grader.recording.observations import LintFinding, LintKind, Raised
 from grader.rosidl.fields import readable
-from grader.text import misspelt
+from grader.text import misspelt, shown
 
 #: So much of an exception's text is searched [characters].
 _LONGEST = 1000
@@ -68,7 +68,7 @@ def _not_global(case: Case, raised: Raised) -> Iterator[Hint]:
                 outside=msg("at the top of the file") if is_of_module else msg("outside"),
                 line=finding.place.line,
                 here=as_message(function(raised.place)) or msg("this function"),
-                word=excerpt(finding.near),
+                word=shown(finding.near),
             )
             yield replace(hint, place=None)
 
@@ -79,7 +79,7 @@ def _without_self(case: Case, raised: Raised) -> Iterator[Hint]:
         return
     for finding in of_kind(case, "without_self"):
         if finding.name == found[1]:
-            before, _, rest = excerpt(finding.place.text).partition("(")
+            before, _, rest = shown(finding.place.text).partition("(")
             rest = rest.lstrip()
             comma = "" if rest.startswith(")") else ", "
             help_ = msg("A method takes self before all else: write `{written}`.")
@@ -101,7 +101,7 @@ def _misplaced(case: Case, raised: Raised) -> Iterator[Hint]:
         if found is not None and finding.name == found[1]:
             how = msg("too little: it is outside of the class")
             if finding.near:
-                how = msg("too far: it is inside {outer}()", outer=excerpt(finding.near))
+                how = msg("too far: it is inside {outer}()", outer=shown(finding.near))
             yield _hint(
                 finding,
                 msg(
@@ -129,7 +129,7 @@ def _lacks_entry(case: Case, raised: Raised) -> Iterator[Hint]:
         elif is_text:
             help_ = msg("Write {key}: instead of '{key}': there, and so on.")
             text = msg("{name} has the text '{key}', and is asked for the number {key}")
-        words = {"has": excerpt(finding.near), "index": excerpt(index), "key": excerpt(raised.text)}
+        words = {"has": shown(finding.near), "index": shown(index), "key": shown(raised.text)}
         hint = _hint(finding, help_, text, **words)
         yield hint if is_text and not is_index else replace(hint, place=None)
 
@@ -144,7 +144,7 @@ def _is_zero(case: Case, raised: Raised) -> Iterator[Hint]:
                 msg("Let it begin with another number: {name} = {other}."),
                 msg("line {line} divides by {name}, which begins with {number}"),
                 line=place.line,
-                number=excerpt(finding.near),
+                number=shown(finding.near),
                 other="0.1" if "." in finding.near else "1",
             )
 
@@ -177,7 +177,7 @@ def _hidden_method(case: Case, raised: Raised) -> Iterator[Hint]:
     if "object is not callable" not in raised.text[:_LONGEST] or raised.place is None:
         return
     for finding in of_kind(case, "method"):
-        if f"self.{excerpt(finding.name)}(" in raised.place.text:
+        if f"self.{shown(finding.name)}(" in raised.place.text:
             help_ = msg(
                 "self.{name} is set to something else{where}, and that hides the method "
                 "{name}(): give one of them another name."
@@ -189,7 +189,7 @@ def _class_given(case: Case, raised: Raised) -> Iterator[Hint]:
     place = raised.place
     for finding in of_kind(case, "class"):
         if place is not None and ("spin" in place.text or place.line == finding.place.line):
-            call, name = excerpt(finding.near), excerpt(finding.name)
+            call, name = shown(finding.near), shown(finding.name)
             yield Hint(
                 msg(
                     "The parentheses are missing: node = {name}(), then {call}(node).",
@@ -216,7 +216,7 @@ def _service_for_request(case: Case, raised: Raised) -> Iterator[Hint]:
     if name in services:
         help_ = msg("Write {name}.Request(...) there: that is what a request is made of.")
         what = msg("{name} is the service, not a request to it")
-        yield Hint(help_.given(name=excerpt(name)), what.given(name=excerpt(name)))
+        yield Hint(help_.given(name=shown(name)), what.given(name=shown(name)))
 
 
 def _misspelt_field(case: Case, raised: Raised) -> Iterator[Hint]:
@@ -225,7 +225,7 @@ def _misspelt_field(case: Case, raised: Raised) -> Iterator[Hint]:
     for name, text in case.recording.interfaces.texts.items() if found is not None else ():
         for field in (each.name for each in readable(text) if each.value is None):
             if found is not None and field != found[1] and misspelt(field, found[1]):
-                words = {"field": field, "name": excerpt(found[1]), "type": name}
+                words = {"field": field, "name": shown(found[1]), "type": name}
                 yield Hint(
                     msg("Write {field} there.", field=field),
                     msg("{type} has no field {name}; it has {field}", **words),
@@ -237,7 +237,7 @@ def _misspelt(case: Case, raised: Raised) -> Iterator[Hint]:
     found = _NO_ATTRIBUTE.search(raised.text[:_LONGEST])
     if found is None or raised.place is None or f".{found[1]}" not in raised.place.text:
         return
-    name = excerpt(found[1])
+    name = shown(found[1])
     for finding in of_kind(case, "local"):
         if finding.name == found[1] and finding.near == f"self.{found[1]}":
             yield _hint(
@@ -255,7 +255,7 @@ def _misspelt(case: Case, raised: Raised) -> Iterator[Hint]:
                     "compare the names"
                 ),
                 name=name,
-                other=excerpt(finding.name),
+                other=shown(finding.name),
             )
     for finding in of_kind(case, "never_set"):
         if finding.name == found[1] and "__init__" in finding.place.text:
@@ -284,7 +284,7 @@ def _wrong_callback(case: Case, raised: Raised) -> Iterator[Hint]:
     if missing is None:
         return
     for finding in of_kind(case, "entry") if missing[1] == "main" else ():
-        takes = excerpt(finding.near)
+        takes = shown(finding.near)
         with_none = ", ".join(f"{each}=None" for each in takes.split(", "))
         yield Hint(
             msg("Write `def main({takes}):` there.", takes=with_none),
@@ -355,7 +355,7 @@ def _calls_itself(case: Case, raised: Raised) -> Iterator[Hint]:
         if finding.near == "ros":
             help_ = msg("Leave that call out: ROS calls {name}() again and again by itself.")
         text = msg("{name}() calls itself without end")
-        yield _hint(finding, help_, text, again=excerpt(finding.near))
+        yield _hint(finding, help_, text, again=shown(finding.near))
 
 
 def _none_for_a_value(case: Case, raised: Raised) -> Iterator[Hint]:
@@ -379,20 +379,20 @@ def _none_for_a_value(case: Case, raised: Raised) -> Iterator[Hint]:
     for finding in of_kind(case, "no_return"):
         names = rf"\b(?:{re.escape(finding.name)}|{re.escape(finding.near)})\b"
         if re.search(names, raised.place.text):
-            name = excerpt(finding.near)
+            name = shown(finding.near)
             printed = _PRINTED.match(finding.place.text)
             text = msg("{name}() returns nothing, that is None", name=name)
             help_ = msg("End {name}() with `return` and its result.", name=name)
             if printed is not None:
                 text = msg("{name}() prints its result and returns None", name=name)
-                help_ = msg("Write `return {result}` there.", result=excerpt(printed[1]))
+                help_ = msg("Write `return {result}` there.", result=shown(printed[1]))
             yield Hint(help_, text, finding.place)
     for finding in of_kind(case, "no_effect"):
         yield _hint(
             finding,
             msg("Write return before it, if that is what you mean."),
             msg("a function returned None; nothing uses what `{code}` is"),
-            code=excerpt(finding.name),
+            code=shown(finding.name),
         )
 
 

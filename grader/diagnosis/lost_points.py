@@ -10,7 +10,6 @@ from grader.diagnosis.case import (
     Case,
     diagnosed,
     diagnosed_by,
-    excerpt,
     filled,
     line,
     of_kind,
@@ -22,6 +21,7 @@ from grader.diagnosis.lint_findings import in_other_order, is_about_stopping
 from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.message import NOTHING, Message, msg
 from grader.recording.observations import End, LintFinding, LintKind
+from grader.text import shown
 
 #: Kinds that say more of a condition than whether it was ever true.
 _SAY_MORE = ("at_wall", "uncalled", "always", "local", "unread")
@@ -184,8 +184,8 @@ def _hidden(found: Diagnosis, case: Case) -> Diagnosis | None:
                         "`{code}`{where} ends in an error, {error}, which `{catches}`{there} hides."
                     ),
                     sentences(msg("Correct that line."), NOT_CAUGHT),
-                    error=excerpt(finding.name),
-                    catches=excerpt(catches.place.text),
+                    error=shown(finding.name),
+                    catches=shown(catches.place.text),
                     there=line(catches.place),
                 )
     return None
@@ -226,12 +226,12 @@ def _missed(found: Diagnosis, case: Case) -> Diagnosis | None:
             help_ = next(fitting, help_)
         if (kept := stays.get(finding.place)) is not None:
             help_ = msg(
-                "Nothing sets {name} after the start: which line should?", name=excerpt(kept.name)
+                "Nothing sets {name} after the start: which line should?", name=shown(kept.name)
             )
         if goal == "branch" and end is None:
             help_ = NOTHING  # the check's own stays
-        seen = msg(" ({values})", values=excerpt(values)) if values else NOTHING
-        return _explained(found, finding, cause, help_, code=excerpt(finding.name), seen=seen)
+        seen = msg(" ({values})", values=shown(values)) if values else NOTHING
+        return _explained(found, finding, cause, help_, code=shown(finding.name), seen=seen)
     return None
 
 
@@ -256,8 +256,8 @@ def _unspun(case: Case) -> Diagnosis | None:
             ),
             msg("Give it to what spins: executor.add_node({name})."),
             finding.place,
-            name=excerpt(finding.name),
-            kind=excerpt(finding.near),
+            name=shown(finding.name),
+            kind=shown(finding.near),
         )
     return None
 
@@ -268,11 +268,11 @@ def _beside_condition(found: Diagnosis, case: Case) -> Diagnosis:
     walls = [*of_kind(case, "at_wall")] if is_about_stopping(spoken) else []
     for finding in walls:
         if (wrong := _wrong_condition(finding, spoken)) is not None:
-            return _explained(found, finding, *wrong, code=excerpt(finding.name), seen=NOTHING)
+            return _explained(found, finding, *wrong, code=shown(finding.name), seen=NOTHING)
     is_about_memory = "driving" in spoken or "needless call" in spoken
     for finding in of_kind(case, "stays") if is_about_memory else ():
         text = msg("`{code}`{where} is always {value}: nothing sets it after the start.")
-        code, value = excerpt(finding.name), excerpt(finding.near)
+        code, value = shown(finding.name), shown(finding.near)
         explained = _explained(found, finding, text, NOTHING, code=code, value=value)
         return replace(explained, place=walls[0].place) if walls else explained
     return found

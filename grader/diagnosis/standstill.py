@@ -9,7 +9,6 @@ from grader.diagnosis.case import (
     after,
     diagnosed,
     diagnosed_by,
-    excerpt,
     function,
     of_kind,
     sentences,
@@ -19,7 +18,7 @@ from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, joined, msg, msg_many
 from grader.recording.observations import SourceLine, Standstill
 from grader.recording.recording import NOT_THERE
-from grader.text import clip
+from grader.text import shown
 
 #: A program that comes to its end by itself before this has hardly spun [s].
 _SOON_S = 5.0
@@ -245,7 +244,7 @@ def ends_early(case: Case) -> Diagnosis | None:
         what = msg(
             "{what}, and the last that it printed is: {last!r}",
             what=what,
-            last=clip(excerpt(last), _LONGEST_CODE),
+            last=shown(last, _LONGEST_CODE),
         )
     raised = case.observed.raised
     place = raised.place if raised is not None else None
@@ -313,7 +312,7 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
             ),
             loop or end.used_at or end.place,
             sent=end.used,
-            topic=excerpt(end.name),
+            topic=shown(end.name),
             run_s=run_s,
         )
     return None
@@ -357,7 +356,7 @@ def hears_once(case: Case) -> Diagnosis | None:
             if loop is None or function(loop) in ("", "main()"):
                 more = msg("And rclpy.spin(node) has to go on meanwhile.")
                 help_ = sentences(help_, more)
-            words = {"topic": excerpt(end.name), "run_s": run_s}
+            words = {"topic": shown(end.name), "run_s": run_s}
             return diagnosed("hears_once", cause, help_, loop or end.place, **words)
     return None
 
@@ -370,11 +369,11 @@ def _loop_at_end(case: Case) -> SourceLine | None:
 
 def _code(place: SourceLine) -> str:
     """Quote a line of code: '`while True:`'."""
-    return f"`{clip(excerpt(place.text), _LONGEST_CODE)}`"
+    return f"`{shown(place.text, _LONGEST_CODE)}`"
 
 
 def _stuck(key: str, cause: Message, help_: Message, stop: Standstill, **words: Any) -> Diagnosis:
     """Diagnose a program that goes no further; its cause may name `{since}` and `{in_call}`."""
     words["since"] = since(stop.time_s)
-    words["in_call"] = msg(" in {call}()", call=excerpt(stop.call)) if stop.call else NOTHING
+    words["in_call"] = msg(" in {call}()", call=shown(stop.call)) if stop.call else NOTHING
     return diagnosed(key, cause, help_, stop.place, stop.time_s, **words)

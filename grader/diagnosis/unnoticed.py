@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import PurePath
 
-from grader.diagnosis.case import Case, after, diagnosed, excerpt, function, is_library, sentences
+from grader.diagnosis.case import Case, after, diagnosed, function, is_library, sentences
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import explain
 from grader.message import NOTHING, Message, joined, msg, plain_text
 from grader.recording.observations import Caught, SourceLine
+from grader.text import shown
 
 #: A program that ends so soon after an exception has ended by it [s].
 _SOON_S = 1.0
@@ -90,7 +91,7 @@ def never_awaits(case: Case) -> Diagnosis | None:
                 "request, and you go on without waiting for the answer."
             ),
             place,
-            name=excerpt(found["name"].rpartition(".")[2]),
+            name=shown(found["name"].rpartition(".")[2]),
         )
     return None
 
@@ -155,8 +156,8 @@ def makes_timers(case: Case) -> Diagnosis | None:
 
 
 def _error(caught: Caught) -> Message:
-    text = explain(caught).text or plain_text(excerpt(caught.text).rstrip("."))
-    return joined([excerpt(caught.type), text] if text else [excerpt(caught.type)], ": ")
+    text = explain(caught).text or plain_text(shown(caught.text).rstrip("."))
+    return joined([shown(caught.type), text] if text else [shown(caught.type)], ": ")
 
 
 def _help(caught: Caught) -> Message:

@@ -6,7 +6,6 @@ nothing is checked.
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,6 +18,7 @@ from grader.exercise.comparing import is_number, is_range
 from grader.expressions import is_pattern
 from grader.message import msg
 from grader.rosidl.fields import Field, parse
+from grader.text import nearest
 from grader.yaml_file import Mistake
 
 #: The parts of a definition, which lines of --- separate.
@@ -60,7 +60,7 @@ class KnownTypes:
         known = known or [*_installed(package, kind)]
         if not known or name in known:
             return
-        near = ", ".join(difflib.get_close_matches(name, known, 3, 0.5) or known[:3])
+        near = ", ".join(nearest(name, known) or known[:3])
         raise Mistake(
             at, msg("{package} has no {type}; it has {near}", package=package, type=name, near=near)
         )

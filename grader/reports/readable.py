@@ -21,7 +21,7 @@ _FLAGS_LIMIT = 50
 
 def line(value: Text) -> str:
     """Return a text as one line of limited length."""
-    return text.clip(text.one_line(text.plain(translate(value))), _TEXT_LIMIT)
+    return text.shown(translate(value), _TEXT_LIMIT)
 
 
 def few(result: Result) -> Result:

@@ -19,7 +19,6 @@ from typing import IO, Final
 
 from grader.errors import SubmissionError
 from grader.message import NOTHING, Message, as_message, msg, plain_text
-from grader.submission.folder import shown
 from grader.submission.safe_members import (
     DAMAGED,
     PACK_AGAIN,
@@ -33,6 +32,7 @@ from grader.submission.safe_members import (
     refuse,
     write,
 )
+from grader.text import shown
 
 # damage as an OSError: bz2's and gzip's have no number, EINVAL is a position before the file's
 # start; the others are members in each other's way

@@ -14,11 +14,12 @@ from typing import Final
 
 from grader.message import Message, msg
 from grader.submission import safe_files
-from grader.submission.folder import SubmissionFolder, listed, shown
+from grader.submission.folder import SubmissionFolder
 from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.set_ups import ConsoleScript, PackageFolder
 from grader.submission.start import EntryPoint, Program
+from grader.text import listed, shown
 
 _NOT_BUILT: Final = msg("colcon would not build this: {why}")
 _NOT_FOUND: Final = msg("ros2 run would not find this: {why}")

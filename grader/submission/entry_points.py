@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Literal
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg
-from grader.submission.folder import SubmissionFolder, files_below, listed, near, shown
+from grader.submission.folder import SubmissionFolder, files_below
 from grader.submission.imports import read_imports
 from grader.submission.python_source import read_source
 from grader.submission.request import USUAL_NAME
 from grader.submission.roles import is_among, roles_in
 from grader.submission.set_ups import ConsoleScript, PackageFolder, read_package
 from grader.submission.start import EntryPoint, Program
+from grader.text import listed, nearest, shown
 
 if TYPE_CHECKING:
     from grader.recording.subject import Role
@@ -210,7 +211,7 @@ def _must_define(submitted: SubmissionFolder, script: ConsoleScript, file: Path)
     wanted = script.function.split(".")[0]
     if not source.surely_lacks(wanted):
         return
-    names = dict.fromkeys([*near(wanted, source.defined), *source.defined])
+    names = dict.fromkeys([*nearest(wanted, source.defined), *source.defined])
     raise SubmissionError(
         "{file} defines no function {wanted} (it defines: {names}). {starts}: "
         "give the function that name, or correct the entry point.",
@@ -229,7 +230,7 @@ def _no_module(
     same_name = [submitted.called(file) for file in found if file.name == expected.name]
     nodes = (file for file in found if file.name not in ("setup.py", "__init__.py"))
     others = [submitted.called(file) for file in nodes]
-    meant = list(dict.fromkeys(near(wanted, others) + same_name))
+    meant = list(dict.fromkeys(nearest(wanted, others) + same_name))
     as_text = expected.with_name(f"{expected.name}.txt")
     if as_text.is_file():
         return SubmissionError(

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from grader import text
 from grader.message import Message, msg
 from grader.submission.trace import Obstacle
-from grader.text import clip_inside, without_controls
-
-#: A text of the submission's in a sentence is no longer.
-_LONGEST: Final = 200
 
 
 def how_it_ends(file: str, problem: Obstacle) -> Message:
@@ -25,9 +22,9 @@ def how_it_ends(file: str, problem: Obstacle) -> Message:
     )
 
 
-def shown(text: str) -> str:
+def shown(content: str) -> str:
     """A text of the submission's as it may stand in a sentence."""
-    return clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
+    return text.shown(content).rstrip(".")
 
 
 def described(problem: Obstacle) -> Message:

@@ -38,10 +38,7 @@ from grader.submission.folder import (
     entries_of,
     files_below,
     is_junk,
-    listed,
-    near,
     read_bounded,
-    shown,
     top_of,
 )
 from grader.submission.interfaces import find_interfaces
@@ -64,6 +61,7 @@ from grader.submission.set_ups import (
 )
 from grader.submission.start import EntryPoint, Launch, Program, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
+from grader.text import listed, nearest, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection
@@ -419,7 +417,7 @@ def _no_script(
     called = submitted.called(package.folder / "setup.py")
     text = (read_bounded(package.folder / "setup.py") or b"").decode("utf-8", "replace")
     words = {*re.findall(r"['\"](\w*script\w*)['\"]", text)} - {"console_scripts"}
-    if meant := near("console_scripts", sorted(words)):
+    if meant := nearest("console_scripts", sorted(words)):
         return msg(
             "{file} names no console script, so that `ros2 run` finds nothing to start. Expected "
             "in its entry_points: 'console_scripts' instead of '{found}'",

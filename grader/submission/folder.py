@@ -1,21 +1,20 @@
-"""The files of a submitted folder: which of them count, and how messages name them."""
+"""The files of a submitted folder: which of them count."""
 
 from __future__ import annotations
 
 import errno
 import os
 import re
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path, PurePath
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.message import Message, Text, joined, msg
+from grader.message import msg
 from grader.submission import safe_files
 from grader.submission.request import Request
-from grader.text import clip_inside, without_controls
+from grader.text import shown
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
 #: Errors of one file, and not of the machine.
@@ -26,14 +25,10 @@ UNREADABLE: Final = (
 MAX_ENTRIES: Final = 10_000  # files and folders that are searched
 MAX_SOURCE_BYTES: Final = 1_000_000  # a Python or set-up file larger than this is not read here
 MAX_BYTES: Final = 200_000_000  # of all files together, where they are unpacked or copied
-MAX_SHOWN: Final = 300  # characters of a name in a message
 
 RESULT: Final = "result.json"
 BEGINNING_BYTES: Final = 200  # of a file are read to recognise a result
 _OUR_RESULT: Final = re.compile(rb'\s*\{\s*"schema"\s*:\s*"turtlesim-grader/result/')
-
-_NEAR_NAMES: Final = 200  # that a name is compared with: the time grows with the cube of their
-_NEAR_LENGTH: Final = 100  # length
 
 HAND_IN: Final = msg("Hand in a .py file, the folder of your package, or a .zip of it.")
 
@@ -169,30 +164,3 @@ def read_bounded(path: Path) -> bytes | None:
     """Read a file; None if it has more than MAX_SOURCE_BYTES."""
     data = safe_files.read(path, MAX_SOURCE_BYTES + 1)
     return data if len(data) <= MAX_SOURCE_BYTES else None
-
-
-def shown(name: str | PurePath) -> str:
-    """Return a student's name for something as a message shows it: one line, not too long."""
-    return clip_inside(without_controls(str(name), "?"), MAX_SHOWN)
-
-
-def listed(names: Iterable[Text], limit: int = 10) -> Message:
-    """Join names as in "a, b, c and 4 more"."""
-    every = list(names)
-    first = joined([shown(n) if isinstance(n, str) else n for n in every[:limit]], ", ")
-    return (
-        first
-        if len(every) <= limit
-        else msg("{names} and {n} more", names=first, n=len(every) - limit)
-    )
-
-
-def near(wanted: str, names: Sequence[str]) -> list[str]:
-    """Pick the names that `wanted` may have meant: a typing error or another case; best first."""
-    import difflib  # here: most submissions name what is there
-
-    if len(wanted) > _NEAR_LENGTH:
-        return []
-    some = islice((name for name in names if len(name) <= _NEAR_LENGTH), _NEAR_NAMES)
-    by_folded = {name.casefold(): name for name in reversed(list(some))}
-    return [by_folded[name] for name in difflib.get_close_matches(wanted.casefold(), by_folded)]

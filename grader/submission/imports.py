@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Final
 
 from grader.submission import safe_files
-from grader.submission.folder import read_bounded, shown
+from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
 from grader.submission.start import Imports, Program, Script
+from grader.text import shown
 
 #: What runs together with the statement that it stands in, once and in any case.
 _ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)

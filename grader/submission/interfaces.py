@@ -6,7 +6,6 @@ import json
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from itertools import takewhile, zip_longest
 from pathlib import Path, PurePath
 from typing import Any, Final, NamedTuple
@@ -17,8 +16,9 @@ from grader.rosidl.bag_types import description
 from grader.rosidl.fields import field_lines, readable
 from grader.submission.examining import cmake
 from grader.submission.examining.known import DESKTOP
-from grader.submission.folder import SubmissionFolder, read_bounded, shown
+from grader.submission.folder import SubmissionFolder, read_bounded
 from grader.submission.manifest import FILE, Manifest, read_manifest
+from grader.text import nearest, shown
 
 KINDS: Final = ("msg", "srv", "action")
 #: So many definitions are read, and so much of them as JSON: an argument of a process holds it.
@@ -245,7 +245,7 @@ def _wrong_order_or_files(
         if is_inside and file.is_file():
             continue
         names = sorted(other.name for other in file.parent.glob("*")) if is_inside else []
-        if near := get_close_matches(PurePath(each).name, names, 1):
+        if near := nearest(PurePath(each).name, names):
             yield msg(
                 "{file} lists {path}, and there is no such file, only {near}. Correct the name.",
                 **words,

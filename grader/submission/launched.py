@@ -141,7 +141,7 @@ def _place(file: str, line: int) -> Text:
 
 
 def _clip(content: str) -> str:
-    return text.clip(text.one_line(text.plain(content.replace(f"{PREFIX}/", ""))), _LONGEST)
+    return text.shown(content.replace(f"{PREFIX}/", ""), _LONGEST)
 
 
 def _clipped(content: Text) -> Text:

@@ -11,10 +11,11 @@ from grader.errors import SubmissionError
 from grader.message import Message, joined, msg
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
-from grader.submission.folder import SubmissionFolder, listed, shown
+from grader.submission.folder import SubmissionFolder
 from grader.submission.request import LaunchAsked
 from grader.submission.roles import is_among
 from grader.submission.set_ups import ConsoleScript, PackageFolder
+from grader.text import listed, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection, LaunchOrder, LaunchStart

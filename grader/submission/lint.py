@@ -17,10 +17,10 @@ from pathlib import Path
 
 from grader.recording.observations import LintFinding, SourceLine
 from grader.submission import paths, ros_mistakes, scopes
-from grader.submission.folder import near, read_bounded
+from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse, seen
 from grader.submission.scopes import Found, Function, Source, last
-from grader.text import misspelt
+from grader.text import misspelt, nearest
 
 #: So many findings are kept, and so much of a name or a line [characters].
 MOST, LONGEST = 80, 300
@@ -190,7 +190,7 @@ def _own_modules(sources: Mapping[str, Source]) -> Iterator[tuple[str, Found]]:
         module = modules[other]
         for name in (alias.name for alias in node.names[:MOST]):
             if name != "*" and module.defined and module.surely_lacks(name):
-                has = ", ".join(near(name, module.defined)[:1] or module.defined)
+                has = ", ".join(nearest(name, module.defined)[:1] or module.defined)
                 yield file, ("not_defined", name, has, node.lineno)
         if (other, file) in pairs:
             is_used = used[file] & {alias.asname or alias.name for alias in node.names}

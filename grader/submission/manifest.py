@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.message import NOTHING, Message, msg
-from grader.submission.folder import read_bounded, shown
+from grader.submission.folder import read_bounded
+from grader.text import shown
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

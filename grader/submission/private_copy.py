@@ -32,10 +32,9 @@ from grader.submission.folder import (
     UNREADABLE,
     is_generated,
     is_junk,
-    listed,
-    shown,
     too_many,
 )
+from grader.text import listed, shown
 
 MAX_LEVELS: Final = 32  # of folders; what lies deeper is left out
 _CHUNK_BYTES: Final = 1 << 20

@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Final
 
 from grader.message import NOTHING, Message, joined, msg
-from grader.submission.folder import read_bounded, shown
+from grader.submission.folder import read_bounded
 from grader.submission.scopes import scope_nodes
+from grader.text import shown
 
 _NAMES_UNSEEN: Final = {"exec", "globals", "locals", "setattr", "vars"}  # may define any name
 _UNPARSED_MAIN: Final = re.compile(rb"^(async\s+)?def\s+main\b", re.MULTILINE)

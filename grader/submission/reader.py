@@ -23,7 +23,7 @@ from grader.recording.recording import OwnInterfaces
 from grader.recording.subject import Role
 from grader.submission import folder, python_source, whole
 from grader.submission.finding import find, find_evaluated, may_be_node
-from grader.submission.folder import is_source, shown
+from grader.submission.folder import is_source
 from grader.submission.imports import read_imports
 from grader.submission.interfaces import completed, undeclared
 from grader.submission.lint import lint
@@ -34,7 +34,7 @@ from grader.submission.request import Request
 from grader.submission.roles import roles_in
 from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Imports, Submission, Whole
-from grader.text import clip
+from grader.text import clip, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection

@@ -11,15 +11,8 @@ from typing import Final
 
 from grader.errors import SubmissionError, UsageError
 from grader.message import Message, msg
-from grader.submission.folder import (
-    HAND_IN,
-    MAX_ENTRIES,
-    UNREADABLE,
-    SubmissionFolder,
-    listed,
-    near,
-    shown,
-)
+from grader.submission.folder import HAND_IN, MAX_ENTRIES, UNREADABLE, SubmissionFolder
+from grader.text import listed, nearest, shown
 
 CPP: Final = {".cpp", ".cc", ".cxx", ".c", ".hpp", ".h"}
 _OTHER_ARCHIVES: Final = {".gz", ".bz2", ".tbz2", ".xz", ".txz", ".zst", ".rar", ".7z"}
@@ -51,7 +44,7 @@ def missing(path: Path) -> UsageError:
             folder=shown(folder),
         )
     there = islice((entry.name for entry in folder.iterdir()), MAX_ENTRIES)
-    meant = near(path.name, sorted(there))
+    meant = nearest(path.name, sorted(there))
     advice = (
         msg("Did you mean {names}?", names=listed(meant))
         if meant

@@ -10,12 +10,12 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from difflib import get_close_matches
 from itertools import chain
 from typing import TypeGuard
 
 from grader.submission import conditions, python_mistakes, scopes
 from grader.submission.scopes import Found, Function, Source, is_read, last, unread
+from grader.text import misspelt
 
 #: Of larger sources, in the nodes of their syntax trees times their files, nothing is looked for.
 MOST_NODES = 60_000
@@ -480,7 +480,7 @@ def _attributes(source: Source, whole: list[Source]) -> Iterator[Found]:
                     seen.add(name)
                     is_few = len(seen) <= MOST_FOLLOWED
                     others = [] if name in own else sorted(own)[:200]
-                    if is_few and not get_close_matches(name, others, cutoff=0.8):
+                    if is_few and not any(misspelt(name, other) for other in others):
                         # what stands once alone is a slip there, not a forgotten beginning
                         line = node.lineno if counts[name] == 1 else inits[0].lineno
                         yield "never_set", name, "", line

@@ -26,8 +26,8 @@ from grader.submission.folder import (
     is_result,
     is_source,
     marks_generated,
-    shown,
 )
+from grader.text import shown
 
 MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
 MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
 from grader.message import NOTHING, Message, msg
-from grader.submission.folder import SubmissionFolder, read_bounded, shown
+from grader.submission.folder import SubmissionFolder, read_bounded
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import read_manifest
+from grader.text import shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import SetUp, SetUpFacts

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.submission.folder import shown
+from grader.text import shown
 
 if TYPE_CHECKING:
     from grader.submission.safe_members import Budget

@@ -8,12 +8,13 @@ from typing import Final
 
 from grader.errors import SubmissionError
 from grader.message import msg, msg_many
-from grader.submission.folder import SubmissionFolder, files_below, listed, near, shown, top_of
+from grader.submission.folder import SubmissionFolder, files_below, top_of
 from grader.submission.manifest import FILE, read_manifest
 from grader.submission.refusals import missing
 from grader.submission.set_ups import SETUP_FILES
 from grader.submission.start import Submission, Whole
 from grader.submission.unpacking import Unpacking, is_archive
+from grader.text import listed, nearest, shown
 
 _HAND_IN: Final = msg("Hand in the folder of your ROS 2 package, or a .zip of it.")
 _MARKS: Final = (FILE, "CMakeLists.txt", *SETUP_FILES)
@@ -41,7 +42,7 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
     manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
     names = sorted({shown(each.name) for each in manifests if each is not None and each.name})
     if package is not None and package not in names:
-        meant = near(package, names) or names
+        meant = nearest(package, names) or names
         raise SubmissionError(
             "{name} has no package {package}; there is: {names}.",
             name=name,

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from grader.exercise.verdict import Verdict
 from grader.message import Message, joined, msg
 from grader.testing.solutions import Solution
+from grader.text import listed
 
 SCHEMA = "turtlesim-grader/examination/v1"
 
@@ -53,13 +54,8 @@ class Problem:
             self.fault.text,
         ]
         if self.on:
-            parts.append(msg(" (on {solutions})", solutions=self._solutions))
+            parts.append(msg(" (on {solutions})", solutions=listed(self.on, 3)))
         return joined(parts)
-
-    @property
-    def _solutions(self) -> Message:
-        first, more = joined(self.on[:3], ", "), len(self.on) - 3
-        return msg("{names} and {n} more", names=first, n=more) if more > 0 else first
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from grader import text
-from grader.message import Message, joined, msg, msg_many, plain_text
+from grader.message import Message, joined, msg, msg_many
 from grader.recording.view import Floats, Placing, Shape, Solid, SolidFrame
 from robot_py.kinematics import matrix, quaternion, translation
 from robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual
@@ -121,14 +121,11 @@ def is_finite(values: Sequence[float]) -> bool:
 
 def name_of(name: str) -> str:
     """A name of the submission's, as it may stand in a page."""
-    return text.clip(text.one_line(text.plain(name)), LONGEST_NAME)
+    return text.shown(name, LONGEST_NAME)
 
 
 def named(names: Sequence[str], most: int = 6) -> Message:
-    few = ", ".join(map(name_of, names[:most]))
-    if len(names) <= most:
-        return plain_text(few)
-    return msg("{names} and {count} more", names=few, count=len(names) - most)
+    return text.listed(map(name_of, names), most)
 
 
 def descend(

@@ -14,8 +14,8 @@ from typing import Final, Protocol
 
 from grader.batch.entry import Person
 from grader.message import NOTHING, Message, Text
-from grader.submission.folder import is_junk, listed
-from grader.text import clip, one_line, plain
+from grader.submission.folder import is_junk
+from grader.text import listed, one_line, shown
 
 _MAX_NAME = 200  # characters of a person's name or id
 #: ISO 8601, and its variants in names of files: 2026-11-01_12-30-05, 20261101T123005Z;
@@ -141,7 +141,7 @@ def person(id: str, name: str = "", columns: Mapping[str, str] | None = None) ->
 
 def _clean(text: str) -> str:
     # one line first: `plain` changes what is at the start of a line
-    return clip(composed(plain(one_line(text))).strip(), _MAX_NAME)
+    return shown(composed(one_line(text)), _MAX_NAME)
 
 
 def read_time(text: str) -> datetime | None:

@@ -22,7 +22,7 @@ from grader.batch.find.attempt import (
     person,
 )
 from grader.message import Message, msg
-from grader.submission.folder import shown
+from grader.text import shown
 
 LAYOUT: Final = msg("a folder of git repositories")
 _MARKS: Final = (".git", ".classroom50.yml")

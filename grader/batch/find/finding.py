@@ -23,9 +23,9 @@ from grader.errors import SubmissionError, UsageError
 from grader.message import Message, msg, msg_many
 from grader.scratch import make_folder
 from grader.submission.archive import unpack
-from grader.submission.folder import listed, shown
 from grader.submission.safe_members import ArchiveLimits, Budget, Member, TooMuch
 from grader.submission.unpacking import is_archive
+from grader.text import listed, shown
 
 #: The members of the class, if beside the submissions; the second is Classroom 50's.
 ROSTER: Final = "roster.csv"

@@ -11,7 +11,7 @@ from grader.batch.entry import Person
 from grader.batch.find.attempt import Attempt
 from grader.batch.find.roster import Roster, RosterMember, folded, letters
 from grader.message import Message, msg
-from grader.submission.folder import listed, shown
+from grader.text import listed, shown
 
 NOT_HANDED_IN = msg("Nothing was handed in.")
 #: The problem of a member to whom an unmatched hand-in may belong: there is no grade.

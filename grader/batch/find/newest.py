@@ -22,9 +22,9 @@ from grader.batch.entry import MAX_ID, HandIn, Person, id_of
 from grader.batch.find.attempt import Attempt, Piece, add_note, moment
 from grader.batch.find.joining import is_of_roster
 from grader.message import NOTHING, Message, msg
-from grader.submission.folder import is_junk, shown
+from grader.submission.folder import is_junk
 from grader.submission.safe_members import short
-from grader.text import unaccented
+from grader.text import shown, unaccented
 
 _EMPTY: Final = msg("What was handed in is an empty folder.")
 _NOWHERE: Final = msg("What was handed in is a link that leads nowhere.")

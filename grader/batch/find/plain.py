@@ -28,8 +28,9 @@ from grader.batch.find.attempt import (
 )
 from grader.errors import UsageError
 from grader.message import NOTHING, Message, msg
-from grader.submission.folder import is_junk, listed, shown
+from grader.submission.folder import is_junk
 from grader.submission.unpacking import is_archive
+from grader.text import listed, shown
 
 LAYOUT: Final = msg("a plain folder, with one file or folder a student")
 #: Suffixes of files beside hand-ins that are none.

@@ -21,7 +21,7 @@ from grader.batch.entry import Person
 from grader.batch.find.attempt import moment, person, read_time
 from grader.errors import UsageError
 from grader.message import Message, msg
-from grader.submission.folder import listed, shown
+from grader.text import listed, shown
 
 #: Columns that identify a person, the best first. The id is that of the first one in which all rows
 #: differ.

@@ -77,7 +77,7 @@ class Feedback:
             )
         else:
             sentence = tr("{mark} {points} points. {first}", **values)
-        return text.clip(text.one_line(text.plain(sentence)), LONGEST)
+        return text.shown(sentence, LONGEST)
 
     def _first(self, entry: Entry) -> str:
         if not has_feedback(entry):

@@ -23,7 +23,7 @@ from grader.batch.find.joining import UNCLEAR
 from grader.batch.gradebook import canvas, known, moodle
 from grader.batch.gradebook.feedback import Feedback, has_feedback
 from grader.batch.gradebook.grade import LONGEST, Grade, decimal, grades
-from grader.message import Message, joined, msg
+from grader.message import Message, msg
 from grader.reports.csv import cell, table
 from grader.result.visible import View
 from grader.text import plain_all
@@ -265,10 +265,7 @@ def _of_canvas(grades: Sequence[Grade], assignment: str) -> Iterator[Message]:
 
 
 def _people(grades: Sequence[Grade]) -> Message:
-    """Return the first names, and how many more there are."""
-    first = (text.clip(text.one_line(g.person.name or g.person.id), 40) for g in grades[:3])
-    names, more = joined(first, ", "), len(grades) - 3
-    return msg("{names} and {more:,} more", names=names, more=more) if more > 0 else names
+    return text.listed((grade.person.name or grade.person.id for grade in grades), 3)
 
 
 def _number(value: str) -> float | None:

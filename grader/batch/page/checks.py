@@ -85,7 +85,7 @@ def _most_frequent(lines: Sequence[_Line]) -> tuple[str, int]:
     """
     by_kind: dict[tuple[bool, Hashable], Counter[str]] = {}
     for is_of_run, line in lines:
-        shown = text.clip(text.one_line(text.plain(translate(line))), _LONGEST_LINE)
+        shown = text.shown(translate(line), _LONGEST_LINE)
         by_kind.setdefault((is_of_run, _kind(line)), Counter())[shown] += 1
     if not by_kind:
         return "", 0

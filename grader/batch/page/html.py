@@ -215,4 +215,4 @@ def _ids(entry: Entry) -> str:
 
 
 def _safe(name: str) -> str:
-    return text.clip(text.one_line(text.plain(name)), _NAME_LIMIT)
+    return text.shown(name, _NAME_LIMIT)

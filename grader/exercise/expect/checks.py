@@ -15,6 +15,7 @@ from grader.exercise.known_types import KnownTypes, check_time
 from grader.exercise.verdict import Finding
 from grader.message import msg
 from grader.recording.recording import Recordings
+from grader.text import listed
 from grader.yaml_file import Mistake, expect
 
 #: What an expectation is about: its key -> the part of the peers, and whether that is known by an
@@ -75,12 +76,12 @@ def add_checks(
     topics = {topic for each in made.values() for topic in each.topics}
     hears = {topic for each in cases for topic in each.hears} | topics
     sent = {each.name for peers in casts for each in script.endpoints(peers)}
-    listed = sorted(sent.union(*(script.heard(peers, hears) for peers in casts)))
+    there = sorted(sent.union(*(script.heard(peers, hears) for peers in casts)))
     for name, expectation in made.items():
         for key in expectation.names:
-            for topic in expressions.looked_up(getattr(expectation, key), "heard") - {*listed}:
+            for topic in expressions.looked_up(getattr(expectation, key), "heard") - {*there}:
                 what = "nobody hears {topic} here, only {known}"
-                words = {"topic": repr(topic), "known": _listed(listed)}
+                words = {"topic": repr(topic), "known": listed(there) or msg("none")}
                 raise Mistake((*keys, name, key), what, **words)
     return topics
 
@@ -94,7 +95,13 @@ def _check_fit(
     """Check that there is what something is expected of, and that values fit its type."""
     by, nodes = getattr(wanted, "by", ""), {name for peers in casts for name in peers}
     what = "expected a node of the cast, {nodes}; found {found}"
-    expect(by.lstrip("/") in {"", *nodes}, (*at, "by"), what, by, nodes=_listed(sorted(nodes)))
+    expect(
+        by.lstrip("/") in {"", *nodes},
+        (*at, "by"),
+        what,
+        by,
+        nodes=listed(sorted(nodes)) or msg("none"),
+    )
     if isinstance(wanted, ExpectedTopic):
         hearing = [e for peers in casts for n, e in _entries(peers, "subscriptions")
                    if n == script.absolute(wanted.topic)]  # fmt: skip
@@ -110,8 +117,8 @@ def _check_fit(
         most = max(sum(each == full for each, _ in entries) for entries in there)
         if most < 1 or (has_id and most > 1):
             what = "expected one that a peer has among its {part}, {ids}; found {found}"
-            ids = _listed(list(dict.fromkeys(each for entries in there for each, _ in entries)))
-            raise Mistake((*at, key), what, part=part, ids=ids, found=repr(name))
+            ids = listed(dict.fromkeys(each for entries in there for each, _ in entries))
+            raise Mistake((*at, key), what, part=part, ids=ids or msg("none"), found=repr(name))
         types = [t for entries in there for each, entry in entries if each == full
                  for t in getattr(entry, "types", ())]  # fmt: skip
         for field, (inner, asked) in said.items():
@@ -129,10 +136,6 @@ def _entries(
     for peer in peers.values():
         for key, entry in getattr(peer, part).items():
             yield key if has_id else script.absolute(getattr(entry, script.NAMED_BY[part])), entry
-
-
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(names) or "none"
 
 
 def _check(name: str, expectation: Expectation) -> Any:

@@ -7,7 +7,6 @@ rate, the quality of service, a line that was printed instead of logged.
 
 from __future__ import annotations
 
-import difflib
 import re
 import statistics
 from bisect import bisect_left
@@ -23,11 +22,11 @@ from grader.exercise.comparing import LONGEST_MATCHED, differences, shown
 from grader.exercise.expect import expectations as e
 from grader.exercise.verdict import Evidence, Finding
 from grader.expressions import MOST_STEPS, ExpressionError, filled
-from grader.message import Message, chained, msg
+from grader.message import Message, msg
 from grader.recording.recording import Recording, Recordings
 from grader.rosidl.fields import field_lines
 from grader.scenes.scene import STEP_NS
-from grader.text import without_controls
+from grader.text import listed, nearest
 
 #: What to do where nothing better is known.
 COMPARE: Final = msg("Compare it with what the exercise asks for.")
@@ -47,8 +46,8 @@ REAL_LATE_S, REAL_RATE = 1.0, 0.3
 _DURABILITY: Final = {"transient_local": 1, "volatile": 2}
 _RELIABILITY: Final = {"reliable": 1, "best_effort": 2}
 _LEVELS: Final = {"debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
-#: Of names: so many are in a sentence, so many are compared, and so many characters of each.
-LISTED, SEARCHED, LONGEST_NAME = 8, 100, 200
+#: So many lines are compared with one that is missing; so many characters of a name are shown.
+SEARCHED, LONGEST_NAME = 100, 200
 #: Of a service that every node has.
 _EVERY_NODE: Final = ("parameter", "get_type_description", "_action/")
 
@@ -165,7 +164,11 @@ def _node(trace: CastTrace, wanted: e.ExpectedNode, _: Recording) -> Message:
     is_full = wanted.node.startswith("/")  # else it may be in any namespace
     if not any(node == name or (not is_full and node.endswith(name)) for node in nodes):
         raise Lacks(
-            msg("There is no node {name}; there is {nodes}.", name=name, nodes=_listed(nodes)),
+            msg(
+                "There is no node {name}; there is {nodes}.",
+                name=name,
+                nodes=listed(nodes) or msg("none"),
+            ),
             msg("The name is what Node's __init__ gets."),
         )
     return msg("There is a node {name}.", name=name)
@@ -188,31 +191,16 @@ def _named(events: Sequence[Event]) -> list[str]:
     return sorted({event["channel"].partition(" ")[2] for event in events})
 
 
-def _listed(names: Sequence[str]) -> Message:
-    """Return some of many names for a sentence."""
-    some = [without_controls(each[:LONGEST_NAME], "?") for each in names[:LISTED]]
-    if len(names) > LISTED:
-        return chained([*some, msg("{n:,} more", n=len(names) - LISTED)])
-    return chained(some) if names else msg("none")
-
-
-def _nearest(name: str, names: Sequence[str], cutoff: float) -> str:
-    """Return the one that is most like a name, of some that may be very long; '' for none."""
-    some = [each[:LONGEST_NAME] for each in names[-SEARCHED:]]
-    return next(iter(difflib.get_close_matches(name[:LONGEST_NAME], some, 1, cutoff)), "")
-
-
 def _no_such(name: str, events: Sequence[Event], none: Message, some: Message) -> Lacks:
     """Say that there is nothing of a name, and what there is instead."""
     names = _named(events)
-    near = _nearest(name, names, 0.6)
-    if near:
-        help_ = msg("Compare the name: yours is {near}.", near=near)
+    if near := nearest(name, names):
+        help_ = msg("Compare the name: yours is {near}.", near=near[0])
     else:
         help_ = msg("Look at the name, and whether your program gets there.")
     if not names:
         return Lacks(none.given(name=name), help_)
-    return Lacks(some.given(name=name, names=_listed(names)), help_)
+    return Lacks(some.given(name=name, names=listed(names)), help_)
 
 
 def _topic(trace: CastTrace, wanted: e.ExpectedTopic, _: Recording) -> Message:
@@ -452,19 +440,16 @@ def _not_logged(
         )
     lines = [line for _, line in log.lines]
     help_ = msg("Compare the text letter by letter.")
-    near = "" if isinstance(text, re.Pattern) else _nearest(text, lines, 0.5)
-    if near:
-        said = msg("{text} was not logged; there is {near}.", text=shown(text), near=shown(near))
+    if near := [] if isinstance(text, re.Pattern) else nearest(text, lines[-SEARCHED:]):
+        said = msg("{text} was not logged; there is {near}.", text=shown(text), near=shown(near[0]))
     elif lines:
         last = shown(lines[-1])
         said = msg("{text} was not logged; the last line was {last}.", text=shown(text), last=last)
         help_ = msg("Does your program get to where it logs that?")
     else:
         said = msg("{text} was not logged; nothing was.", text=shown(text))
-    help_ = next(
-        (advice for sign, advice in _OBJECTS if sign.search(near or next(iter(lines[-1:]), ""))),
-        help_,
-    )
+    line = next(iter([*near, *lines[-1:]]), "")
+    help_ = next((advice for sign, advice in _OBJECTS if sign.search(line)), help_)
     for event in trace.of_kind("parameter") if near else ():
         if event.get("set") and "answered_ns" in event:
             help_ = msg("{name} was set from outside at {time} s: is it read each time?",
@@ -657,7 +642,7 @@ def _parameter(trace: CastTrace, wanted: e.ExpectedParameters, _: Recording) -> 
         nodes = _nodes(trace)
         raise Lacks(
             msg("The parameters of {node} could not be asked for; there is {nodes}.",
-                node=event["node"], nodes=_listed(nodes) if nodes else msg("no node")),
+                node=event["node"], nodes=listed(nodes) or msg("no node")),
             msg("Does a node of this name spin?"),
         )  # fmt: skip
     for name, is_taken in wanted.set.items():
@@ -714,7 +699,7 @@ def _transform(trace: CastTrace, wanted: e.ExpectedTransform, _: Recording) -> M
         )
         raise Lacks(
             msg("There is no transform from {parent} to {child} on {topic}; there is {frames}.",
-                **names, frames=_listed(frames)),
+                **names, frames=listed(frames) or msg("none")),
             msg("header.frame_id is the parent, child_frame_id the child."),
         )  # fmt: skip
     _expect_count(wanted.count, len(own), msg("transforms from {parent} to {child}", **names))
@@ -741,7 +726,7 @@ def _interface(_: CastTrace, wanted: e.ExpectedInterface, recording: Recording) 
         raise Lacks(msg("{name} is not generated: {why}", name=name, why=fault))
     if name not in own.texts:
         text = msg("There is no {name} in what you handed in; there is {names}.")
-        raise Lacks(text.given(name=name, names=_listed(sorted(own.texts))))
+        raise Lacks(text.given(name=name, names=listed(sorted(own.texts)) or msg("none")))
     both = own.texts[name], wanted.definition
     for found, right in zip_longest(*map(field_lines, both), fillvalue="-"):
         if found != right:

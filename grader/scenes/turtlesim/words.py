@@ -115,7 +115,7 @@ def _degrees(theta: float) -> str:
 
 
 def _clipped(name: str) -> str:
-    return text.clip(text.one_line(text.plain(name)), _NAME_LIMIT)
+    return text.shown(name, _NAME_LIMIT)
 
 
 def drawn(canvas: Pixels, background: str) -> tuple[Message, ...]:
