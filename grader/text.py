@@ -122,7 +122,7 @@ def clip_inside(text: str, limit: int) -> str:
     if len(text) <= limit:
         return text
     half = (limit - 1) // 2
-    return f"{text[:half]}…{text[-half:]}"
+    return f"{text[: limit - 1 - half]}…{text[-half:]}"
 
 
 def clip_middle(text: str, limit: int) -> str:

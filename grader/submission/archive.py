@@ -21,7 +21,10 @@ from grader.errors import SubmissionError
 from grader.message import NOTHING, Message, as_message, msg, plain_text
 from grader.submission.safe_members import (
     DAMAGED,
+    LINK,
+    LOCKED,
     PACK_AGAIN,
+    SPECIAL,
     ArchiveLimits,
     Bounded,
     Budget,
@@ -131,7 +134,7 @@ def _opened_zip(archive: Path, limits: ArchiveLimits) -> Iterator[list[Member]]:
             Member(
                 _name(info),
                 info.filename.endswith(("/", "\\")),
-                _refusal_of_zip(info),
+                _fault_of_zip(info),
                 partial(packed.open, info),
             )
             for info in packed.infolist()
@@ -148,25 +151,13 @@ def _name(info: zipfile.ZipInfo) -> str:
         return info.filename
 
 
-def _refusal_of_zip(info: zipfile.ZipInfo) -> Message:
-    path = shown(_name(info).replace("\\", "/"))
+def _fault_of_zip(info: zipfile.ZipInfo) -> Message:
     if info.flag_bits & _ENCRYPTED:
-        return msg(
-            "is encrypted: {path} asks for a password. Pack it again without a password.", path=path
-        )
+        return LOCKED
     kind = stat.S_IFMT(info.external_attr >> 16)
     if kind == stat.S_IFLNK:
-        return msg(
-            "holds {path} as a symbolic link. Pack it again with the file itself in that place.",
-            path=path,
-        )
-    if kind not in (0, stat.S_IFREG):
-        return msg(
-            "holds {path}, which is not an ordinary file. {pack_again}",
-            path=path,
-            pack_again=PACK_AGAIN,
-        )
-    return NOTHING
+        return LINK
+    return NOTHING if kind in (0, stat.S_IFREG) else SPECIAL
 
 
 @contextmanager
@@ -202,7 +193,7 @@ def _members(packed: tarfile.TarFile, most: int) -> Iterator[Member]:
     for number, info in enumerate(packed):
         if number >= most:
             raise ListTooLong(msg("it has more than {most:,} entries", most=most))
-        yield Member(info.name, info.isdir(), _refusal_of_tar(info), partial(_file, packed, info))
+        yield Member(info.name, info.isdir(), _fault_of_tar(info), partial(_file, packed, info))
 
 
 def _file(packed: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
@@ -212,16 +203,7 @@ def _file(packed: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
     return file
 
 
-def _refusal_of_tar(info: tarfile.TarInfo) -> Message:
-    path = shown(info.name)
+def _fault_of_tar(info: tarfile.TarInfo) -> Message:
     if info.issym() or info.islnk():
-        return msg(
-            "holds {path} as a link. Pack it again with the file itself in that place.", path=path
-        )
-    if not info.isreg() or info.issparse():
-        return msg(
-            "holds {path}, which is not an ordinary file. {pack_again}",
-            path=path,
-            pack_again=PACK_AGAIN,
-        )
-    return NOTHING
+        return LINK
+    return NOTHING if info.isreg() and not info.issparse() else SPECIAL

@@ -17,7 +17,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from grader.errors import SubmissionError
-from grader.message import Message, joined, msg
+from grader.message import Message, msg
 from grader.submission.folder import (
     BEGINNING_BYTES,
     MAX_BYTES,
@@ -36,6 +36,14 @@ MAX_HEADERS: Final = 50_000  # of a tar, with those of caches and venvs, which a
 #: Of the list of a zip's members. It is read at once, and becomes 50 times as large.
 MAX_LIST_BYTES: Final = 6_000_000
 PACK_AGAIN: Final = msg("Pack your .py file or package folder into a new .zip and hand that in.")
+#: What may be wrong with a member.
+LOCKED: Final = msg(
+    "{name} is encrypted: {path} asks for a password. Pack it again without a password."
+)
+LINK: Final = msg(
+    "{name} holds {path} as a link. Pack it again with the file itself in that place."
+)
+SPECIAL: Final = msg("{name} holds {path}, which is not an ordinary file. {pack_again}")
 
 _CHUNK_BYTES: Final = 1 << 16
 #: What an archive that is damaged, or made to look so, makes its reader raise.
@@ -52,13 +60,13 @@ class Member:
     Attributes:
         name: as it stands there.
         is_folder: it holds nothing itself.
-        refusal: what is wrong with it, if anything, as what follows the archive's name.
+        fault: what is wrong with it, if anything.
         open: opens its content.
     """
 
     name: str
     is_folder: bool
-    refusal: Message
+    fault: Message
     open: Callable[[], IO[bytes]]
 
 
@@ -213,15 +221,16 @@ def _chosen(
             pack_again=PACK_AGAIN,
         )
     budget.count_files(name, len(chosen))
-    for _, member in chosen:
-        if member.refusal:
-            report(member, SubmissionError(joined([name, member.refusal], " ")))
-    return [(path, member) for path, member in chosen if not member.refusal]
+    for path, member in chosen:
+        if member.fault:
+            words = {"name": name, "path": shown(path), "pack_again": PACK_AGAIN}
+            report(member, SubmissionError(member.fault.given(**words)))
+    return [(path, member) for path, member in chosen if not member.fault]
 
 
 def _is_result(path: PurePosixPath, member: Member) -> bool:
     """Whether it is the result of an earlier grading, in a folder of its own."""
-    if path.name != RESULT or not path.parent.name or member.is_folder or member.refusal:
+    if path.name != RESULT or not path.parent.name or member.is_folder or member.fault:
         return False
     with suppress(*DAMAGED, NotImplementedError, OSError), member.open() as source:
         return is_result(source.read(BEGINNING_BYTES))

@@ -139,7 +139,7 @@ CUT = tarred("a.py", data=bytes(range(256)) * 16, mode="w:gz")
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
-        ("a.zip", zipped(special("a.py", stat.S_IFLNK)), "a.zip holds a.py as a symbolic link"),
+        ("a.zip", zipped(special("a.py", stat.S_IFLNK)), "a.zip holds a.py as a link"),
         ("a.zip", zipped(special("a.py", stat.S_IFCHR)), "a.py, which is not an ordinary file"),
         *(("a.zip", zipped(*m), "a.zip is an empty archive") for m in ([], ["a/"], ["__MACOSX/a"])),
         ("a.zip", b"", "a.zip is empty (0 bytes)"),

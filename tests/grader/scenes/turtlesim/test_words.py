@@ -59,7 +59,7 @@ def test_a_place_is_a_quarter_of_the_window():
         (RotateAbsolute(tick=1, theta=math.pi / 2, id=0), "to heading 90°"),
         (Spawn(tick=1, x=1, y=2, theta=0, name=""), "a name of its choice, (1.00, 2.00)"),
         (Spawn(tick=1, x=1, y=2, theta=0, name="\x1b[31mada\n"), "ada, (1.00, 2.00)"),
-        (Kill(tick=1, name="a" * 1000), "a" * 79 + "…"),
+        (Kill(tick=1, name="a" * 1000), "a" * 40 + "…" + "a" * 39),
         (SetParameter(tick=1, name="background_r", value=7), "background_r = 7"),
         (Clear(tick=1), ""),
         (
