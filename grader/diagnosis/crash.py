@@ -9,11 +9,12 @@ from dataclasses import replace
 from signal import Signals
 
 from grader.diagnosis import lint_findings, lint_hints
-from grader.diagnosis.case import Case, diagnosed, line, of_kind, sentences, thread_exception
+from grader.diagnosis.case import Case, diagnosed, line, of_kind, sentences
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import Hint
 from grader.message import NOTHING, Message, msg, plain_text
 from grader.recording.observations import Raised, SourceLine
+from grader.recording.printed import thread_exception
 from grader.text import clip, shown
 
 #: The error of a generated message class that refuses a value.

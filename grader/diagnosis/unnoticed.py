@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import PurePath
 
-from grader.diagnosis.case import Case, after, diagnosed, function, is_library, sentences
+from grader.diagnosis.case import Case, after, diagnosed, function, sentences
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.known_exceptions import explain
 from grader.message import NOTHING, Message, joined, msg, plain_text
 from grader.recording.observations import Caught, SourceLine
+from grader.recording.printed import is_library
 from grader.text import shown
 
 #: A program that ends so soon after an exception has ended by it [s].

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import PurePath
 
 from grader.exercise.verdict import Finding
-from grader.message import NOTHING, Message, joined, msg
+from grader.message import NOTHING, Message, joined, msg, plain_text
+from grader.recording.observations import Raised
+from grader.recording.printed import last_exception
 from grader.recording.recording import Provenance, Recording, Recordings
 from grader.recording.subject import load_subject
-from grader.text import without_controls
+from grader.text import shown
 
-# blanks of one line only: lines of nothing would be gone through again from each of them
-_FRAME = re.compile(r'^[^\S\n]*File "(?P<file>[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
-_PLACE = re.compile(r" \([^()]*, line \d+\)$")
 #: Conditions that are left out while they are off, with that value.
 _OFF: Mapping[str, float] = {"varied_runs.per_student": 0}
-_ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
 
 
 def how_it_ended(recording: Recording) -> Message:
@@ -40,35 +37,22 @@ def _ending(recording: Recording) -> Message:
 
 def _error(recording: Recording) -> Message:
     """Return the error with the last line of the submission's files, where that is known."""
-    error, raised = last_error(recording.output), recording.observations.raised
+    printed, raised = last_exception(recording.output), recording.observations.raised
+    code = msg("exit code {code}", code=str(recording.run.exit_code))
     if raised is None or raised.place is None:
-        return error or msg("exit code {code}", code=str(recording.run.exit_code))
-    file, line = PurePath(raised.place.file).name, raised.place.line
-    text = _PLACE.sub("", str(error)) or f"{raised.type}: {raised.text}".rstrip(".: ")
-    if text.partition(":")[0].rpartition(".")[2] != raised.type.rpartition(".")[2]:
-        return error  # of another thread
-    return _with_place(text, file, str(line))
+        return _said(printed) if printed else code
+    if printed and printed.type.rpartition(".")[2] != raised.type.rpartition(".")[2]:
+        return _said(printed)  # of another thread
+    return _said(replace(printed or raised, place=raised.place))
 
 
-def last_error(output: str) -> Message:
-    """Return the error of the last traceback with its place: 'NameError: ... (a.py, line 3)'."""
-    start = output.rfind("Traceback (most recent call last)")
-    if start < 0:
-        # A SyntaxError in the file that was started has no traceback of its own.
-        start = max(output.rfind('  File "'), 0)
-    part = output[start:]
-    frames = list(_FRAME.finditer(part))
-    lines = part[frames[-1].end() :].splitlines() if frames else []
-    error = next((line for line in lines if line[:1].strip() and _ERROR.match(line)), "")
-    if not error:
-        return NOTHING
-    where = frames[-1]
-    return _with_place(error.rstrip("."), PurePath(where["file"]).name, where["line"])
-
-
-def _with_place(error: str, file: str, line: str) -> Message:
-    place = msg(" ({file}, line {line})", file=without_controls(file, "?"), line=line)
-    return joined([without_controls(error, "?"), place])
+def _said(raised: Raised) -> Message:
+    """Return an exception with its place: 'NameError: ... (a.py, line 3)'."""
+    error, place = shown(f"{raised.type}: {raised.text}").rstrip(".: "), raised.place
+    if place is None:
+        return plain_text(error)
+    file = shown(PurePath(place.file).name)
+    return joined([error, msg(" ({file}, line {line})", file=file, line=str(place.line))])
 
 
 def error_first(recordings: Recordings, finding: Finding) -> Finding:

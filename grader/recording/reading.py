@@ -273,7 +273,9 @@ def _package(path: Path) -> Trace | None:
     if not path.exists():
         return None
     with _refusing(path):
-        return load_subject(PACKAGE_SCENE).decode(path.read_bytes())
+        package: Any = load_subject(PACKAGE_SCENE)
+        trace: Trace = package.decode(path.read_bytes())
+        return trace
 
 
 def _observations(path: Path) -> Observations:

@@ -134,7 +134,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     if recording.observations.is_known:
         _write_json(folder / OBSERVATIONS, recording.observations.to_json())
     if recording.package is not None:
-        encoded = load_subject(PACKAGE_SCENE).encode(recording.package)
+        package: Any = load_subject(PACKAGE_SCENE)
+        encoded = package.encode(recording.package)
         (folder / PACKAGE).write_bytes(encoded + b"\n")
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)

@@ -22,11 +22,11 @@ from grader.text import place
 
 #: The scene of an exercise that names none.
 DEFAULT_SCENE: Final = "turtlesim"
-#: Hooks of a subject, and of a scene, and what they may raise; `from_channels` and `decode` may
-#: raise anything.
+#: Hooks of a subject, and of a scene, and what they may raise; `from_channels` may raise
+#: anything.
 HOOKS: Final[Mapping[str, tuple[type[Exception], ...]]] = {
     **dict.fromkeys(("untouched", "definitions_of", "to_messages"), ()),
-    **dict.fromkeys(("bag_topics", "encode", "scenario", "view", "pictures"), ()),
+    **dict.fromkeys(("bag_topics", "scenario", "view", "pictures"), ()),
     **dict.fromkeys(("remarks", "endpoints", "wrong_setting", "adapted", "how_to_try"), ()),
     **dict.fromkeys(("odd_traces", "simulate", "preload", "starts"), ()),
     **{"interfaces_for": (SubmissionError,), "live_page": (OSError,)},
@@ -182,21 +182,6 @@ class Subject(ABC):
         Raises:
             ValueError, KeyError, TypeError: they are not from `to_messages`.
         """
-
-    def encode(self, trace: Trace) -> bytes:
-        """Serialise a trace as JSON, for a file beside a bag; only the subject `package` can.
-
-        The same trace gives the same bytes.
-        """
-        raise NotImplementedError
-
-    def decode(self, data: bytes) -> Trace:
-        """Parse a trace that `encode` has serialised.
-
-        Raises:
-            ValueError: they mean none.
-        """
-        raise NotImplementedError
 
     def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
         """Return the topics, with types, that a bag has even without a message of them."""

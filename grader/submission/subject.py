@@ -68,6 +68,7 @@ class PackageSubject(Subject):
         return self.decode(string_of(next(channels[0].messages())).encode("ascii"))
 
     def encode(self, made: Trace) -> bytes:
+        """Serialise a trace as JSON, for a file beside the bag of a run."""
         return encode(PackageTrace.of(made))
 
     def decode(self, data: bytes) -> Trace:

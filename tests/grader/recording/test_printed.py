@@ -3,7 +3,8 @@
 from tests.limited import printed_by
 
 CODE = """
-from grader.diagnosis import case, crash
+from grader.diagnosis import crash
+from grader.recording import printed
 limit(4, 4_000_000_000)
 for hard in (
     "\\n" * 65_000,
@@ -15,7 +16,7 @@ for hard in (
     "The 'a' field must" * 3_000,
 ):
     text = "Traceback (most recent call last)" + hard
-    for look in (case.last_exception, case.thread_exception):
+    for look in (printed.last_exception, printed.thread_exception):
         look(text)
     crash._FIELD.search(text)
 print("done")
