@@ -33,13 +33,13 @@ def render(
     """Return the page that plays runs, in one file.
 
     Args:
-        page: its HTML; the module of the same name is the one that runs.
+        page: its main part; the module of the same name is the one that runs.
         data: of this scene, for the script.
         folders: that modules are searched in, one after another, before those that pages share.
         styles: besides the one that they share.
     """
     script = join_modules(page.stem, [*folders, PLAYER, LIVE_PAGE])
-    html = page.read_text(encoding="utf-8")
+    html = whole_html(page)
     data = {
         "language": current(),
         "tick_s": tick_s,
@@ -59,6 +59,15 @@ def render(
         summary=escape(playback.summary),
         noscript=escape(tr("This page needs JavaScript. report.html, beside it, does not.")),
     )
+
+
+def whole_html(page: Path) -> str:
+    """Return the template of a page: its main part, with those that all pages have."""
+    frame, transport, judged, main = (
+        path.read_text(encoding="utf-8")
+        for path in (*(PLAYER / f"{name}.html" for name in ("frame", "transport", "judged")), page)
+    )
+    return frame.replace("$main", main).replace("$transport", transport).replace("$judged", judged)
 
 
 def _judged(item: JudgedCheck, tick_s: float) -> dict[str, Any]:

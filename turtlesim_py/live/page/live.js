@@ -108,16 +108,7 @@ const bridge = new Rosbridge({
 const controls = new Controls(bridge, element);
 const explorer = new Explorer(bridge, element);
 bridge.subscribe(LIVE, undefined, (news) => { told = told.then(() => take(news)); });
-for (const id of ["show-grid", "show-quadrants", "show-names"]) {
-  element(id).addEventListener("change", () => {
-    marks.choose({
-      grid: element("show-grid").checked,
-      quadrants: element("show-quadrants").checked,
-      names: element("show-names").checked,
-    });
-    marks.show(view.turtles);
-  });
-}
+marks.obey(element, () => marks.show(view.turtles));
 element("hold").addEventListener("change", showSoon);
 element("refresh").addEventListener("click", () => explorer.look());
 offerLanguages(element("language"), sayAgain);

@@ -11,7 +11,15 @@ export class Marks {
     this.chosen = { grid: false, quadrants: false, names: false };
   }
 
-  choose(chosen) { this.chosen = chosen; }
+  /** Let the boxes choose what is shown; `showAgain` is called after each choice. */
+  obey(element, showAgain) {
+    for (const each of Object.keys(this.chosen)) {
+      element(`show-${each}`).addEventListener("change", (event) => {
+        this.chosen[each] = event.target.checked;
+        showAgain();
+      });
+    }
+  }
 
   show(turtles) {
     const parts = [];

@@ -16,7 +16,7 @@ PAGES = [
 
 
 def sentences(html, entry, folders, language):
-    text = (folders[0] / html).read_text(encoding="utf-8")
+    text = joined.whole_html(folders[0] / html)
     modules = joined.join_modules(entry, [*folders, joined.LIVE_PAGE])
     return joined._sentences(f"{modules} {text}", language)
 

@@ -155,16 +155,7 @@ function fromAddress() {
   transport.go(asked.has("tick") ? Number(asked.get("tick")) || 0 : transport.last);
 }
 
-for (const id of ["show-grid", "show-quadrants", "show-names"]) {
-  element(id).addEventListener("change", () => {
-    marks.choose({
-      grid: element("show-grid").checked,
-      quadrants: element("show-quadrants").checked,
-      names: element("show-names").checked,
-    });
-    showSoon();
-  });
-}
+marks.obey(element, showSoon);
 for (const [id, step] of [["call-before", -1], ["call-after", 1]]) {
   element(id).addEventListener("click", () => {
     const tick = calls.beside(step, transport.frame);
