@@ -14,6 +14,8 @@ ONE = {
     "data of others becomes a dataclass": (r"get_type_hints\(", "strict_json.py"),
     "what a process uses is looked up": (r"/proc/[^ ]*/stat\"", "linux.py"),
     "a process is controlled": (r"\.prctl|\"prctl\"", "linux.py"),
+    "an expression is evaluated": (r"operator\.truediv", "expressions.py"),
+    "a traceback is parsed": (r"Traceback \(most recent", "recording/printed.py"),
     "a resource is limited": (r"\.setrlimit\(", "linux.py"),
     "the C library is called": (r"CDLL\(None", "linux.py"),
     "a process of a run is begun": (r"os\.execvpe?\(", "run/processes/fork_server_main.py"),

@@ -72,13 +72,13 @@ class Live:
         is_first = self._page is None
         if is_first:
             self._page = _serve(exercise)
-        name = texts.one_line(texts.plain(submission))
+        name = texts.shown(submission)
         title = tr("{submission}, {exercise}", submission=name, exercise=exercise.title)
         when = tr("Verdicts come after the run.")
         if len(plans) > 1:
             when = tr("Verdicts come after the nominal run, some after the varied runs.")
         self._titles = [
-            texts.one_line(texts.plain(translate(check.title)))
+            texts.shown(translate(check.title))
             for check in exercise.checks
             if not is_hidden(exercise.visible.get(check.name, "now"))
         ]

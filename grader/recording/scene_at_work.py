@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from grader.errors import SceneFailure
 from grader.message import msg
-from grader.text import without_controls
+from grader.text import shown
 
 #: What stands in for rclpy's middleware in virtual time.
 STAND_IN: Final = Path(__file__).parents[1] / "run" / "lockstep"
@@ -51,7 +51,7 @@ def scene_at_work(scene: str, *may_raise: type[Exception], within_s: float = 0.0
         if is_of_rclpy or is_stand_in or isinstance(error, MemoryError):
             raise
         where = {"file": Path(place.filename).name, "line": str(place.lineno)}
-        what = without_controls(f"{type(error).__name__}: {error}", "?")[:LONGEST_WORDS]
+        what = shown(f"{type(error).__name__}: {error}", LONGEST_WORDS)
         raised = msg(
             "the scene {scene} raised {what} ({file}, line {line})", scene=scene, what=what, **where
         )

@@ -66,7 +66,7 @@ class ErrorReport:
         """The name of the submission in a class: alice for alice.json and alice/error.json."""
         if (file := self.file) is None:
             return ""
-        return text.one_line(text.plain(file.parent.name if file.stem == "error" else file.stem))
+        return text.shown(file.parent.name if file.stem == "error" else file.stem)
 
     @property
     def state(self) -> str:

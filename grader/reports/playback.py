@@ -26,7 +26,7 @@ def of(
     """
     runs = tuple(_played_run(number, each) for number, each in enumerate(recordings))
     if report is None:
-        return Playback(text.one_line(text.plain(name)), "", runs, (), other)
+        return Playback(text.shown(name), "", runs, (), other)
     where = tr("Where: {where}", where=report.where_first) if report.where_first else ""
     return Playback(
         title=tr("{title}: {score}", title=report.submission, score=report.score_text),

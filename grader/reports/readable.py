@@ -54,7 +54,7 @@ def of_verdict(verdict: Verdict, name: str) -> Verdict:
     return replace(
         verdict,
         check=name,
-        title=plain_text(text.one_line(text.plain(translate(verdict.title)))),
+        title=plain_text(line(verdict.title)),
         score=float(verdict.score),
         max_score=float(verdict.max_score),
         rationale=plain_text(_clipped(verdict.rationale)),

@@ -25,7 +25,7 @@ from grader.run.limits import LIMITS, size
 from grader.run.processes.started_process import SubmissionProcess
 from grader.scenes.scene import Reason
 from grader.submission.start import Submission
-from grader.text import without_controls
+from grader.text import shown
 
 NO_OBSERVATIONS = Observations()
 #: Reasons of a scene's after which nothing more will come.
@@ -139,8 +139,8 @@ def recording_of_nothing(plan: Plan, lost: SimulatorLost) -> Recording:
     how, last_words = str(values.get("how", lost.message)), str(values.get("last", ""))
     # what stands in brackets is ROS's log, and has the submission's words in it
     lines = [line for line in last_words.splitlines() if line and not line.startswith("[")]
-    shown = [without_controls(text, "?")[:LONGEST_WORDS] for text in (how.rstrip("."), *lines[-1:])]
-    flags = (*lost.ending.run.flags, LOST_TWICE.given(words="; ".join(shown)))
+    words = [shown(text, LONGEST_WORDS) for text in (how.rstrip("."), *lines[-1:])]
+    flags = (*lost.ending.run.flags, LOST_TWICE.given(words="; ".join(words)))
     return record(plan, _untouched(plan), (), lost.ending.with_flags(*flags))
 
 

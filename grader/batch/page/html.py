@@ -185,7 +185,7 @@ def _environment() -> jinja2.Environment:
     made.globals.update(
         edge=EDGE_PX,
         units=UNITS,
-        plain=lambda value: text.one_line(text.plain(value)),
+        plain=text.shown,
     )
     return made
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -13,7 +13,7 @@ from grader.run.lockstep import endpoints, waitsets
 from grader.run.lockstep.endpoints import (
     Node,
     Registered,
-    deserialized,
+    pop,
     profile,
     request_id,
     ros_type,
@@ -21,10 +21,11 @@ from grader.run.lockstep.endpoints import (
 )
 from grader.run.lockstep.faults import pass_on
 from grader.run.lockstep.protocol import NEVER
-from grader.run.lockstep.registry import Arrived, Reader, Writer
+from grader.run.lockstep.registry import Reader, Writer
 
 _ActionClient, _ActionServer = _rclpy.ActionClient, _rclpy.ActionServer
 _GoalHandle = _rclpy.ActionGoalHandle
+Made = TypeVar("Made", Reader, Writer)
 
 
 def install() -> None:
@@ -73,13 +74,10 @@ class _Action(Registered):
             self.channel(kind, part), ros_type(part_type), profile(c_qos), message=message
         )
 
-
-def _pop(reader: Reader, identity: Callable[[Arrived], Any]) -> Any:
-    """Return the oldest message after its identity; (None, None) if there is none."""
-    item = reader.pop()
-    if item is None:
-        return None, None
-    return identity(item), deserialized(item.data, reader.message)
+    def of_services(self, make: Callable[..., Made], kind: str, *c_qos: Any) -> dict[str, Made]:
+        """Make an endpoint of each service, in the order of `SERVICES`."""
+        pairs = zip(SERVICES.items(), c_qos, strict=True)
+        return {service: make(kind, part, each) for (service, part), each in pairs}
 
 
 def _sends_request(service: str) -> Callable[[ActionClient, Any], int]:
@@ -96,7 +94,7 @@ def _sends_request(service: str) -> Callable[[ActionClient, Any], int]:
 
 def _pops_response(service: str) -> Callable[[ActionClient, type], Any]:
     """Return the method that pops the oldest response after its number, or (None, None)."""
-    return lambda self, _: _pop(self.responses[service], lambda item: item.number)
+    return lambda self, _: pop(self.responses[service], lambda item: item.number)
 
 
 class ActionClient(_Action, _rclpy.ActionClient):
@@ -109,11 +107,8 @@ class ActionClient(_Action, _rclpy.ActionClient):
         profiles = (goal, result, cancel, feedback, status)
         pass_on(_ActionClient.__init__, self, node, kind, name, *profiles, *more)
         self.prepare(node, kind, name)
-        services = dict(zip(SERVICES, (goal, cancel, result), strict=True))
-        self.requests = {s: self.writer("request", SERVICES[s], qos) for s, qos in services.items()}
-        self.responses = {
-            s: self.reader("response", SERVICES[s], qos) for s, qos in services.items()
-        }
+        self.requests = self.of_services(self.writer, "request", goal, cancel, result)
+        self.responses = self.of_services(self.reader, "response", goal, cancel, result)
         self.feedback = self.reader("topic", "feedback", feedback)
         self.status = self.reader("topic", "status", status)
         self.readers = [self.feedback, self.status, *self.responses.values()]
@@ -133,11 +128,11 @@ class ActionClient(_Action, _rclpy.ActionClient):
 
     def take_feedback(self, _: type) -> Any:
         """Return the oldest feedback, or None."""
-        return _pop(self.feedback, id)[1]
+        return pop(self.feedback, id)[1]
 
     def take_status(self, _: type) -> Any:
         """Return the oldest status, or None."""
-        return _pop(self.status, id)[1]
+        return pop(self.status, id)[1]
 
     def add_to_waitset(self, wait_set: Any) -> None:
         """Add our readers to a wait set."""
@@ -150,7 +145,7 @@ class ActionClient(_Action, _rclpy.ActionClient):
 
 def _pops_request(service: str) -> Callable[[ActionServer, type], Any]:
     """Return the method that pops the oldest request after its identity, or (None, None)."""
-    return lambda self, _: _pop(self.requests[service], request_id)
+    return lambda self, _: pop(self.requests[service], request_id)
 
 
 def _sends_response(service: str) -> Callable[[ActionServer, Any, Any], None]:
@@ -172,11 +167,8 @@ class ActionServer(_Action, _rclpy.ActionServer):
         rest = (goal, result, cancel, feedback, status, result_timeout, *more)
         pass_on(_ActionServer.__init__, self, node, clock, kind, name, *rest)
         self.prepare(node, kind, name)
-        services = dict(zip(SERVICES, (goal, cancel, result), strict=True))
-        self.requests = {s: self.reader("request", SERVICES[s], qos) for s, qos in services.items()}
-        self.responses = {
-            s: self.writer("response", SERVICES[s], qos) for s, qos in services.items()
-        }
+        self.requests = self.of_services(self.reader, "request", goal, cancel, result)
+        self.responses = self.of_services(self.writer, "response", goal, cancel, result)
         self.feedback = self.writer("topic", "feedback", feedback)
         self.status = self.writer("topic", "status", status)
         both = (*self.requests.values(), *self.responses.values())

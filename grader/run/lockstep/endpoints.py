@@ -269,6 +269,14 @@ def header(item: Arrived) -> RequestHeader:
     return made
 
 
+def pop(reader: Reader, identity: Callable[[Arrived], Any]) -> Any:
+    """Return the oldest message after its identity; (None, None) if there is none."""
+    item = reader.pop()
+    if item is None:
+        return None, None
+    return identity(item), deserialized(item.data, reader.message)
+
+
 class Client(Registered, _rclpy.Client):
     """A service client that reads from our reader."""
 
@@ -291,10 +299,7 @@ class Client(Registered, _rclpy.Client):
 
     def take_response(self, _: type) -> Any:
         """Return the oldest response in the reader, or (None, None)."""
-        item = self.reader.pop()
-        if item is None:
-            return None, None
-        return header(item), deserialized(item.data, self.reader.message)
+        return pop(self.reader, header)
 
 
 class Service(Registered, _rclpy.Service):
@@ -309,10 +314,8 @@ class Service(Registered, _rclpy.Service):
 
     def service_take_request(self, _: type) -> Any:
         """Return the oldest request in the reader, or (None, None)."""
-        item = self.reader.pop()
-        if item is None:
-            return None, None
-        return deserialized(item.data, self.reader.message), header(item)
+        identity, request = pop(self.reader, header)
+        return request, identity
 
     def service_send_response(self, response: Any, to: Any) -> None:
         self.respond(self.writer, to, response)
