@@ -175,7 +175,7 @@ def _refusing(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise RecordingError(msg("cannot read the recording: {error}", error=str(error))) from None
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, RecursionError) as error:
         raise RecordingError(
             msg("{path} is damaged: {error}", path=str(path), error=str(error))
         ) from None
@@ -307,18 +307,8 @@ def _subject(folder: Path, name: str) -> Subject:
 
 
 def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        with _refusing(path):
-            text = path.read_bytes()
-        data = strict_json.loads(text.decode())
-    except (ValueError, RecursionError) as error:
-        raise RecordingError(
-            "{path} is damaged: it is not JSON ({error})", path=str(path), error=str(error)
-        ) from None
-    if not isinstance(data, dict):
-        raise RecordingError(
-            "{path} is damaged: expected an object, found {data}",
-            path=str(path),
-            data=f"{data!r:.40}",
-        )
-    return data
+    with _refusing(path):
+        data = strict_json.loads(path.read_bytes().decode())
+        if not isinstance(data, dict):
+            raise ValueError(f"expected an object, found {data!r:.40}")
+        return data
