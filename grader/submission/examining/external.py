@@ -60,12 +60,20 @@ def _node(package: str, **more: Any) -> dict[str, Any]:
 
 def module(name: str) -> ModuleSpec:
     """A module of another package, which nobody has here."""
-    return ModuleSpec(name, _Loader(), is_package=True)
+    return spec_of(_Module(name))
+
+
+def spec_of(made: ModuleType) -> ModuleSpec:
+    """By which a module is imported that is made already."""
+    return ModuleSpec(made.__name__, _Loader(made), is_package=True)
 
 
 class _Loader(Loader):
+    def __init__(self, made: ModuleType) -> None:
+        self._made = made
+
     def create_module(self, spec: ModuleSpec) -> ModuleType:
-        return _Module(spec.name)
+        return self._made
 
     def exec_module(self, module: ModuleType) -> None:
         pass

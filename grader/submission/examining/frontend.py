@@ -1,394 +1,388 @@
 """Launch files in XML and YAML, as ROS's frontend reads them: each entity becomes an action.
 
-YAML has the same entities as XML, and is read as such.
+The two have the same entities. Of XML all attributes are texts, which are converted to what they
+are read as; of YAML they have types, and ROS refuses a truth value where it reads a text.
 """
 
 from __future__ import annotations
 
-import json
-import re
-from collections.abc import Iterator
-from typing import Any, TextIO
+import shlex
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import yaml
 
+from grader.submission.examining.frontend_substitutions import has_later, substitutions
 from grader.submission.examining.steps import not_known
 
-_SUBSTITUTIONS_OF_ROS_1 = ("find", "arg", "optenv", "param")
-_SUBSTITUTION = re.compile(r"\$\(([\w-]+)")
-_PUSHES = ("push_ros_namespace", "push-ros-namespace")
 _OF_ROS_1 = ("param", "rosparam", "remap", "env", "machine", "test", "master")
+#: What releases after Jazzy have.
+_LATER = ("lifecycle_node", "log_debug", "log_info", "log_warning", "log_error")
 
 
-def entities(path: str, *, is_yaml: bool) -> list[Any]:
-    """The actions of a launch file.
+class Entity:
+    """An element of XML, or an entry of YAML; each part of it is read once.
+
+    Args:
+        attributes: of XML texts alone; of YAML lists of entities as well.
+        nested: of XML all elements in it.
+    """
+
+    def __init__(
+        self, tag: str, attributes: dict[str, Any], nested: list[Entity], *, is_xml: bool
+    ) -> None:
+        self.tag, self._nested, self._is_xml = tag, nested, is_xml
+        self._attributes = dict(attributes)
+        self._left = {*attributes, *(each.tag for each in nested if is_xml)}
+
+    @classmethod
+    def of_xml(cls, element: ElementTree.Element) -> Entity:
+        nested = [cls.of_xml(each) for each in element]
+        return cls(element.tag, dict(element.attrib), nested, is_xml=True)
+
+    @classmethod
+    def of_yaml(cls, tag: str, given: Any) -> Entity:
+        if not isinstance(given, dict | list):
+            raise TypeError(f"expected what '{tag}' has, found {given!r:.80}")
+        children = given if isinstance(given, list) else given.get("children", [])
+        if not isinstance(children, list):
+            raise TypeError(f"expected a list of entities in '{tag}', found {children!r:.80}")
+        nested = []
+        for each in children:
+            if not isinstance(each, dict) or len(each) != 1:
+                raise RuntimeError(f"expected one entity in each entry, found {each!r:.80}")
+            nested += [cls.of_yaml(str(name), value) for name, value in each.items()]
+        attributes = given if isinstance(given, dict) else {"children": given}
+        return cls(tag, attributes, nested, is_xml=False)
+
+    def get(self, name: str, kind: Any = str) -> Any:
+        """An attribute; None where there is none. See `type_utils` for kinds."""
+        from launch.utilities.type_utils import coerce_to_type, is_instance_of
+
+        self._left -= {name, f"{name}-sep"} if self._is_xml else {name}
+        value: Any = self._attributes.get(name)
+        if name not in self._attributes:
+            return None
+        if not self._is_xml:
+            if not is_instance_of(value, kind, can_be_str=True):
+                raise TypeError(
+                    f"Attribute '{name}' of Entity '{self.tag}' expected to be of type '{kind}', "
+                    f"got '{type(value)}'"
+                )
+            return value
+        separator = self._attributes.get(f"{name}-sep")
+        try:
+            if separator is None:
+                return coerce_to_type(value, kind, can_be_str=True)
+            of = None if kind is None else kind.__args__[0]
+            return [coerce_to_type(e, of, can_be_str=True) for e in value.split(separator)]
+        except (AttributeError, ValueError):
+            raise TypeError(
+                f"Attribute '{name}' of Entity '{self.tag}' expected to be of type '{kind}'. "
+                f"'{value:.80}' can not be converted to one of those types"
+            ) from None
+
+    def needed(self, name: str) -> str:
+        if (value := self.get(name)) is None:
+            raise AttributeError(f"Attribute '{name}' of Entity '{self.tag}' not found")
+        return str(value)
+
+    def children(self) -> list[Entity]:
+        """All entities in it."""
+        if not self._is_xml and "children" not in self._attributes:
+            raise ValueError(f"Expected entity `{self.tag}` to have children entities")
+        self._left -= {"children", *(each.tag for each in self._nested)}
+        return self._nested
+
+    def several(self, name: str) -> list[Entity]:
+        """The entities of one kind in it."""
+        self._left.discard(name)
+        if self._is_xml:
+            return [each for each in self._nested if each.tag == name]
+        given = self._attributes.get(name, [])
+        if name in self._attributes and not (isinstance(given, list) and given):
+            raise TypeError(
+                f"Attribute '{name}' of Entity '{self.tag}' expected to be a list of dictionaries."
+            )
+        return [self.of_yaml(name, each) for each in given]
+
+    def must_be_through(self) -> None:
+        """Raise ValueError: something of it was not read."""
+        if self._left:
+            raise ValueError(
+                f"Unexpected attribute(s) or nested tag(s) found in `{self.tag}`: "
+                f"{', '.join(sorted(map(str, self._left)))}"
+            )
+
+    def substitutions(self, name: str) -> Any:
+        return None if (text := self.get(name)) is None else substitutions(text)
+
+    def pairs(self, name: str, first: str = "name", second: str = "value") -> list[Any]:
+        """Two attributes of each of the entities of one kind, as substitutions."""
+        found = []
+        for each in self.several(name):
+            pair = tuple(substitutions(each.needed(of)) for of in (first, second))
+            each.must_be_through()
+            found.append((tuple(pair[0]), pair[1]))
+        return found
+
+
+def description(path: str) -> Any:
+    """The description in a launch file; the reader that its name does not call for comes second.
 
     Raises:
         Exception: it is not what ROS reads.
     """
-    with open(path, encoding="utf-8") as file:
-        return [action(each) for each in (_of_yaml(file) if is_yaml else _of_xml(file.read()))]
+    from launch import LaunchDescription
 
-
-def _of_xml(text: str) -> ElementTree.Element:
-    if "<!DOCTYPE" in text:
-        raise not_known("a DOCTYPE")
-    root = ElementTree.fromstring(text)
+    text = Path(path).read_text(encoding="utf-8")
+    readers: list[Callable[[str], Entity]] = [_of_xml, _of_yaml]
+    if path.endswith((".yaml", ".yml")):
+        readers.reverse()
+    try:
+        root = readers[0](text)
+    except Exception as error:
+        try:
+            root = readers[1](text)
+        except Exception:
+            raise error from None  # the first says more
     if root.tag != "launch":
         raise RuntimeError(f"expected 'launch' as root element, found '{root.tag}'")
-    return root
+    return LaunchDescription([action(each) for each in root.children()])
 
 
-def _of_yaml(file: TextIO) -> list[ElementTree.Element]:
-    data = yaml.safe_load(file)
-    if not isinstance(data, dict) or list(data) != ["launch"]:
+def _of_xml(text: str) -> Entity:
+    if "<!DOCTYPE" in text:
+        raise not_known("a DOCTYPE")
+    return Entity.of_xml(ElementTree.fromstring(text))
+
+
+def _of_yaml(text: str) -> Entity:
+    data = yaml.safe_load(text)
+    if not isinstance(data, dict) or len(data) != 1:
         found = ", ".join(map(str, data)) if isinstance(data, dict) else type(data).__name__
         raise RuntimeError(f"expected 'launch' as the one root, found {found:.80}")
-    return _children(data["launch"])
+    ((tag, content),) = data.items()
+    return Entity.of_yaml(str(tag), content)
 
 
-def _children(given: Any) -> list[ElementTree.Element]:
-    if not isinstance(given, list):
-        raise TypeError(f"expected a list of entities, found {type(given).__name__}")
-    found = []
-    for each in given:
-        if not isinstance(each, dict) or len(each) != 1:
-            raise RuntimeError(f"expected one entity in each entry, found {each!r:.80}")
-        found += [_element(str(name), value) for name, value in each.items()]
-    return found
-
-
-def _element(name: str, given: Any) -> ElementTree.Element:
-    made = ElementTree.Element(name)
-    if isinstance(given, list):
-        made.extend(_children(given))
-    elif isinstance(given, dict):
-        for key, value in given.items():
-            _put(made, str(key), value)
-    elif given is not None:
-        raise TypeError(f"expected what '{name}' has, found {given!r:.80}")
-    return made
-
-
-def _put(made: ElementTree.Element, name: str, value: Any) -> None:
-    """An attribute; or children, where a list of them is given."""
-    if name == "children":
-        made.extend(_children(value))
-    elif isinstance(value, list) and value and all(isinstance(each, dict) for each in value):
-        made.extend([_element(name, each) for each in value])
-    else:
-        made.set(name, value if isinstance(value, str) else json.dumps(value))
-
-
-def action(element: ElementTree.Element) -> Any:
-    """The action that an element means."""
+def action(entity: Entity) -> Any:
+    """The action that an entity means."""
     from launch import actions
-    from launch.launch_description_sources import AnyLaunchDescriptionSource
+    from launch.conditions import IfCondition, UnlessCondition
     from launch_ros import actions as ros
 
     #: those that take nothing but some attributes, all of which are needed
     plain: dict[str, tuple[Any, ...]] = {
         "let": (actions.SetLaunchConfiguration, "name", "value"),
         "set_env": (actions.SetEnvironmentVariable, "name", "value"),
-        "append_env": (actions.AppendEnvironmentVariable, "name", "value"),
         "unset_env": (actions.UnsetEnvironmentVariable, "name"),
-        **dict.fromkeys(_PUSHES, (ros.PushROSNamespace, "namespace")),
+        "reset_env": (actions.ResetEnvironment,),
+        "push_ros_namespace": (ros.PushROSNamespace, "namespace"),
+        "push-ros-namespace": (ros.PushROSNamespace, "namespace"),
         "set_parameters_from_file": (ros.SetParametersFromFile, "filename"),
         "set_parameter": (ros.SetParameter, "name", "value"),
         "set_remap": (ros.SetRemap, "from", "to"),
         "set_use_sim_time": (ros.SetUseSimTime, "value"),
         "set_ros_log_dir": (ros.SetROSLogDir, "new_log_dir"),
     }
-    take = _Attributes(element)
-    more = {"condition": take.condition()}
-    match element.tag:
+    more: dict[str, Any] = {}
+    for name, kind in (("if", IfCondition), ("unless", UnlessCondition)):
+        if (text := entity.substitutions(name)) is not None:
+            if more:
+                raise RuntimeError("if and unless conditions can't be used simultaneously")
+            more["condition"] = kind(text)
+    if entity.tag in _LATER and not has_later():
+        raise RuntimeError(
+            f"Unrecognized entity of the type: {entity.tag} (later releases have it)"
+        )
+    match entity.tag:
         case "arg":
+            choices = [each.needed("value") for each in entity.several("choice")]
             made = actions.DeclareLaunchArgument(
-                take.plain("name"),
-                default_value=take("default"),
-                description=take.plain("description", ""),
-                choices=[each.get("value", "") for each in element.findall("choice")] or None,
+                entity.needed("name"),
+                default_value=entity.substitutions("default"),
+                description=entity.get("description"),
+                choices=choices or None,
                 **more,
             )
-            take.ignore("choice")
         case tag if tag in plain:
-            if tag == "append_env":
-                given = {name: take(name) for name in ("prepend", "separator")}
-                more |= {name: value for name, value in given.items() if value is not None}
-            kind, *names = plain[tag]
-            made = kind(*map(take.needed, names), **more)
+            of, *names = plain[tag]
+            made = of(*(substitutions(entity.needed(name)) for name in names), **more)
+        case "append_env":
+            separator, prepend = entity.substitutions("separator"), entity.get("prepend", bool)
+            more |= {} if separator is None else {"separator": separator}
+            more |= {} if prepend is None else {"prepend": _if_substitutions(prepend)}
+            both = (substitutions(entity.needed(name)) for name in ("name", "value"))
+            made = actions.AppendEnvironmentVariable(*both, **more)
+        case "reset":
+            made = actions.ResetLaunchConfigurations(dict(entity.pairs("keep")), **more)
         case "node" | "lifecycle_node":
-            made = _node(element, take, more)
+            made = _node(entity, more)
         case "include":
-            made = actions.IncludeLaunchDescription(
-                AnyLaunchDescriptionSource(take.needed("file")),
-                launch_arguments=[
-                    (_Attributes(each).needed("name"), _Attributes(each).needed("value"))
-                    for each in element
-                    if each.tag in ("arg", "let")
-                ],
-                **more,
-            )
+            given = entity.pairs("arg") + (entity.pairs("let") if has_later() else [])
+            file = substitutions(entity.needed("file"))
+            made = actions.IncludeLaunchDescription(file, launch_arguments=given, **more)
         case "group":
-            scoped = take.plain("scoped", "true").lower() not in ("false", "0")
-            take("forwarding")
-            made = actions.GroupAction([action(each) for each in element], scoped=scoped, **more)
+            options = {name: entity.get(name, bool) for name in ("scoped", "forwarding")}
+            more |= {name: value for name, value in options.items() if value is not None}
+            kept = dict(entity.pairs("keep"))
+            inner = [action(each) for each in entity.children() if each.tag != "keep"]
+            made = actions.GroupAction(inner, launch_configurations=kept, **more)
         case "executable":
-            import shlex
-
-            words = [substitutions(word) for word in shlex.split(take.plain("cmd"))]
-            more |= _process(element, take)
-            made = actions.ExecuteProcess(cmd=words, name=take("name"), **more)
+            more |= _process(entity)
+            made = actions.ExecuteProcess(cmd=_words(entity.needed("cmd")), **more)
         case "timer" | "ros_timer":
-            made = actions.TimerAction(
-                period=take.needed("period"), actions=[action(each) for each in element], **more
-            )
-        case "log" | "log_info":
-            take.ignore("message", "level")
-            made = actions.LogInfo(msg="", **more)
+            if (period := entity.get("period", float)) is None:
+                raise AttributeError(f"Attribute 'period' of Entity '{entity.tag}' not found")
+            entity.get("cancel_on_shutdown", bool)
+            of = actions.TimerAction if entity.tag == "timer" else ros.ROSTimer
+            inner = [action(each) for each in entity.children()]
+            made = of(period=_if_substitutions(period), actions=inner, **more)
+        case "log" | "log_debug" | "log_info" | "log_warning" | "log_error":
+            if has_later():
+                entity.get("level")
+            made = actions.LogInfo(msg=substitutions(entity.needed("message")), **more)
         case "shutdown":
-            take.ignore("reason")
+            entity.get("reason")
             made = actions.Shutdown(**more)
         case other if other in _OF_ROS_1:
             raise RuntimeError(f"Unrecognized entity of the type: {other} (it is one of ROS 1)")
         case other:
             raise not_known(f"<{other}>")
-    take.must_be_through()
+    entity.must_be_through()
     return made
 
 
-def _node(element: ElementTree.Element, take: _Attributes, more: dict[str, Any]) -> Any:
+def _node(entity: Entity, more: dict[str, Any]) -> Any:
     from launch_ros.actions import LifecycleNode, Node
 
-    parameters: list[Any] = []
-    remappings = []
-    for child in element:
-        of = _Attributes(child)
-        if child.tag == "param":
-            parameters.append(_param(child, of))
-        elif child.tag == "remap":
-            remappings.append((of.needed("from"), of.needed("to")))
-        elif child.tag != "env":
-            raise ValueError(f"Unexpected nested entity '{child.tag}' in node")
-    own, ros = (
-        [substitutions(word) for word in _words(take.plain(name, ""))]
-        for name in ("args", "ros_args")
-    )
-    take.ignore("machine", "log_cmd", "cached_output")
-    return (LifecycleNode if element.tag == "lifecycle_node" else Node)(
-        package=take.needed("pkg"),
-        executable=take.needed("exec"),
-        name=take("name"),
-        namespace=take("namespace"),
+    parameters = [_param(each) for each in entity.several("param")]
+    remappings = entity.pairs("remap", "from", "to")
+    own, ros = (entity.get(name) for name in ("args", "ros_args"))
+    if (namespace := entity.substitutions("namespace")) is not None:
+        more["namespace"] = namespace
+    return (LifecycleNode if entity.tag == "lifecycle_node" else Node)(
+        package=entity.substitutions("pkg"),
+        executable=substitutions(entity.needed("exec")),
+        exec_name=entity.substitutions("exec_name"),
         parameters=parameters,
         remappings=remappings,
-        arguments=own,
-        ros_arguments=ros,
-        exec_name=take("exec_name"),
-        **_process(element, take),
+        arguments=None if own is None else _words(own),
+        ros_arguments=None if ros is None else _words(ros),
+        **_process(entity),
         **more,
     )
 
 
-def _process(element: ElementTree.Element, take: _Attributes) -> dict[str, Any]:
+def _process(entity: Entity) -> dict[str, Any]:
+    """Options of whatever is started."""
     from launch.actions import Shutdown
 
-    made: dict[str, Any] = {"cwd": take("cwd"), "prefix": take("launch-prefix")}
-    made["shell"] = take.plain("shell", "false").lower() in ("true", "1")
-    made["respawn"] = take("respawn") or False
-    made["respawn_delay"] = float(take.plain("respawn_delay", "0"))
-    made["respawn_max_retries"] = int(take.plain("respawn_max_retries", "-1"))
-    made["on_exit"] = [Shutdown()] if take.plain("on_exit", "") else None
-    env = [_Attributes(each) for each in element.findall("env")]
-    made["additional_env"] = {each.plain("name"): each.needed("value") for each in env}
-    take.ignore("output", "emulate_tty", "sigkill_timeout", "sigterm_timeout")
+    made = {
+        **{name: entity.substitutions(name) for name in ("name", "cwd")},
+        "prefix": entity.substitutions("launch-prefix"),
+        "additional_env": dict(entity.pairs("env")),
+    }
+    kinds = {"respawn_delay": float, "respawn_max_retries": int, "shell": bool}
+    typed = {name: entity.get(name, kind) for name, kind in kinds.items()}
+    typed["respawn"] = entity.substitutions("respawn")
+    made |= {name: value for name, value in typed.items() if value is not None}
+    if (on_exit := entity.get("on_exit")) is not None:
+        if on_exit != "shutdown":
+            raise ValueError(f"Attribute on_exit expected to be shutdown but got `{on_exit}`")
+        made["on_exit"] = [Shutdown()]
+    for name, kind in (("output", str), ("emulate_tty", bool)):
+        entity.get(name, kind)
+    for name in ("sigkill_timeout", "sigterm_timeout"):
+        entity.get(name, float)
     return made
 
 
-def _param(element: ElementTree.Element, take: _Attributes) -> Any:
-    from launch_ros.parameter_descriptions import ParameterFile, ParameterValue
+def _param(entity: Entity) -> Any:
+    from launch_ros.parameter_descriptions import ParameterFile
 
-    if (file := take("from")) is not None:
-        is_template = take.plain("allow_substs", "false").lower() in ("true", "1")
-        take.must_be_through()
-        return ParameterFile(file, allow_substs=is_template)
-    name, kind = take.plain("name"), take.plain("type", "")
-    if len(element):
-        inner = [_param(each, _Attributes(each)) for each in element if each.tag == "param"]
-        return {name: {k: v for each in inner for k, v in each.items()}}
-    text, separator = take.plain("value"), take.plain("value-sep", "")
-    take.must_be_through()
-    if separator:  # a list, of texts or of what YAML reads
-        return {name: [substitutions(part) for part in text.split(separator)]}
-    value = substitutions(text)
-    kinds = {"str": str, "string": str, "int": int, "float": float, "bool": bool}
-    if kind and kind not in kinds:
-        return {name: value}
-    return {name: ParameterValue(_joined(value), value_type=kinds.get(kind))}
+    file, name = entity.substitutions("from"), entity.get("name")
+    is_template = entity.get("allow_substs", bool)
+    if (file is None) == (name is None):
+        raise RuntimeError("a param has either a name or from")
+    if file is None:
+        if is_template is not None:
+            raise RuntimeError("'allow_substs' can only be used together with 'from' attribute")
+        return _nested([entity])
+    entity.must_be_through()
+    if isinstance(is_template, str):
+        is_template = substitutions(is_template)
+    return ParameterFile(file, allow_substs=is_template or False)
 
 
-def _joined(value: Any) -> Any:
-    """A value that YAML reads, though it may hold no substitution."""
+def _nested(entities: Iterable[Entity]) -> dict[Any, Any]:
+    """Parameters, of which some hold others."""
+    from launch_ros.parameter_descriptions import ParameterValue
+
+    scalars = {"str": str, "bool": bool, "int": int, "float": float}
+    kinds = {**scalars, "yaml": None}
+    kinds |= {f"list_of_{name}": list[kind] for name, kind in scalars.items()}  # type: ignore[valid-type]
+    found: dict[Any, Any] = {}
+    for each in entities:
+        name = tuple(substitutions(each.needed("name")))
+        of = each.get("type", None)
+        if of is not None and of not in kinds:
+            raise ValueError(f"Got invalid type identifier '{of}'")
+        kind = None if of is None else kinds[of]
+        value, inner = each.get("value", kind), each.several("param")
+        each.must_be_through()
+        if (value is None) == (not inner) or (inner and of is not None):
+            raise RuntimeError("a param has either a value or params in it")
+        if inner:
+            found[name] = _nested(inner)
+        else:
+            found[name] = ParameterValue(_if_substitutions(value), value_type=kind)
+    return found
+
+
+def _if_substitutions(value: Any) -> Any:
+    """A value, or the substitutions in it; of a list, which is of one type, of each item."""
     from launch._core import TextSubstitution
 
-    return [TextSubstitution(text=value)] if isinstance(value, str) else value
+    if isinstance(value, list):
+        found = [_if_substitutions(each) for each in value]
+        if len({type(each) for each in found if not isinstance(each, list)}) > 1:
+            raise ValueError("The result is a non-uniform list")
+        return found
+    if not isinstance(value, str):
+        return value
+    match substitutions(value):
+        case [TextSubstitution(text=text)]:
+            return text
+        case parts:
+            return parts
 
 
-def _words(text: str) -> Iterator[str]:
-    """Words at blanks that are in no `$(...)` and no quotes."""
-    depth, quote, word = 0, "", ""
-    for at, sign in enumerate(text):
-        if sign in "'\"" and not depth:
-            quote = "" if quote == sign else quote or sign
-            if quote != sign and quote:
-                word += sign
-            continue
-        depth += text.startswith("$(", at)
-        if sign == ")" and depth:
-            depth -= 1
-        if sign.isspace() and not depth and not quote:
-            if word:
-                yield word
-            word = ""
-        else:
-            word += sign
-    if word:
-        yield word
-
-
-class _Attributes:
-    """The attributes of an element, each to be taken once; ROS refuses what nobody takes."""
-
-    def __init__(self, element: ElementTree.Element) -> None:
-        self._tag = element.tag
-        self._left = dict(element.attrib)
-
-    def __call__(self, name: str) -> Any:
-        text = self._left.pop(name, None)
-        return None if text is None else substitutions(text)
-
-    def needed(self, name: str) -> Any:
-        return substitutions(self.plain(name))
-
-    def plain(self, name: str, default: str | None = None) -> str:
-        if name not in self._left and default is None:
-            raise AttributeError(f"Attribute '{name}' of Entity '{self._tag}' not found")
-        return self._left.pop(name, default or "")
-
-    def condition(self) -> Any:
-        from launch.conditions import IfCondition, UnlessCondition
-
-        for name, kind in (("if", IfCondition), ("unless", UnlessCondition)):
-            if name in self._left:
-                return kind(self(name))
-        return None
-
-    def ignore(self, *names: str) -> None:
-        for name in names:
-            self._left.pop(name, None)
-
-    def must_be_through(self) -> None:
-        if self._left:
-            raise ValueError(f"Unexpected attribute(s) found in `{self._tag}`: {set(self._left)}")
-
-
-# Substitutions: `$(name argument ...)`, one in another --------------------------------------------
-
-
-def substitutions(text: str) -> Any:
-    """A text with `$(...)` as the substitutions that it means."""
-    parts, _ = _parse(text, 0, top=True)
-    return parts if parts else ""
-
-
-def _parse(text: str, at: int, top: bool, quote: str = "") -> tuple[list[Any], int]:
-    """Parts up to the end of a text, an argument or a quoted one, and where that is."""
+def _words(text: str) -> list[list[Any]]:
+    """The words of a command, split after its substitutions are found, as ROS does."""
     from launch._core import TextSubstitution
 
-    parts: list[Any] = []
-    plain = ""
-
-    def flush() -> None:
-        nonlocal plain
-        if plain:
-            parts.append(TextSubstitution(text=plain))
-            plain = ""
-
-    while at < len(text):
-        if (found := _SUBSTITUTION.match(text, at)) is not None:
-            flush()
-            arguments, at = _arguments(text, found.end())
-            parts.append(_substitution(found[1], arguments))
+    words: list[list[Any]] = []
+    word: list[Any] = []
+    for part in substitutions(text):
+        if not isinstance(part, TextSubstitution):
+            word.append(part)
             continue
-        sign = text[at]
-        if sign == "\\" and at + 1 < len(text):
-            plain += text[at + 1]
-            at += 2
+        tokens = [[TextSubstitution(text=each)] for each in shlex.split(part.text)]
+        if not tokens or (part.text[0].isspace() and word):
+            words.append(word)
+            word = []
+        if not tokens:
             continue
-        if not top and not quote and (sign.isspace() or sign == ")"):
-            break
-        if quote and sign == quote:
-            break
-        if not top and not quote and sign in "'\"":
-            flush()
-            inner, at = _parse(text, at + 1, top=False, quote=sign)
-            parts += inner
-            at += 1
-            continue
-        plain += sign
-        at += 1
-    flush()
-    return parts, at
-
-
-def _arguments(text: str, at: int) -> tuple[list[list[Any]], int]:
-    """The arguments of a `$(name ...)`, and where it ends."""
-    found: list[list[Any]] = []
-    while at < len(text):
-        if text[at].isspace():
-            at += 1
-        elif text[at] == ")":
-            return found, at + 1
-        else:
-            parts, at = _parse(text, at, top=False)
-            found.append(parts)
-    raise RuntimeError(f"a substitution has no end: {text[:80]!r}")
-
-
-def _substitution(name: str, arguments: list[list[Any]]) -> Any:
-    from launch import substitutions as plain
-    from launch_ros import substitutions as ros
-
-    kinds: dict[str, Any] = {
-        "var": plain.LaunchConfiguration,
-        "env": plain.EnvironmentVariable,
-        "command": plain.Command,
-        "eval": plain.PythonExpression,
-        "anon": plain.AnonName,
-        "not": plain.NotSubstitution,
-        "and": plain.AndSubstitution,
-        "or": plain.OrSubstitution,
-        "equals": plain.EqualsSubstitution,
-        "not-equals": plain.NotEqualsSubstitution,
-        "if": plain.IfElseSubstitution,
-        "file-content": plain.FileContent,
-        "find-pkg-share": ros.FindPackageShare,
-        "find-pkg-prefix": ros.FindPackagePrefix,
-    }
-    if name in ("dirname", "filename"):
-        return plain.ThisLaunchFileDir() if name == "dirname" else plain.ThisLaunchFile()
-    if name == "find-exec":
-        return plain.FindExecutable(name=arguments[0])
-    if name == "exec-in-pkg":
-        return ros.ExecutableInPackage(executable=arguments[0], package=arguments[1])
-    second = {"env": "default_value", "var": "default", "command": "on_stderr"}.get(name)
-    if second and len(arguments) == 2:
-        return kinds[name](arguments[0], **{second: arguments[1]})
-    if name == "path-join":
-        return plain.PathJoinSubstitution(arguments)
-    if name in _SUBSTITUTIONS_OF_ROS_1:
-        raise RuntimeError(f"Unknown substitution: {name}")
-    if name not in kinds:
-        raise not_known(f"$({name})")
-    return kinds[name](*arguments)
+        word += tokens[0]
+        if len(tokens) > 1:
+            words.append(word)
+            words += tokens[1:-1]
+            word = tokens[-1]
+        if part.text[-1].isspace():
+            words.append(word)
+            word = []
+    return [*words, word] if word else words

@@ -7,7 +7,7 @@ import os
 import re
 import shlex
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final
@@ -41,8 +41,15 @@ FOLLOWED: Final = (
     *("ExecuteProcess", "ExecuteLocal", "RegisterEventHandler"),
     *("DeclareLaunchArgument", "GroupAction", "IncludeLaunchDescription", "LaunchDescription"),
     *("LogInfo", "Node", "LifecycleNode", "ComposableNodeContainer", "OpaqueFunction"),
-    *("PushROSNamespace", "PushRosNamespace"),
-    *("ROSTimer", "ResetLaunchConfigurations", "SetLaunchConfiguration", "SetParameter"),
+    *("PushROSNamespace", "PushRosNamespace", "PushEnvironment", "PopEnvironment"),
+    *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetEnvironment"),
+    *(
+        "ROSTimer",
+        "UnregisterEventHandler",
+        "ResetLaunchConfigurations",
+        "SetLaunchConfiguration",
+        "SetParameter",
+    ),
     *("SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime", "TimerAction"),
     "UnsetLaunchConfiguration",
 )
@@ -92,6 +99,8 @@ class LaunchRecord:
         self._found: dict[str, list[Any]] = defaultdict(list)
         self._texts: list[str] = []
         self._depth = 0
+        #: the launch file that is evaluated
+        self._file = ""
         #: descriptions that were read, in their order
         self.sources: list[str] = []
         self._time = LaunchTime(self)
@@ -167,10 +176,11 @@ class LaunchRecord:
                 self.handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
         after, delay_s = self._time.when
         words, lacking = self._with_sources(start.words)
+        printed = f"{name}-{number + 1}"[:LONG]
         starts.append(
             replace(
                 start,
-                name=f"{name}-{number + 1}"[:LONG],
+                name=printed,
                 executable=start.executable[:LONG],
                 words=words,
                 lacking=(*start.lacking, *lacking)[:_MOST],
@@ -178,7 +188,8 @@ class LaunchRecord:
                 delay_s=delay_s,
             )
         )
-        self._time.started(number, action)
+        if action is not None:
+            self._time.started(number, printed, action)
 
     def _with_sources(self, words: Sequence[str]) -> tuple[tuple[str, ...], list[str]]:
         """Arguments with the submission's files where they come from; and what cannot be given."""
@@ -216,6 +227,15 @@ class LaunchRecord:
         """Actions that are done when something has happened."""
         self._time.handler(handler)
 
+    def unregister(self, handler: Any) -> None:
+        self._time.unregister(handler)
+
+    def executed(self, action: Any) -> None:
+        self._time.executed(action)
+
+    def shut_down(self) -> None:
+        self._time.shut_down()
+
     def let_time_pass(self) -> None:
         self._time.let_pass()
 
@@ -228,10 +248,9 @@ class LaunchRecord:
         described = {"condition": "", **node}
         path, line = described.pop("made", ("", 0))
         file = self._place.own(path)
-        current = self.context.locals_.get("current_launch_file_path") or ""
         return {
             **described,
-            "file": file or self._place.own(current),
+            "file": file or self._place.own(self._file),
             "line": line if file else 0,
             "condition": described["condition"][:LONG],
         }
@@ -250,7 +269,7 @@ class LaunchRecord:
         if action.shell and not _OF_A_SHELL.search(text := " ".join(words)):
             words = shlex.split(text)
         program = os.path.basename(words[0]) if words else ""
-        if words[:2] == ["ros2", "run"] and len(words) > 3:
+        if [program, *words[1:2]] == ["ros2", "run"] and len(words) > 3:
             package, executable, *arguments = words[2:]
         elif program == "rviz2":
             package, executable, arguments = program, program, words[1:]
@@ -322,23 +341,21 @@ class LaunchRecord:
         self.lack("file", wanted, meant)
         return meant or wanted
 
-    def include(self, path: str, arguments: dict[str, str]) -> bool:
+    def include(self, path: str, action: Any, arguments: Sequence[tuple[str, str]]) -> None:
         """Another launch file: followed where it is the submission's own."""
         if self._place.borrowed(path)[0]:
             path = self.path(path)
         if path.startswith(f"{self._place.stubs}/share/"):
-            self._include_external(path, arguments)
-            return True
+            self._include_external(path, dict(arguments))
+            return
         self._depth += 1
         if self._depth > 20:
             raise RecursionError("launch files that include each other")
-        self.context.launch_configurations.update(arguments)
         for each in self._place.all:
             if own := each.own(path, self._place.prefix):
                 self._add("included", f"{each.name}/{own}"[:LONG])
-        self.run(path)
+        self.run(path, lambda description: action.included(description, arguments))
         self._depth -= 1
-        return True
 
     def _include_external(self, path: str, arguments: dict[str, str]) -> None:
         from ament_index_python.packages import get_package_share_directory
@@ -369,6 +386,8 @@ class LaunchRecord:
         from ament_index_python.packages import get_package_prefix
         from launch.substitutions import SubstitutionFailure
 
+        if words and os.path.basename(words[0]) == "ros2":
+            words = ["ros2", *words[1:]]
         if words[:2] == ["ros2", "run"] and len(words) > 3:
             words = words[3:]
         if words[:1] == ["ros2"]:
@@ -400,20 +419,32 @@ class LaunchRecord:
 
     # Files ----------------------------------------------------------------------------------------
 
-    def run(self, path: str) -> None:
+    def run(self, path: str, entities: Callable[[Any], list[Any]] = lambda made: [made]) -> None:
+        """Evaluate a launch file.
+
+        Args:
+            entities: what is done of its description.
+        """
         from launch._core import walk
 
-        read = self.path(path)
-        before = self.context.locals_.get("current_launch_file_path")
-        self.context.locals_["current_launch_file_path"] = path
+        read, before = self.path(path), self._file
         if path.endswith(".py"):
-            walk(_python(path, read), self.context)
+            description = _python(path, read)
         else:
             from grader.submission.examining import frontend
 
-            is_yaml = path.endswith((".yaml", ".yml"))
-            walk(frontend.entities(read, is_yaml=is_yaml), self.context)
-        self.context.locals_["current_launch_file_path"] = before
+            description = frontend.description(read)
+        self._file = self.context.locals_["current_launch_file_path"] = path
+        walk(entities(description), self.context)
+        self._file = before  # and not what `ThisLaunchFile` is, as in the original
+
+    def filled(self, text: str) -> str:
+        """A text with its substitutions, as in a launch file of XML."""
+        from launch._core import perform_substitutions
+
+        from grader.submission.examining.frontend_substitutions import substitutions
+
+        return str(perform_substitutions(self.context, substitutions(text)))
 
     def xacro(self, words: list[str]) -> commands.Ended:
         """What xacro does: its exit code, and what it prints to either side."""

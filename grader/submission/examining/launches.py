@@ -102,7 +102,7 @@ def _is_meant(name: str, place: Workspace) -> bool:
 
 
 class _Unknown:
-    """Modules that the doubles have not, and the originals may: no fault of the package."""
+    """Modules that the doubles have under another name, or not at all: no fault of the package."""
 
     def __init__(self, place: Workspace) -> None:
         self._declared = set(place.judged.setup.depends)
@@ -118,6 +118,10 @@ class _Unknown:
         if importlib.machinery.PathFinder.find_spec(name, path) is not None:
             return None
         if is_of_launch:
+            from launch import _core
+
+            if (made := _core.submodule(name)) is not None:
+                return external.spec_of(made)
             what = msg("imports {name}, which the grader does not have", name=name)
             raise NotKnown(it(what))
         return external.module(name)

@@ -111,7 +111,7 @@ def test_the_environment_is_appended_to_or_prepended_with_any_separator(tmp_path
             return Node(package='rviz2', executable='rviz2', arguments=[EnvironmentVariable(name)])
         return LaunchDescription([
             AppendEnvironmentVariable('A', 'a'), AppendEnvironmentVariable('A', 'b'),
-            AppendEnvironmentVariable('A', 'c', prepend='yes'),
+            AppendEnvironmentVariable('A', 'c', prepend=True),
             AppendEnvironmentVariable('A', 'd', True, TextSubstitution(text='-')), told('A'),
             SetEnvironmentVariable('B', ''), AppendEnvironmentVariable('B', 'b', separator=','),
             told('B')])
@@ -157,7 +157,7 @@ IN_XML = """<launch>
 <let name="file" value="$(find-pkg-share rviz2)/a.rviz"/>
 <group if="$(var rviz)">
   <push_ros_namespace namespace="in"/>
-  <node pkg="rviz2" exec="rviz2" name="$(var rviz)" args="-d '$(var file)' --x">
+  <node pkg="rviz2" exec="rviz2" name="$(var rviz)" args="-d $(var file) --x">
     <param name="a" value="1.5"/><param name="b" value="1" type="str"/>
     <remap from="c" to="d"/>
   </node>

@@ -2,7 +2,7 @@
 
 from logging import getLogger
 
-from launch import _core, actions, conditions, events, substitutions
+from launch import _core, actions, conditions, events, substitutions, utilities
 from launch._core import (
     Action,
     Condition,
@@ -10,6 +10,8 @@ from launch._core import (
     LaunchDescription,
     LaunchDescriptionEntity,
     LaunchDescriptionSource,
+    LaunchIntrospector,
+    LaunchService,
     Substitution,
     module,
     unknown,
@@ -18,14 +20,8 @@ from launch.events import Event, EventHandler, event_handlers
 
 SomeSubstitutionsType = SomeActionsType = SomeEntitiesType = object
 
-action = module("launch.action", Action)
-condition = module("launch.condition", Condition)
 descriptions = module("launch.descriptions", _core.Executable)
-frontend = module("launch.frontend", __path__=[])  # extensions of it are not followed
-launch_context = module("launch.launch_context", LaunchContext)
-launch_description = module("launch.launch_description", LaunchDescription)
-launch_description_entity = module("launch.launch_description_entity", LaunchDescriptionEntity)
-launch_description_source = module("launch.launch_description_source", LaunchDescriptionSource)
+frontend = module("launch.frontend")  # extensions of it are not followed
 launch_description_sources = module(
     "launch.launch_description_sources",
     _core.AnyLaunchDescriptionSource,
@@ -34,14 +30,6 @@ launch_description_sources = module(
     _core.PythonLaunchDescriptionSource,
 )
 logging = module("launch.logging", get_logger=getLogger)
-some_actions_type = module("launch.some_actions_type", SomeActionsType=object)
-some_entities_type = module("launch.some_entities_type", SomeEntitiesType=object)
-some_substitutions_type = module("launch.some_substitutions_type", SomeSubstitutionsType=object)
-substitution = module("launch.substitution", Substitution)
-utilities = module(
-    "launch.utilities", _core.normalize_to_list_of_substitutions, _core.perform_substitutions
-)
-
 __all__ = [
     "Action",
     "Condition",
@@ -51,6 +39,8 @@ __all__ = [
     "LaunchDescription",
     "LaunchDescriptionEntity",
     "LaunchDescriptionSource",
+    "LaunchIntrospector",
+    "LaunchService",
     "SomeActionsType",
     "SomeEntitiesType",
     "SomeSubstitutionsType",

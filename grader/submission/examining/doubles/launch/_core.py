@@ -8,6 +8,7 @@ same names, arguments and refusals. Nothing is started: what would be is taken d
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterable
 from itertools import islice
@@ -20,15 +21,44 @@ from grader.submission.examining.steps import not_known
 _MOST_ENTITIES = 10_000
 
 
+#: Modules of the original whose names are not those of what is in them.
+_OTHERWISE_NAMED = (
+    *("boolean_substitution", "find_package", "shutdown_action", "timer_event"),
+    *("matchers", "process_matchers", "process_targeted_event"),
+)
+
+
 def unknown(module: str) -> Any:
-    """The `__getattr__` of a module: names that are not here may be in the original."""
+    """The `__getattr__` of a module: names that are not here may be in the original.
+
+    The original has a module for each of its classes, which a double finds by that name.
+    """
+    vars(sys.modules[module]).setdefault("__path__", [])
 
     def missing(name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        raise not_known(f"{module}.{name}")
+        found = submodule(f"{module}.{name}")
+        if found is None:
+            raise not_known(f"{module}.{name}")
+        return found
 
     return missing
+
+
+def submodule(name: str) -> ModuleType | None:
+    """The module `launch.actions.group_action` of a double: with what `launch.actions` has."""
+    parent, _, last = name.rpartition(".")
+    if parent not in sys.modules:
+        return None
+    names = {each: value for each, value in vars(sys.modules[parent]).items() if each[0] != "_"}
+    if last not in (*map(_snake_case, names), *_OTHERWISE_NAMED):
+        return None
+    return module(name, **names)
+
+
+def _snake_case(name: str) -> str:
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
 
 
 def exported(name: str, *more: str) -> list[str]:
@@ -42,8 +72,8 @@ def module(name: str, *given: Any, **more: Any) -> ModuleType:
     """A module that is a file of its own in the original: classes and functions, more by name."""
     names = {each.__name__: each for each in given} | more
     made = ModuleType(name, f"A double of ROS's `{name}`.")
-    made.__dict__.update(names, __all__=list(names), __getattr__=unknown(name))
     sys.modules[name] = made
+    made.__dict__.update(names, __all__=list(names), __getattr__=unknown(name))
     return made
 
 
@@ -70,7 +100,32 @@ class LaunchContext:
         self.environment = os.environ
         self.locals_: dict[str, Any] = {}
         self.record = Record()
-        self.depth = 0
+        self._environment = dict(os.environ)
+        self._environments: list[dict[str, str]] = []
+        self._configurations: list[dict[str, Any]] = []
+
+    def push_launch_configurations(self) -> None:
+        self._configurations.append(dict(self.launch_configurations))
+
+    def pop_launch_configurations(self) -> None:
+        if not self._configurations:
+            raise RuntimeError("launch_configurations stack unexpectedly empty")
+        self.launch_configurations = self._configurations.pop()
+
+    def push_environment(self) -> None:
+        self._environments.append(dict(os.environ))
+
+    def pop_environment(self) -> None:
+        if not self._environments:
+            raise RuntimeError("environment stack unexpectedly empty")
+        self._set_environment(self._environments.pop())
+
+    def reset_environment(self) -> None:
+        self._set_environment(self._environment)
+
+    def _set_environment(self, variables: dict[str, str]) -> None:
+        os.environ.clear()
+        os.environ.update(variables)
 
     @property
     def locals(self) -> Any:
@@ -175,7 +230,10 @@ class Action(LaunchDescriptionEntity):
 
     def visit(self, context: LaunchContext) -> list[Any] | None:
         if self.condition is None or self.condition.evaluate(context):
-            return self.execute(context)
+            try:
+                return self.execute(context)
+            finally:
+                context.record.executed(self)
         self.skip(context)
         return None
 
@@ -227,9 +285,15 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self.entities
 
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[Any]:
-        from launch.actions import DeclareLaunchArgument
+        from launch.actions import DeclareLaunchArgument, GroupAction
 
-        return [each for each in self.entities if isinstance(each, DeclareLaunchArgument)]
+        found: list[Any] = []
+        for each in self.entities:
+            if isinstance(each, DeclareLaunchArgument):
+                found.append(each)
+            elif isinstance(each, GroupAction):
+                found += LaunchDescription(each.actions).get_launch_arguments()
+        return [each for each in found if each.condition is None]
 
 
 class LaunchDescriptionSource:
@@ -264,15 +328,28 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
         super().__init__(None, launch_file_path, "interpreted launch file")
 
 
+class LaunchService:
+    """Launches without `ros2 launch`, behind `if __name__ == "__main__"`: that is not done here."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        raise not_known(type(self).__name__)
+
+
+class LaunchIntrospector(LaunchService):
+    pass
+
+
 def walk(entities: Any, context: LaunchContext, depth: int = 0) -> None:
-    """Visit what a launch service would."""
+    """Visit what a launch service would.
+
+    Raises:
+        TypeError: it is no list of actions.
+    """
     if entities is None:
         return
-    if isinstance(entities, LaunchDescriptionEntity):
-        entities = [entities]
-    for entity in list(entities):
-        if entity is None:
-            continue
+    if not isinstance(entities, Iterable):
+        raise TypeError(f"expected a list of actions, found {type(entities).__name__}")
+    for entity in entities:
         if not isinstance(entity, LaunchDescriptionEntity):
             raise TypeError(
                 f"expected an action in the launch description, found {type(entity).__name__}"

@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterable
 from typing import Any
 
-import yaml
 from launch._core import (
     Action,
     AnyLaunchDescriptionSource,
@@ -19,9 +18,9 @@ from launch._core import (
     normalize_to_list_of_substitutions,
     text_of,
     unknown,
-    walk,
 )
-from launch.conditions import evaluate_condition_expression
+from launch.events import Shutdown as ShutdownEvent
+from launch.utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
 
 from grader.message import msg
 from grader.submission.examining.steps import not_known
@@ -92,15 +91,26 @@ class IncludeLaunchDescription(Action):
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
         source = self.launch_description_source
-        given = {
-            text_of(context, name): text_of(context, value) for name, value in self.launch_arguments
-        }
+        given = [(text_of(context, n), text_of(context, v)) for n, v in self.launch_arguments]
         if source.given is not None:
-            context.launch_configurations.update(given)
-            return [source.given]
-        path = text_of(context, source.location_)
-        context.record.include(path, given)
+            return self.included(source.given, given)
+        context.record.include(text_of(context, source.location_), self, given)
         return None
+
+    def included(self, description: Any, given: Iterable[tuple[str, str]]) -> list[Any]:
+        """What is done of a description that these arguments are given.
+
+        Raises:
+            RuntimeError: it needs others, even where they are set outside.
+        """
+        settings = dict(given)
+        for each in description.get_launch_arguments():
+            if each.default_value is None and each.name not in settings:
+                raise RuntimeError(
+                    f"Included launch description missing required argument '{each.name}' "
+                    f"(description: '{each.description}'), given: [{', '.join(settings)}]"
+                )
+        return [*(SetLaunchConfiguration(*each) for each in settings.items()), description]
 
 
 class GroupAction(Action):
@@ -114,22 +124,20 @@ class GroupAction(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self._actions = list(actions)
+        self.actions = list(actions)
         self._scoped, self._forwarding = scoped, forwarding
         self._more = launch_configurations or {}
 
-    def execute(self, context: LaunchContext) -> None:
-        before = dict(context.launch_configurations)
-        locals_ = dict(context.locals_)
-        if self._scoped and not self._forwarding:
-            context.launch_configurations.clear()
-        for name, value in self._more.items():
-            context.launch_configurations[text_of(context, name)] = text_of(context, value)
-        walk(self._actions, context)
-        if self._scoped:
-            context.launch_configurations.clear()
-            context.launch_configurations.update(before)
-            context.locals_ = locals_
+    def execute(self, context: LaunchContext) -> list[Any]:
+        entries = [SetLaunchConfiguration(*each) for each in self._more.items()]
+        if not self._scoped:
+            return [*entries, *self.actions]
+        if not self._forwarding:
+            entries = [ResetEnvironment(), ResetLaunchConfigurations(self._more)]
+        return [
+            *(PushLaunchConfigurations(), PushEnvironment(), *entries, *self.actions),
+            *(PopEnvironment(), PopLaunchConfigurations()),
+        ]
 
 
 class TimerAction(Action):
@@ -139,12 +147,12 @@ class TimerAction(Action):
         super().__init__(**kwargs)
         if isinstance(period, int):
             raise TypeError(f"'TimerAction' expected 'period' to be a float, but got {period!r}")
-        self.period = period
+        period = float(period) if isinstance(period, str) else period
+        self.period = normalize_typed_substitution(period, float)
         self.actions = list(actions)
 
     def execute(self, context: LaunchContext) -> None:
-        given = self.period
-        seconds = float(given if isinstance(given, float) else text_of(context, given))
+        seconds = perform_typed_substitution(context, self.period, float)
         if not 0 <= seconds <= _LONGEST_S:
             raise ValueError(f"a period of {seconds} s")
         context.record.later(self.actions, seconds)
@@ -180,6 +188,11 @@ class RegisterEventHandler(Action):
         context.record.handler(self.event_handler)
 
 
+class UnregisterEventHandler(RegisterEventHandler):
+    def execute(self, context: LaunchContext) -> None:
+        context.record.unregister(self.event_handler)
+
+
 class ExecuteLocal(Action):
     def __init__(
         self,
@@ -204,7 +217,8 @@ class ExecuteLocal(Action):
             normalize_to_list_of_substitutions(output)
         self.process_description = process_description
         self.on_exit, self.shell = on_exit, shell
-        self._respawn, self._respawns = respawn, (respawn_delay or 0.0, respawn_max_retries)
+        self._respawn = normalize_typed_substitution(respawn, bool)
+        self._respawns = respawn_delay or 0.0, respawn_max_retries
         #: options that are not followed
         self.ignored = list[str]()
         self._has_executed = False
@@ -221,10 +235,8 @@ class ExecuteLocal(Action):
 
     def respawns(self, context: LaunchContext) -> tuple[float, int]:
         """How long after its end it is started again [s], and how often; below 0: always."""
-        respawn = self._respawn
-        if not isinstance(respawn, bool):
-            respawn = evaluate_condition_expression(context, respawn)
-        return self._respawns if respawn else (0.0, 0)
+        is_again = perform_typed_substitution(context, self._respawn, bool)
+        return self._respawns if is_again else (0.0, 0)
 
     def printed(self, context: LaunchContext, program: str) -> str:
         """What `ros2 launch` calls it, but for a number."""
@@ -289,25 +301,15 @@ class AppendEnvironmentVariable(_NameAndValue):
         **kwargs: Any,
     ) -> None:
         super().__init__(name, value, **kwargs)
-        self._prepend = (
-            prepend if isinstance(prepend, bool) else normalize_to_list_of_substitutions(prepend)
-        )
+        self._prepend = normalize_typed_substitution(prepend, bool)
         self._separator = normalize_to_list_of_substitutions(separator)
 
     def execute(self, context: LaunchContext) -> None:
         name, value = self.texts(context)
         parts = [context.environment[name], value] if name in context.environment else [value]
-        if self._is_first(context):
+        if perform_typed_substitution(context, self._prepend, bool):
             parts.reverse()
         context.environment[name] = text_of(context, self._separator).join(parts)
-
-    def _is_first(self, context: LaunchContext) -> bool:
-        if isinstance(self._prepend, bool):
-            return self._prepend
-        text = text_of(context, self._prepend)
-        if not isinstance(found := yaml.safe_load(text), bool):
-            raise ValueError(f"Failed to convert '{text}' to bool")
-        return found
 
 
 class UnsetEnvironmentVariable(Action):
@@ -343,48 +345,55 @@ class LogInfo(Action):
         text_of(context, self._msg)
 
 
-class Shutdown(Action):
-    def __init__(self, *, reason: Any = "reason not given", **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-
-
 class EmitEvent(Action):
     def __init__(self, *, event: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        self.event = event
+
+    def execute(self, context: LaunchContext) -> None:
+        if isinstance(self.event, ShutdownEvent):
+            context.record.shut_down()
 
 
-class UnregisterEventHandler(Action):
-    def __init__(self, event_handler: Any, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
+class Shutdown(EmitEvent):
+    def __init__(self, *, reason: Any = "reason not given", **kwargs: Any) -> None:
+        super().__init__(event=ShutdownEvent(reason=reason), **kwargs)
 
 
 class PushLaunchConfigurations(Action):
     def execute(self, context: LaunchContext) -> None:
-        raise not_known("PushLaunchConfigurations outside of a GroupAction")
+        context.push_launch_configurations()
 
 
-class PopLaunchConfigurations(PushLaunchConfigurations):
-    pass
+class PopLaunchConfigurations(Action):
+    def execute(self, context: LaunchContext) -> None:
+        context.pop_launch_configurations()
 
 
 class PushEnvironment(Action):
-    pass
+    def execute(self, context: LaunchContext) -> None:
+        context.push_environment()
 
 
 class PopEnvironment(Action):
-    pass
+    def execute(self, context: LaunchContext) -> None:
+        context.pop_environment()
 
 
 class ResetEnvironment(Action):
-    pass
+    def execute(self, context: LaunchContext) -> None:
+        context.reset_environment()
 
 
 class ResetLaunchConfigurations(Action):
-    def __init__(self, launch_configurations: Any = None, **kwargs: Any) -> None:
+    def __init__(self, launch_configurations: dict[Any, Any] | None = None, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        self._kept = launch_configurations or {}
 
     def execute(self, context: LaunchContext) -> None:
+        kept = {text_of(context, n): text_of(context, v) for n, v in self._kept.items()}
         context.launch_configurations.clear()
+        context.launch_configurations.update(kept)
 
 
 class OpaqueCoroutine(Action):

@@ -77,13 +77,17 @@ class FileContent(Substitution):
             raise SubstitutionFailure(f"Failed to open file: {path}") from error
 
 
+#: What is there wherever ROS is.
+_OF_ROS = ("ros2", "python3")
+
+
 class FindExecutable(Substitution):
     def __init__(self, *, name: Any) -> None:
         self._name = normalize_to_list_of_substitutions(name)
 
     def perform(self, context: LaunchContext) -> str:
         name = text_of(context, self._name)
-        found = shutil.which(name)
+        found = shutil.which(name) or (name if name in _OF_ROS else None)
         if found is None:
             raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
         return found

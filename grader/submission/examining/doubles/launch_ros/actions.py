@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import sys
@@ -26,8 +25,9 @@ from launch_ros.parameter_descriptions import (
     Parameter,
     ParameterFile,
     ParameterValue,
+    as_word,
     evaluated,
-    is_substitution,
+    normalize_parameter_dict,
 )
 
 #: What evaluates launch files.
@@ -62,7 +62,7 @@ class Node(ExecuteProcess):
             if given is not None:
                 normalize_to_list_of_substitutions(given)
         self._name, self._namespace = name, namespace
-        self._parameters = [_known(each) for each in parameters or []]
+        self._parameters = [_normalized(each) for each in parameters or []]
         self._remappings = [_pair(each) for each in remappings or []]
         self._arguments = [normalize_to_list_of_substitutions(each) for each in _words(arguments)]
         self._ros = [normalize_to_list_of_substitutions(each) for each in _words(ros_arguments)]
@@ -77,13 +77,12 @@ class Node(ExecuteProcess):
         name = "" if self._name is None else text_of(context, self._name)
         if self._name is not None and not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
             raise ValueError(f"Invalid node name: {name!r}")
-        namespace = _namespace(context, self._namespace)
+        namespace, absolute = _namespace(context, self._namespace)
         own, ros = ([text_of(context, e) for e in words] for words in (self._arguments, self._ros))
         remappings = [
-            f"{text_of(context, a)}:={text_of(context, b)}"
-            for a, b in (*context.launch_configurations.get(_REMAPPINGS, ()), *self._remappings)
+            *context.launch_configurations.get(_REMAPPINGS, ()),
+            *(f"{text_of(context, a)}:={text_of(context, b)}" for a, b in self._remappings),
         ]
-        absolute = namespace if namespace.startswith("/") or not namespace else f"/{namespace}"
         names = [f"{old}:={new}" for old, new in (("__node", name), ("__ns", absolute)) if new]
         parameters, words, lacking = self._evaluated(context)
         ros += [word for rule in names for word in ("-r", rule)] + words
@@ -124,17 +123,15 @@ class Node(ExecuteProcess):
         found: dict[str, dict[str, Any]] = {}
         words, lacking = list[str](), list[str]()
         for each in (*context.launch_configurations.get(_PARAMETERS, ()), *self._parameters):
-            is_file = not isinstance(each, Parameter | Mapping)
-            if is_file:
-                path = text_of(context, getattr(each, "param_file", each))
-                is_template = getattr(each, "allow_substs", False)
-                is_there = os.path.isfile(path) and not is_template
-                (words if is_there else lacking).extend(("--params-file", os.path.abspath(path)))
-            for name, value, wrapped in _values(context, each):  # once: it may run a command
+            if isinstance(each, ParameterFile):
+                given, more, cannot = _of_file(context, each)
+                words += more
+                lacking += cannot
+            else:  # once: it may run a command
+                given = [each] if isinstance(each, tuple) else list(_values(context, each))
+                words += [word for n, value, _ in given for word in ("-p", as_word(n, value))]
+            for name, value, wrapped in given:
                 found[name] = {"name": name, "value": value, "wrapped": wrapped}
-                if not is_file:
-                    text = json.dumps(value, default=str, ensure_ascii=False)
-                    words += ["-p", f"{name}:={text}"]
         return list(found.values()), words, lacking
 
 
@@ -155,61 +152,87 @@ def _words(given: Any) -> list[Any]:
 
 
 def _pair(given: Any) -> tuple[Any, Any]:
-    if not isinstance(given, list | tuple) or len(given) != 2:
+    if not isinstance(given, tuple) or len(given) != 2:
         raise TypeError(f"remap_rules must be a list of two-tuples, found {given!r:.80}")
     return given[0], given[1]
 
 
-def _known(given: Any) -> Any:
-    kinds = (Mapping, str, Path, Substitution, ParameterFile, Parameter, list, tuple)
-    if not isinstance(given, kinds):
+def _normalized(given: Any) -> Any:
+    """An entry of a node's parameters."""
+    if isinstance(given, Mapping):
+        return normalize_parameter_dict(given)
+    if isinstance(given, Parameter | ParameterFile):
+        return given
+    if not isinstance(given, str | Path | Substitution | list | tuple):
         raise TypeError(
             "Expected 'param' given to normalize_parameters to be a path, a dictionary or a "
             f"Parameter, but got '{given!r:.80}' of type '{type(given)}'"
         )
-    return given
+    return ParameterFile(given)
 
 
 def _values(context: LaunchContext, given: Any) -> Iterable[tuple[str, Any, bool]]:
     """Name, value, and whether it surely is a text, of each parameter in an entry."""
-    if isinstance(given, Parameter):
-        yield text_of(context, given.name), given.evaluate(context), given.is_text
-    elif isinstance(given, Mapping):
-        yield from _of_mapping(context, given, "")
-    else:
-        path = given.param_file if isinstance(given, ParameterFile) else given
-        yield from _of_file(context.record.path(text_of(context, path)))
+    entries = {(*given.name,): given} if isinstance(given, Parameter) else given
+    for name, value in entries.items():
+        is_text = value.is_text if isinstance(value, ParameterValue) else type(value) is not list
+        yield text_of(context, name), evaluated(context, value), is_text
 
 
-def _of_mapping(
-    context: LaunchContext, given: Mapping[Any, Any], before: str
-) -> Iterable[tuple[str, Any, bool]]:
-    for key, value in given.items():
-        if not isinstance(key, str | Substitution | list | tuple):
-            raise TypeError(f"Expected 'key' of a parameter to be a text, but got {key!r:.80}")
-        name = f"{before}{text_of(context, key)}"
+def _of_file(
+    context: LaunchContext, given: ParameterFile
+) -> tuple[list[tuple[str, Any, bool]], list[str], list[str]]:
+    """What a file gives; as arguments, where ROS fills it in and gives it under another name."""
+    path = text_of(context, given.param_file)
+    option = ["--params-file", os.path.abspath(path)]
+    is_there, read = os.path.isfile(path), context.record.path(path)
+    if not os.path.isfile(read):
+        return [], [], option  # with a warning
+    text = Path(read).read_text(encoding="utf-8")
+    is_template = given.has_substitutions(context)
+    if is_template:
+        text = context.record.filled(text)
+    data = yaml.safe_load(text)
+    found, words, lacking = list[tuple[str, Any, bool]](), list[str](), list[str]()
+    for node, content in data.items() if isinstance(data, dict) else ():
+        values = content.get("ros__parameters") if isinstance(content, dict) else None
+        found += [(str(name), value, True) for name, value in (values or {}).items()]
+        of = "" if node in ("/**", "**") else f"{str(node).removeprefix('/')}:"
+        if "/" in of or "*" in of:
+            lacking += option
+        words += [w for n, v in _flat(values or {}, of) for w in ("-p", as_word(n, v))]
+    if not is_template:
+        return found, option if is_there else [], [] if is_there else option
+    return found, [] if lacking else words, lacking
+
+
+def _flat(given: Mapping[Any, Any], before: str) -> Iterable[tuple[str, Any]]:
+    """Parameters by their whole names."""
+    for name, value in given.items():
         if isinstance(value, Mapping):
-            yield from _of_mapping(context, value, f"{name}.")
-        elif isinstance(value, ParameterValue):
-            yield name, value.evaluate(context), value.is_text
+            yield from _flat(value, f"{before}{name}.")
         else:
-            yield name, evaluated(context, value), not is_substitution(value)
+            yield f"{before}{name}", value
 
 
-def _of_file(path: str) -> Iterable[tuple[str, Any, bool]]:
-    if not os.path.isfile(path):
-        return  # with a warning
-    data = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    for node in data.values() if isinstance(data, dict) else ():
-        found = node.get("ros__parameters") if isinstance(node, dict) else None
-        for name, value in (found or {}).items():
-            yield str(name), value, True
+def _namespace(context: LaunchContext, given: Any) -> tuple[str, str]:
+    """The namespace within the one that is pushed; and as ROS is told, '' where it is not.
 
-
-def _namespace(context: LaunchContext, given: Any) -> str:
-    own = "" if given is None else text_of(context, given)
-    outer = context.launch_configurations.get(_NAMESPACE, "")
-    return own if own.startswith("/") or not outer else "/".join(filter(None, (outer, own)))
+    Raises:
+        ValueError: it is none.
+    """
+    own = None if given is None else text_of(context, given)
+    outer = context.launch_configurations.get(_NAMESPACE)
+    if own is None and outer is None:
+        return "", ""
+    inner = outer or "" if own is None else own
+    if own is not None and outer and not own.startswith("/"):
+        inner = f"{outer.rstrip('/')}/{own}"
+    inner = inner.rstrip("/") or ("/" if inner else "")
+    absolute = inner if inner.startswith("/") else f"/{inner}"
+    if not re.fullmatch(r"/|(/[A-Za-z_]\w*)+", absolute, re.ASCII):
+        raise ValueError(f"Invalid namespace: {absolute!r}")
+    return inner, absolute
 
 
 class LifecycleNode(Node):
@@ -242,44 +265,55 @@ class PushROSNamespace(Action):
         self._namespace = namespace
 
     def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations[_NAMESPACE] = _namespace(context, self._namespace)
+        context.launch_configurations[_NAMESPACE], _ = _namespace(context, self._namespace)
 
 
 PushRosNamespace = PushROSNamespace
 
 
-class _SetsParameters(Action):
-    def __init__(self, parameters: Any, **kwargs: Any) -> None:
+def _extend(context: LaunchContext, name: str, entries: Iterable[Any]) -> None:
+    """In place, as the original does: what a group adds to a list from outside stays there."""
+    context.launch_configurations.setdefault(name, []).extend(entries)
+
+
+class SetParameter(Action):
+    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._parameters = parameters
+        self._entry = normalize_parameter_dict(
+            {(*normalize_to_list_of_substitutions(name),): value}
+        )
 
     def execute(self, context: LaunchContext) -> None:
-        # in place, as the original does: what a group adds to a list from outside stays there
-        context.launch_configurations.setdefault(_PARAMETERS, []).append(self._parameters)
+        # what a node reads of it as the original prints it: of a list, a text with brackets
+        found = _values(context, self._entry)
+        printed = ((n, str(tuple(v) if isinstance(v, list) else v), w) for n, v, w in found)
+        _extend(context, _PARAMETERS, [(n, yaml.safe_load(text), w) for n, text, w in printed])
 
 
-class SetParameter(_SetsParameters):
-    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
-        super().__init__(Parameter(name, value), **kwargs)
+class SetUseSimTime(Action):
+    """Of the launch's own node, and no other."""
 
-
-class SetUseSimTime(SetParameter):
     def __init__(self, value: Any, **kwargs: Any) -> None:
-        super().__init__("use_sim_time", value, **kwargs)
+        super().__init__(**kwargs)
 
 
-class SetParametersFromFile(_SetsParameters):
-    def __init__(self, filename: Any, node_name: Any = None, **kwargs: Any) -> None:
-        super().__init__(ParameterFile(filename), **kwargs)
+class SetParametersFromFile(Action):
+    def __init__(self, filename: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._filename = normalize_to_list_of_substitutions(filename)
+
+    def execute(self, context: LaunchContext) -> None:
+        _extend(context, _PARAMETERS, [ParameterFile(text_of(context, self._filename))])
 
 
 class SetRemap(Action):
     def __init__(self, src: Any, dst: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._pair = _pair((src, dst))
+        self._pair = src, dst
 
     def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations.setdefault(_REMAPPINGS, []).append(self._pair)
+        source, target = (text_of(context, each) for each in self._pair)
+        _extend(context, _REMAPPINGS, [f"{source}:={target}"])
 
 
 class SetROSLogDir(Action):

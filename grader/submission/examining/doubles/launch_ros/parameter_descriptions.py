@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,19 @@ from launch._core import (
     text_of,
     unknown,
 )
+from launch.utilities.type_utils import (
+    NOT_YAML,
+    normalize_typed_substitution,
+    perform_typed_substitution,
+)
+
+#: Of one type are the items of a list.
+_ITEMS = (bool, int, float, str)
 
 
 class ParameterValue:
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
-        self._value, self._type = value, value_type
+        self._value, self._type = normalize_typed_substitution(value, value_type), value_type
 
     @property
     def value(self) -> Any:
@@ -33,7 +43,7 @@ class ParameterValue:
         return self._type is str
 
     def evaluate(self, context: LaunchContext) -> Any:
-        return evaluated(context, self._value, self._type)
+        return perform_typed_substitution(context, self._value, self._type)
 
 
 class Parameter(ParameterValue):
@@ -41,40 +51,80 @@ class Parameter(ParameterValue):
         self, name: Any, value: Any, *, value_type: Any = None, description: Any = ""
     ) -> None:
         super().__init__(value, value_type=value_type)
-        self.name = name
+        self.name = normalize_to_list_of_substitutions(name)
 
 
 class ParameterFile:
     def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
+        if not isinstance(param_file, Path | bytes):
+            param_file = normalize_to_list_of_substitutions(param_file)
         self.param_file = param_file
-        self.allow_substs = allow_substs
+        self.allow_substs = normalize_typed_substitution(allow_substs, bool)
+
+    def has_substitutions(self, context: LaunchContext) -> bool:
+        return bool(perform_typed_substitution(context, self.allow_substs, bool))
 
 
-def is_substitution(value: Any) -> bool:
-    """Whether a value is put through YAML when it is known."""
-    if isinstance(value, Substitution):
-        return True
-    return isinstance(value, list | tuple) and any(isinstance(v, Substitution) for v in value)
+def normalize_parameter_dict(given: Mapping[Any, Any], before: Any = ()) -> dict[Any, Any]:
+    """Names as tuples of substitutions, with values that are known or are evaluated later.
+
+    Raises:
+        TypeError: a value is of no kind that a parameter has.
+    """
+    found: dict[Any, Any] = {}
+    for key, value in given.items():
+        name = (*before, *normalize_to_list_of_substitutions(key))
+        if isinstance(value, Mapping):
+            found |= normalize_parameter_dict(
+                value, (*name, *normalize_to_list_of_substitutions("."))
+            )
+        elif isinstance(value, ParameterValue | bool | int | float | str | bytes):
+            found[name] = value
+        elif isinstance(value, Substitution):
+            found[name] = [value]
+        elif isinstance(value, Sequence):
+            found[name] = _normalized_list(value)
+        else:
+            raise TypeError(f"Unexpected type for parameter value {value!r:.80}")
+    return found
 
 
-def evaluated(context: LaunchContext, value: Any, kind: Any = None) -> Any:
-    """The value of a parameter.
+def _normalized_list(given: Sequence[Any]) -> Any:
+    """Items, of which some are lists of substitutions; or one text, where it has parts of one."""
+    for each in given:
+        if not isinstance(each, (*_ITEMS, Substitution, Iterable)):
+            raise TypeError(f"Expected 'subvalue' to be a text or a number, but got '{each!r:.80}'")
+    is_part = [isinstance(each, Substitution) for each in given]
+    if any(is_part) and all(p or isinstance(e, str) for p, e in zip(is_part, given, strict=True)):
+        return normalize_to_list_of_substitutions(given)
+    if {type(each) for each in given} == {int, float}:
+        return tuple(map(float, given))
+    return tuple(
+        each if isinstance(each, _ITEMS) else normalize_to_list_of_substitutions(each)
+        for each in given
+    )
+
+
+def evaluated(context: LaunchContext, value: Any) -> Any:
+    """The value of a normalized parameter.
 
     Raises:
         TypeError: it is of no kind that a parameter has, or YAML does not read it.
     """
-    if is_substitution(value):
-        text = text_of(context, normalize_to_list_of_substitutions(value))
-        return text if kind is str else _from_yaml(text, kind)
-    if isinstance(value, Path):
-        return str(value)
-    if isinstance(value, str) and kind not in (None, str):
-        return _from_yaml(value, kind)
-    if isinstance(value, list | tuple):
-        made = [_of_list(context, each) for each in value]
-        is_number = all(type(each) in (int, float) for each in made)
-        return [*map(float, made)] if is_number and any(type(e) is float for e in made) else made
-    if value is None or not isinstance(value, bool | int | float | str | bytes):
+    if isinstance(value, ParameterValue):
+        return value.evaluate(context)
+    if isinstance(value, list):
+        value = _from_yaml(text_of(context, value))
+    elif isinstance(value, tuple):
+        value = [_from_yaml(text_of(context, e)) if isinstance(e, list) else e for e in value]
+    if isinstance(value, list):
+        kinds = {type(each) for each in value}
+        if len(kinds) != 1 or not kinds <= {*_ITEMS}:
+            raise TypeError(
+                "Expected a non-empty sequence, with items of uniform type. Allowed sequence item "
+                f"types are bool, int, float, str. Got {value!r:.80}"
+            )
+    elif not isinstance(value, (*_ITEMS, bytes)):
         raise TypeError(
             "Allowed value types are bytes, bool, int, float, str, Sequence[bool], Sequence[int], "
             f"Sequence[float], Sequence[str]. Got {type(value)}."
@@ -82,29 +132,16 @@ def evaluated(context: LaunchContext, value: Any, kind: Any = None) -> Any:
     return value
 
 
-def _of_list(context: LaunchContext, given: Any) -> Any:
-    """The value of an entry; one in parts goes through YAML, as a substitution does."""
-    if isinstance(given, list | tuple):
-        return _from_yaml(text_of(context, normalize_to_list_of_substitutions(given)), None)
-    return evaluated(context, given)
-
-
-def _from_yaml(text: str, kind: Any) -> Any:
+def _from_yaml(text: str) -> Any:
     try:
-        value = yaml.safe_load(text)
+        return yaml.safe_load(text) if text else text
     except yaml.YAMLError as error:
-        raise TypeError(
-            "Unable to parse the value of parameter as yaml. If the parameter is meant to be a "
-            "string, try wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, "
-            "value_type=str)"
-        ) from error
-    if value is None:
-        return text
-    if isinstance(value, dict) or (kind in (bool, int, float) and not isinstance(value, kind)):
-        if kind is float and isinstance(value, int):
-            return float(value)
-        raise TypeError(f"Unable to parse the value of parameter as yaml: found {type(value)}")
-    return value
+        raise TypeError(NOT_YAML) from error
+
+
+def as_word(name: str, value: Any) -> str:
+    """A parameter as an argument."""
+    return f"{name}:={json.dumps(value, default=str, ensure_ascii=False)}"
 
 
 class ComposableNode:

@@ -14,6 +14,7 @@ from launch._core import (
     text_of,
     unknown,
 )
+from launch.substitutions import SubstitutionFailure
 
 
 class FindPackagePrefix(Substitution):
@@ -47,6 +48,22 @@ class ExecutableInPackage(Substitution):
         package, executable = (text_of(context, each) for each in self._both)
         context.record.executable(package, executable)
         return os.path.join(get_package_prefix(package), "lib", package, executable)
+
+
+class Parameter(Substitution):
+    """Of those that all nodes get."""
+
+    def __init__(self, name: Any, *, default: Any = None) -> None:
+        self._name, self._default = normalize_to_list_of_substitutions(name), default
+
+    def perform(self, context: LaunchContext) -> str:
+        name = text_of(context, self._name)
+        for each in context.launch_configurations.get("global_params", ()):
+            if isinstance(each, tuple) and each[0] == name:
+                return str(each[1])
+        if self._default is None:
+            raise SubstitutionFailure(f"parameter '{name}' not found")
+        return text_of(context, self._default)
 
 
 __all__ = exported(__name__)
