@@ -100,6 +100,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     # a package is examined in the submission's process, which sees little of ours
     "grader.submission.trace": below("grader", "strict_json", "message"),
     "grader.submission.answer": {"grader.strict_json", "grader.submission.trace"},
+    # what checks make of it
+    "grader.submission.unknown": below("grader", "message", "exercise.verdict")
+    | below("grader.submission", "error_texts", "trace"),
     "grader.submission.examining": below("grader", "limited", "linux", "strict_json", "message")
     | below(
         "grader.submission",
@@ -145,7 +148,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("turtlesim_py.world", "trajectory", "turtle"),
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes.turtlesim", "exercise", "cast.trace")
-    | below("grader", "submission.trace")
+    | below("grader.submission", "trace", "error_texts", "unknown")
     | {"turtlesim_py.world"},
     "grader.diagnosis": GROUND | below("grader", "recording", "exercise.verdict", "rosidl.fields"),
     "grader.result": GROUND | below("grader", "recording", "exercise", "diagnosis.diagnosis"),

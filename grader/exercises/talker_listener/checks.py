@@ -5,9 +5,11 @@ from __future__ import annotations
 from grader.cast.trace import CastTrace
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.message import Message, joined, msg
+from grader.message import joined, msg
 from grader.recording.recording import Recordings
-from grader.submission.trace import Obstacle, PackageTrace
+from grader.submission.error_texts import advice, described, placed
+from grader.submission.trace import PackageTrace
+from grader.submission.unknown import unless_unknown
 
 checks = Checks()
 
@@ -37,8 +39,9 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
         started = [node for node in each.nodes if node.package in own]
         lacking = [f"{it.kind} {it.name}" for it in each.lacking if it.kind != "file"]
         if each.problem is not None:
-            text = msg("{file} cannot be launched: {why}", file=each.file, why=_why(each.problem))
-            worst = Finding(0, text, msg("Try it with ros2 launch."))
+            why = joined([described(each.problem), placed(each.problem)])
+            text = msg("{file} cannot be launched: {why}", file=each.file, why=why)
+            worst = Finding(0, text, advice(str(each.problem.text)))
         elif lacking:
             text = msg("{file} starts what is not there: {name}.", file=each.file, name=lacking[0])
             worst = Finding(0, text, msg("Compare the names with those in setup.py."))
@@ -48,13 +51,8 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
             worst = Finding(0, text, msg("It needs a Node for each: look at their names."))
         elif setup is None or each.file in setup.left:
             text = msg("{file} starts both, and setup.py does not install it.", file=each.file)
-            return Finding(0.5, text, msg("List it in data_files."))
+            worst = Finding(0.5, text, msg("List it in data_files."))
+            break
         else:
             return Finding(1, msg("{file} starts both.", file=each.file))
-    return worst
-
-
-def _why(problem: Obstacle) -> Message:
-    """What ended a launch file, with its line where that is known."""
-    where = msg(" ({file}, line {line})", file=problem.file, line=problem.line)
-    return joined([problem.text, where]) if problem.line else problem.text
+    return unless_unknown(trace, worst)

@@ -18,8 +18,15 @@ from grader.submission.answer import LaunchOrder
 from grader.submission.examining import launches
 from grader.submission.examining.launch_record import Evaluated
 from grader.submission.examining.layout import Installed, Workspace
-from grader.submission.examining.steps import Ended, attempt, step
-from grader.submission.trace import Lacking, LaunchedNode, LaunchFile, PackageTrace, Setup
+from grader.submission.examining.steps import Ended, attempt, it, step
+from grader.submission.trace import (
+    Lacking,
+    LaunchedNode,
+    LaunchFile,
+    Obstacle,
+    PackageTrace,
+    Setup,
+)
 
 _MOST_LAUNCHES, _MOST_TEXTS = 40, 20
 #: Of a launch file so much is read to find a line [bytes].
@@ -68,12 +75,15 @@ class Examination:
             is_whole: whether more is examined than what launch files would start.
         """
         workspace = self.workspace
-        self._files = _launch_files(workspace, with_beside=not is_whole)
+        files = _launch_files(workspace, with_beside=not is_whole)
+        self._files = dict([*files.items()][:_MOST_LAUNCHES])
         self._miss("a setup.py")
         evaluated = [self._launch(file) for file in self._files]
         setup = self.shown(self._setup())
         if is_whole:
             self._evaluate_elsewhere(evaluated)
+        if left_out := [*files][_MOST_LAUNCHES:]:
+            evaluated.append(_left_out(left_out))
         others = [each.name[:200] for each in workspace.all if each is not workspace.judged]
         found = PackageTrace(
             setup=setup,
@@ -235,8 +245,14 @@ def _launch_files(workspace: Workspace, *, with_beside: bool) -> dict[str, tuple
         if each is not judged
         for file in each.package.launch_files
     }
-    found = {**own, **beside} if with_beside else own or beside
-    return dict(list(found.items())[:_MOST_LAUNCHES])
+    return {**own, **beside} if with_beside else own or beside
+
+
+def _left_out(files: Sequence[str]) -> LaunchFile:
+    """The first of the launch files that are too many to be looked at, which says so of all."""
+    text = msg("was left out, with {more} more: {most} launch files at most are looked at")
+    what = text.given(more=len(files) - 1, most=_MOST_LAUNCHES)
+    return LaunchFile(files[0], Obstacle("unknown", it(what)))
 
 
 def _lacking_files(answer: Any) -> list[str]:

@@ -10,19 +10,20 @@ from typing import NamedTuple
 from grader.exercise.asking import CheckFunction
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
-from grader.message import NOTHING, Message, msg
+from grader.message import Message, msg
 from grader.recording.recording import Recordings
-from grader.submission.error_texts import described
 from grader.submission.examining.known import SIMULATORS
 from grader.submission.trace import (
     Description,
     LaunchedNode,
     LaunchFile,
-    Obstacle,
     PackageTrace,
     Setup,
 )
+from grader.submission.unknown import UNKNOWN, not_judged
 
+#: Obstacles of a launch file that may be one of several: it wants what its user knows, too.
+NO_FAULT = (UNKNOWN, "argument")
 _SIMULATORS = ("gz sim", "gazebo", "gzserver", "ign gazebo", "webots")
 
 
@@ -89,13 +90,6 @@ class PackageFacts:
         """Whether all launch files come to their end, and none starts anything."""
         return not any(e.problem or e.nodes or e.includes or e.processes for e in self.launches)
 
-    @property
-    def not_known(self) -> LaunchFile | None:
-        """The first launch file that could not be evaluated for no fault of its own."""
-        kinds = ("unknown", "argument")
-        problems = ((each, each.problem) for each in self.launches if each.problem)
-        return next((each for each, problem in problems if problem.kind in kinds), None)
-
 
 def is_rviz(node: LaunchedNode) -> bool:
     return "rviz2" in (node.package, node.executable)
@@ -147,28 +141,9 @@ def nothing_started() -> Finding:
     )
 
 
-def not_judged(launch: LaunchFile, what: Message = NOTHING) -> Finding:
-    """Of what nobody can tell, because a launch file uses what the grader does not know."""
-    problem = launch.problem or Obstacle("", NOTHING)
-    values = {"file": launch.file, "why": described(problem)}
-    return unjudged(
-        msg("Not judged: {what}, and {file} could not be evaluated: {why}.", what=what, **values)
-        if what
-        else msg("Not judged: {file} could not be evaluated: {why}.", **values),
-        msg("Give the argument a default_value: then `ros2 launch` needs no more than the file.")
-        if problem.kind == "argument"
-        else msg("This is no fault of the package: tell whoever runs the course."),
-    )
-
-
 def not_followed(facts: PackageFacts) -> Finding | None:
     """Of a set-up that nobody can follow here; None where it can be."""
     problem = facts.setup.problem
-    if problem is None or problem.kind != "unknown":
+    if problem is None or problem.kind != UNKNOWN:
         return None
-    why = msg(
-        "Not judged: {file} could not be followed: {why}.",
-        file=problem.file or "setup.py",
-        why=described(problem),
-    )
-    return unjudged(why, msg("Tell whoever runs the course."))
+    return not_judged(problem.file or "setup.py", problem)

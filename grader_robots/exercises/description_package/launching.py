@@ -12,13 +12,14 @@ from grader.message import joined, msg
 from grader.submission.error_texts import advice, how_it_ends, shown
 from grader.submission.examining.known import FILES, KNOWN
 from grader.submission.trace import EMPTY, Lacking, LaunchedNode, LaunchFile, Obstacle
+from grader.submission.unknown import unless_unknown
 from grader_robots.exercises.description_package import installing
 from grader_robots.exercises.description_package.facts import (
+    NO_FAULT,
     PackageFacts,
     PackageFault,
     includes_simulator,
     is_rviz,
-    not_judged,
     of_package,
     unjudged,
 )
@@ -59,9 +60,10 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         alone = msg("No launch file shows the robot in RViz: {file} puts it into Gazebo.")
         found = [(first, Finding(0, alone.given(file=first.file), installing.WRITE))]
     best, finding = max(found, key=lambda each: each[1].share)
-    if finding.share < 1 and facts.not_known is not None:
-        why = msg("{best} alone does not show the robot", best=best.file)
-        return not_judged(facts.not_known, why)
+    why = msg("{best} alone does not show the robot", best=best.file)
+    finding = unless_unknown(facts.trace, finding, why, NO_FAULT)
+    if not finding.judged:
+        return finding
     ended = [judged for each, judged in found if _ends_early(each)]
     if finding.share < 1 and ended:
         return replace(ended[0], share=finding.share)

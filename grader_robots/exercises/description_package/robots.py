@@ -13,7 +13,12 @@ from grader.exercise.verdict import Finding
 from grader.message import NOTHING, Message, msg
 from grader.submission.error_texts import shown
 from grader.submission.trace import Description
-from grader_robots.exercises.description_package.facts import PackageFacts, not_judged, of_package
+from grader.submission.unknown import unless_unknown
+from grader_robots.exercises.description_package.facts import (
+    NO_FAULT,
+    PackageFacts,
+    of_package,
+)
 from robot_py.model import Inertial, Joint, JointType, Model, Origin
 from robot_py.urdf import Consequence, ParsedUrdf, parse
 
@@ -42,14 +47,13 @@ def urdf(facts: PackageFacts, tolerances: Tolerances) -> Finding:
       the points.
     """
     if not facts.descriptions:
-        if facts.not_known is not None:
-            return not_judged(facts.not_known, msg("no description was found"))
         rationale = msg(
             "There is no robot description: no launch file hands one to "
             "robot_state_publisher, and no file in the package is a URDF."
         )
         help = msg("A URDF is a file with <robot name=...>; it belongs into the folder urdf.")
-        return Finding(0, rationale, help)
+        finding = Finding(0, rationale, help)
+        return unless_unknown(facts.trace, finding, msg("no description was found"), NO_FAULT)
     links = 0
     for description in facts.descriptions:
         finding = of_description(facts, description)
@@ -66,11 +70,13 @@ def of_description(facts: PackageFacts, description: Description) -> Finding:
     where = description.source or description.by or msg("the robot of its files")
     text = facts.text(description.text)
     if description.problem is not None:
-        if not description.is_launched and facts.not_known is not None:
-            return not_judged(facts.not_known, msg("{where} alone gives no robot", where=where))
         refused = xacro_brief(str(description.problem.text), facts.name)
         rationale = msg("{where}: {why}.", where=where, why=shown(refused))
-        return Finding(0, rationale, xacro_advice(refused))
+        finding = Finding(0, rationale, xacro_advice(refused))
+        if description.is_launched:
+            return finding
+        alone = msg("{where} alone gives no robot", where=where)
+        return unless_unknown(facts.trace, finding, alone, NO_FAULT)
     return of_text(where, text)
 
 

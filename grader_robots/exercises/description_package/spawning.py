@@ -9,7 +9,9 @@ from grader.exercise.verdict import Finding
 from grader.message import Message, msg
 from grader.submission.error_texts import shown
 from grader.submission.trace import LaunchedNode, LaunchFile
+from grader.submission.unknown import unless_unknown
 from grader_robots.exercises.description_package.facts import (
+    NO_FAULT,
     PackageFacts,
     no_robot,
     nothing_started,
@@ -64,7 +66,7 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
         if is_asked:
             rationale = msg("No launch file puts the robot into Gazebo.")
             help = msg("Start create of ros_gz_sim with -topic robot_description and -name.")
-            return Finding(0, rationale, help)
+            return unless_unknown(facts.trace, Finding(0, rationale, help), kinds=NO_FAULT)
         if stopped := _stopped(facts, [each for each in facts.launches if each.problem]):
             return stopped  # it may be the one that was to
         return Finding(1, msg("No launch file puts the robot into Gazebo, and none need."))

@@ -11,12 +11,12 @@ from grader.message import NOTHING, Message, joined, msg
 from grader.recording.recording import Recordings
 from grader.submission.error_texts import described, shown
 from grader.submission.trace import PREFIX, LaunchedNode, LaunchFile
+from grader.submission.unknown import unless_unknown
 from grader_robots.exercises.description_package import installing, launching
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,
     not_followed,
-    not_judged,
     nothing,
 )
 from grader_robots.exercises.description_package.launching import JOINT_SOURCES, PUBLISHER
@@ -106,10 +106,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
         )
         return Finding(0, msg("There is no launch file in a package."), help)
     best = max((_judge(facts, each) for each in facts.launches), key=lambda found: found.share)
-    for each in facts.launches:
-        if best.share < 1 and each.problem is not None and each.problem.kind == "unknown":
-            return not_judged(each)
-    return best
+    return unless_unknown(facts.trace, best)
 
 
 def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
