@@ -35,7 +35,8 @@ class Entity:
     ) -> None:
         self.tag, self._nested, self._is_xml = tag, nested, is_xml
         self._attributes = dict(attributes)
-        self._left = {*attributes, *(each.tag for each in nested if is_xml)}
+        #: what was not read; of XML attributes, and kinds of elements
+        self._left = {*attributes, *(f"<{each.tag}>" for each in nested if is_xml)}
 
     @classmethod
     def of_xml(cls, element: ElementTree.Element) -> Entity:
@@ -77,7 +78,10 @@ class Entity:
             if separator is None:
                 return coerce_to_type(value, kind, can_be_str=True)
             of = None if kind is None else kind.__args__[0]
-            return [coerce_to_type(e, of, can_be_str=True) for e in value.split(separator)]
+            found = [coerce_to_type(e, of, can_be_str=True) for e in value.split(separator)]
+            if not is_instance_of(found, None, can_be_str=True):
+                raise ValueError
+            return found
         except (AttributeError, ValueError):
             raise TypeError(
                 f"Attribute '{name}' of Entity '{self.tag}' expected to be of type '{kind}'. "
@@ -93,12 +97,12 @@ class Entity:
         """All entities in it."""
         if not self._is_xml and "children" not in self._attributes:
             raise ValueError(f"Expected entity `{self.tag}` to have children entities")
-        self._left -= {"children", *(each.tag for each in self._nested)}
+        self._left -= {f"<{e.tag}>" for e in self._nested} if self._is_xml else {"children"}
         return self._nested
 
     def several(self, name: str) -> list[Entity]:
         """The entities of one kind in it."""
-        self._left.discard(name)
+        self._left.discard(f"<{name}>" if self._is_xml else name)
         if self._is_xml:
             return [each for each in self._nested if each.tag == name]
         given = self._attributes.get(name, [])
@@ -237,7 +241,8 @@ def action(entity: Entity) -> Any:
         case "timer" | "ros_timer":
             if (period := entity.get("period", float)) is None:
                 raise AttributeError(f"Attribute 'period' of Entity '{entity.tag}' not found")
-            entity.get("cancel_on_shutdown", bool)
+            if (is_cancelled := entity.get("cancel_on_shutdown", bool)) is not None:
+                more["cancel_on_shutdown"] = _if_substitutions(is_cancelled)
             of = actions.TimerAction if entity.tag == "timer" else ros.ROSTimer
             inner = [action(each) for each in entity.children()]
             made = of(period=_if_substitutions(period), actions=inner, **more)
@@ -246,7 +251,7 @@ def action(entity: Entity) -> Any:
                 entity.get("level")
             made = actions.LogInfo(msg=substitutions(entity.needed("message")), **more)
         case "shutdown":
-            entity.get("reason")
+            entity.substitutions("reason")
             made = actions.Shutdown(**more)
         case other if other in _OF_ROS_1:
             raise RuntimeError(f"Unrecognized entity of the type: {other} (it is one of ROS 1)")
@@ -294,10 +299,11 @@ def _process(entity: Entity) -> dict[str, Any]:
         if on_exit != "shutdown":
             raise ValueError(f"Attribute on_exit expected to be shutdown but got `{on_exit}`")
         made["on_exit"] = [Shutdown()]
-    for name, kind in (("output", str), ("emulate_tty", bool)):
-        entity.get(name, kind)
-    for name in ("sigkill_timeout", "sigterm_timeout"):
-        entity.get(name, float)
+    entity.substitutions("output")
+    entity.get("emulate_tty", bool)
+    for name in ("respawn_delay", "sigkill_timeout", "sigterm_timeout"):
+        if (seconds := entity.get(name, float)) is not None and seconds < 0.0:
+            raise ValueError(f"Attribute {name} expected to be non-negative but got `{seconds}`")
     return made
 
 

@@ -44,8 +44,10 @@ def _parse(text: str, at: int, top: bool, quote: str = "") -> tuple[list[Any], i
             plain = ""
 
     while at < len(text):
-        if (found := _SUBSTITUTION.match(text, at)) is not None:
+        if text.startswith("$(", at) and text[at - 1 : at] != "\\":
             flush()
+            if (found := _SUBSTITUTION.match(text, at)) is None:
+                raise RuntimeError(f"a substitution has no name: {text[at : at + 80]!r}")
             arguments, at = _arguments(text, found.end())
             parts.append(_substitution(found[1], arguments))
             continue

@@ -2,6 +2,7 @@
 
 launch_facts.yaml is what launch 3.4.3 and launch_ros 0.26.6 (Jazzy) made of each: the names that
 `ros2 launch` prints, and when [s]; the n-th program has ended 1000 n seconds after its start.
+`otherwise` says where the grader differs, and why; `later` what later releases have.
 """
 
 import re
@@ -15,6 +16,7 @@ import pytest
 import yaml
 
 from grader.submission.answer import LaunchOrder, LaunchStart
+from grader.submission.examining.frontend_substitutions import has_later
 from grader.submission.trace import LaunchFile
 from tests.files import lay
 from tests.grader_robots.packages import inspected
@@ -102,6 +104,8 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize("name", CASES)
 def test_a_construct_starts_what_the_original_starts_or_is_refused(name, folder):
     case = CASES[name]
+    if case.get("later") and has_later():
+        pytest.skip("this release of ROS has it")
     launch, order = look([*CASES].index(name) // MOST, folder)[file_of(name)]
     kind = None if launch.problem is None else launch.problem.kind
     found = [] if order is None else [*in_order(order)]

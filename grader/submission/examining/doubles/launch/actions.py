@@ -149,6 +149,7 @@ class TimerAction(Action):
             raise TypeError(f"'TimerAction' expected 'period' to be a float, but got {period!r}")
         period = float(period) if isinstance(period, str) else period
         self.period = normalize_typed_substitution(period, float)
+        normalize_typed_substitution(cancel_on_shutdown, bool)
         self.actions = list(actions)
 
     def execute(self, context: LaunchContext) -> None:

@@ -21,6 +21,7 @@ from launch._core import (
     unknown,
 )
 from launch.actions import ExecuteProcess, TimerAction
+from launch.utilities.type_utils import normalize_typed_substitution
 from launch_ros.parameter_descriptions import (
     Parameter,
     ParameterFile,
@@ -322,7 +323,8 @@ class SetROSLogDir(Action):
 
 
 class ROSTimer(TimerAction):
-    pass
+    def __init__(self, *, period: Any, **kwargs: Any) -> None:
+        super().__init__(period=normalize_typed_substitution(period, float), **kwargs)
 
 
 RosTimer = ROSTimer

@@ -92,7 +92,7 @@ def normalize_parameter_dict(given: Mapping[Any, Any], before: Any = ()) -> dict
 def _normalized_list(given: Sequence[Any]) -> Any:
     """Items, of which some are lists of substitutions; or one text, where it has parts of one."""
     for each in given:
-        if not isinstance(each, (*_ITEMS, Substitution, Iterable)):
+        if not isinstance(each, (*_ITEMS, Substitution, Iterable)) or isinstance(each, Mapping):
             raise TypeError(f"Expected 'subvalue' to be a text or a number, but got '{each!r:.80}'")
     is_part = [isinstance(each, Substitution) for each in given]
     if any(is_part) and all(p or isinstance(e, str) for p, e in zip(is_part, given, strict=True)):
@@ -114,12 +114,12 @@ def evaluated(context: LaunchContext, value: Any) -> Any:
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if isinstance(value, list):
-        value = _from_yaml(text_of(context, value))
+        value = _from_yaml(text_of(context, value) or "''")
     elif isinstance(value, tuple):
         value = [_from_yaml(text_of(context, e)) if isinstance(e, list) else e for e in value]
     if isinstance(value, list):
-        kinds = {type(each) for each in value}
-        if len(kinds) != 1 or not kinds <= {*_ITEMS}:
+        kinds = [type(each) for each in value[:1] if type(each) in _ITEMS]
+        if not (kinds and all(isinstance(each, kinds[0]) for each in value)):
             raise TypeError(
                 "Expected a non-empty sequence, with items of uniform type. Allowed sequence item "
                 f"types are bool, int, float, str. Got {value!r:.80}"
@@ -134,7 +134,7 @@ def evaluated(context: LaunchContext, value: Any) -> Any:
 
 def _from_yaml(text: str) -> Any:
     try:
-        return yaml.safe_load(text) if text else text
+        return yaml.safe_load(text)
     except yaml.YAMLError as error:
         raise TypeError(NOT_YAML) from error
 

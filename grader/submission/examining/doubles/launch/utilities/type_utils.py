@@ -100,10 +100,11 @@ def normalize_typed_substitution(value: Any, kind: Any = None) -> Any:
     if not isinstance(value, Iterable) or (kind is not None and not get_args(kind)):
         raise TypeError(f"value should be {kind or 'a scalar, or a list'}, found {value!r:.80}")
     found = [normalize_to_list_of_substitutions(e) if is_substitution(e) else e for e in value]
-    types = {type(each) for each in found if not isinstance(each, list)}
+    types = {type(each) for each in value if not is_substitution(each)}
     if types == {int, float}:
         found, types = [float(e) if type(e) is int else e for e in found], {float}
-    if len(types) > 1 or not types <= {*(get_args(kind) or SCALARS)}:
+    of = get_args(kind) or SCALARS
+    if len(types) > 1 or not types <= {*of} or (not found and str not in of):
         raise TypeError(f"expected a list of one type, found {value!r:.80}")
     return found
 
