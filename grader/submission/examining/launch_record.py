@@ -103,7 +103,7 @@ class LaunchRecord:
         self._file = ""
         #: descriptions that were read, in their order
         self.sources: list[str] = []
-        self._time = LaunchTime(self)
+        self.time = LaunchTime(self)
         #: with their places
         self._nodes: list[tuple[tuple[int, ...], LaunchedNode]] = []
 
@@ -149,8 +149,8 @@ class LaunchRecord:
         words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
         made = {**self._from_where(node), **words, "parameters": parameters}
         if len(self._nodes) < _MOST:  # one may be there twice
-            launched = LaunchedNode(**made, later=self._time.is_later)
-            self._nodes.append((self._time.next_place(), launched))
+            launched = LaunchedNode(**made, later=self.time.is_later)
+            self._nodes.append((self.time.next_place(), launched))
         package, executable = node["package"], node["executable"]
         script = self._program_file(package, executable)
         start = LaunchStart("", package, executable, script, tuple(ros), tuple(lacking))
@@ -173,8 +173,8 @@ class LaunchRecord:
             if action.on_exit is not None:
                 from launch.event_handlers import OnProcessExit
 
-                self.handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
-        after, delay_s = self._time.when
+                self.time.handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
+        after, delay_s = self.time.when
         words, lacking = self._with_sources(start.words)
         printed = f"{name}-{number + 1}"[:LONG]
         starts.append(
@@ -189,7 +189,7 @@ class LaunchRecord:
             )
         )
         if action is not None:
-            self._time.started(number, printed, action)
+            self.time.started(number, printed, action)
 
     def _with_sources(self, words: Sequence[str]) -> tuple[tuple[str, ...], list[str]]:
         """Arguments with the submission's files where they come from; and what cannot be given."""
@@ -218,26 +218,6 @@ class LaunchRecord:
             else ""
         )
         return self._source(meant) if meant else ""
-
-    def later(self, entities: Any, delay_s: float) -> None:
-        """Actions that are done so long after this [s]."""
-        self._time.later(entities, delay_s)
-
-    def handler(self, handler: Any) -> None:
-        """Actions that are done when something has happened."""
-        self._time.handler(handler)
-
-    def unregister(self, handler: Any) -> None:
-        self._time.unregister(handler)
-
-    def executed(self, action: Any) -> None:
-        self._time.executed(action)
-
-    def shut_down(self) -> None:
-        self._time.shut_down()
-
-    def let_time_pass(self) -> None:
-        self._time.let_pass()
 
     def skipped(self, node: dict[str, Any]) -> None:
         """A node that would start on a condition that is not met."""

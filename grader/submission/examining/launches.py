@@ -48,7 +48,7 @@ def evaluate(place: Workspace, of: Installed, file: str, given: Mapping[str, str
         path = str(of.package.folder / file)
         record.lack("file", f"{place.prefix}/share/{of.name}/{file}", path)
     problem = None
-    for work in (partial(record.run, path), record.let_time_pass):
+    for work in (partial(record.run, path), record.time.let_pass):
         try:
             work()
         except MemoryError:

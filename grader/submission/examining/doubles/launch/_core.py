@@ -89,6 +89,10 @@ class Record:
     def command(self, words: list[str], on_stderr: str) -> str:
         raise not_known("a command")
 
+    @property
+    def time(self) -> Any:
+        return self
+
     def __getattr__(self, name: str) -> Any:
         return lambda *_: None
 
@@ -100,32 +104,8 @@ class LaunchContext:
         self.environment = os.environ
         self.locals_: dict[str, Any] = {}
         self.record = Record()
-        self._environment = dict(os.environ)
-        self._environments: list[dict[str, str]] = []
-        self._configurations: list[dict[str, Any]] = []
-
-    def push_launch_configurations(self) -> None:
-        self._configurations.append(dict(self.launch_configurations))
-
-    def pop_launch_configurations(self) -> None:
-        if not self._configurations:
-            raise RuntimeError("launch_configurations stack unexpectedly empty")
-        self.launch_configurations = self._configurations.pop()
-
-    def push_environment(self) -> None:
-        self._environments.append(dict(os.environ))
-
-    def pop_environment(self) -> None:
-        if not self._environments:
-            raise RuntimeError("environment stack unexpectedly empty")
-        self._set_environment(self._environments.pop())
-
-    def reset_environment(self) -> None:
-        self._set_environment(self._environment)
-
-    def _set_environment(self, variables: dict[str, str]) -> None:
-        os.environ.clear()
-        os.environ.update(variables)
+        self.environments, self.first_environment = list[dict[str, str]](), dict(os.environ)
+        self.configurations: list[dict[str, Any]] = []
 
     @property
     def locals(self) -> Any:
@@ -233,7 +213,7 @@ class Action(LaunchDescriptionEntity):
             try:
                 return self.execute(context)
             finally:
-                context.record.executed(self)
+                context.record.time.executed(self)
         self.skip(context)
         return None
 

@@ -156,7 +156,7 @@ class TimerAction(Action):
         seconds = perform_typed_substitution(context, self.period, float)
         if not 0 <= seconds <= _LONGEST_S:
             raise ValueError(f"a period of {seconds} s")
-        context.record.later(self.actions, seconds)
+        context.record.time.later(self.actions, seconds)
 
 
 class OpaqueFunction(Action):
@@ -186,12 +186,12 @@ class RegisterEventHandler(Action):
         self.event_handler = event_handler
 
     def execute(self, context: LaunchContext) -> None:
-        context.record.handler(self.event_handler)
+        context.record.time.handler(self.event_handler)
 
 
 class UnregisterEventHandler(RegisterEventHandler):
     def execute(self, context: LaunchContext) -> None:
-        context.record.unregister(self.event_handler)
+        context.record.time.unregister(self.event_handler)
 
 
 class ExecuteLocal(Action):
@@ -353,7 +353,7 @@ class EmitEvent(Action):
 
     def execute(self, context: LaunchContext) -> None:
         if isinstance(self.event, ShutdownEvent):
-            context.record.shut_down()
+            context.record.time.shut_down()
 
 
 class Shutdown(EmitEvent):
@@ -361,29 +361,39 @@ class Shutdown(EmitEvent):
         super().__init__(event=ShutdownEvent(reason=reason), **kwargs)
 
 
+def _popped(stack: list[dict[str, Any]], name: str) -> dict[str, Any]:
+    if not stack:
+        raise RuntimeError(f"{name} stack unexpectedly empty")
+    return stack.pop()
+
+
 class PushLaunchConfigurations(Action):
     def execute(self, context: LaunchContext) -> None:
-        context.push_launch_configurations()
+        context.configurations.append(dict(context.launch_configurations))
 
 
 class PopLaunchConfigurations(Action):
     def execute(self, context: LaunchContext) -> None:
-        context.pop_launch_configurations()
+        stack = context.configurations
+        context.launch_configurations = _popped(stack, "launch_configurations")
 
 
 class PushEnvironment(Action):
     def execute(self, context: LaunchContext) -> None:
-        context.push_environment()
+        context.environments.append(dict(context.environment))
 
 
 class PopEnvironment(Action):
     def execute(self, context: LaunchContext) -> None:
-        context.pop_environment()
+        before = _popped(context.environments, "environment")
+        context.environment.clear()
+        context.environment.update(before)
 
 
 class ResetEnvironment(Action):
     def execute(self, context: LaunchContext) -> None:
-        context.reset_environment()
+        context.environment.clear()
+        context.environment.update(context.first_environment)
 
 
 class ResetLaunchConfigurations(Action):
