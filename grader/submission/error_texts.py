@@ -70,6 +70,11 @@ _ADVICE: Final = {
     ("generate_launch_description", "NoneType"): msg(
         "The function's last line is: return LaunchDescription([...])."
     ),
+    ("expected a list of actions",): msg(
+        "The function of an OpaqueFunction returns a list: return [node], with brackets."
+    ),
+    ("Attribute", "'str'", "got", "'bool'"): msg("Put it in quotes, as all texts: 'true'."),
+    ("Attribute", "'str'", "got", "'int'"): msg("Put it in quotes, as all texts: '5'."),
     ("required function", "generate_launch_description"): msg(
         "Name it so, letter by letter: ros2 launch calls generate_launch_description()."
     ),

@@ -327,8 +327,6 @@ def walk(entities: Any, context: LaunchContext, depth: int = 0) -> None:
     """
     if entities is None:
         return
-    if not isinstance(entities, Iterable):
-        raise TypeError(f"expected a list of actions, found {type(entities).__name__}")
     for entity in entities:
         if not isinstance(entity, LaunchDescriptionEntity):
             raise TypeError(

@@ -177,7 +177,11 @@ class OpaqueFunction(Action):
 
     def execute(self, context: LaunchContext) -> Any:
         function, args, kwargs = self._call
-        return function(context, *args, **kwargs)
+        made = function(context, *args, **kwargs)
+        if not isinstance(made, Iterable | None):
+            name = getattr(function, "__name__", "the function")
+            raise TypeError(f"{name}() returned {type(made).__name__}, expected a list of actions")
+        return made
 
 
 class RegisterEventHandler(Action):

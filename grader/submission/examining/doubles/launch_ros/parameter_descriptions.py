@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import yaml
 from launch._core import (
     LaunchContext,
     Substitution,
@@ -17,7 +16,8 @@ from launch._core import (
     unknown,
 )
 from launch.utilities.type_utils import (
-    NOT_YAML,
+    coerce_to_type,
+    is_substitution,
     normalize_typed_substitution,
     perform_typed_substitution,
 )
@@ -94,8 +94,7 @@ def _normalized_list(given: Sequence[Any]) -> Any:
     for each in given:
         if not isinstance(each, (*_ITEMS, Substitution, Iterable)) or isinstance(each, Mapping):
             raise TypeError(f"Expected 'subvalue' to be a text or a number, but got '{each!r:.80}'")
-    is_part = [isinstance(each, Substitution) for each in given]
-    if any(is_part) and all(p or isinstance(e, str) for p, e in zip(is_part, given, strict=True)):
+    if is_substitution(given):
         return normalize_to_list_of_substitutions(given)
     if {type(each) for each in given} == {int, float}:
         return tuple(map(float, given))
@@ -109,34 +108,25 @@ def evaluated(context: LaunchContext, value: Any) -> Any:
     """The value of a normalized parameter.
 
     Raises:
-        TypeError: it is of no kind that a parameter has, or YAML does not read it.
+        TypeError, ValueError: it is of no kind that a parameter has, or YAML does not read it.
     """
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if isinstance(value, list):
-        value = _from_yaml(text_of(context, value) or "''")
-    elif isinstance(value, tuple):
-        value = [_from_yaml(text_of(context, e)) if isinstance(e, list) else e for e in value]
+        value = coerce_to_type(text_of(context, value))
+    elif isinstance(value, tuple):  # an empty item is null, which is none
+        texts = (text_of(context, each) if isinstance(each, list) else None for each in value)
+        value = [
+            each if text is None else coerce_to_type(text or "null")
+            for each, text in zip(value, texts, strict=True)
+        ]
     if isinstance(value, list):
         kinds = [type(each) for each in value[:1] if type(each) in _ITEMS]
         if not (kinds and all(isinstance(each, kinds[0]) for each in value)):
             raise TypeError(
-                "Expected a non-empty sequence, with items of uniform type. Allowed sequence item "
-                f"types are bool, int, float, str. Got {value!r:.80}"
+                f"Expected a non-empty sequence, with items of one type; got {value!r:.80}"
             )
-    elif not isinstance(value, (*_ITEMS, bytes)):
-        raise TypeError(
-            "Allowed value types are bytes, bool, int, float, str, Sequence[bool], Sequence[int], "
-            f"Sequence[float], Sequence[str]. Got {type(value)}."
-        )
     return value
-
-
-def _from_yaml(text: str) -> Any:
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise TypeError(NOT_YAML) from error
 
 
 def as_word(name: str, value: Any) -> str:

@@ -40,7 +40,7 @@ def matches_action(action: Any) -> Any:
 class RunningProcessEvent(Event):
     """What a process does; one that ends has ended well, as far as a launch file is evaluated."""
 
-    def __init__(self, *, action: Any, name: str, **more: Any) -> None:
+    def __init__(self, *, action: Any = None, name: str = "", **more: Any) -> None:
         self.action, self.process_name = action, name
         self.__dict__.update(
             {"cmd": [], "cwd": None, "env": None, "pid": 0, "returncode": 0}, **more
@@ -56,21 +56,6 @@ class ProcessExited(RunningProcessEvent):
 
 
 class ProcessIO(RunningProcessEvent):
-    pass
-
-
-class _Asked(Event):
-    """Something that a process is asked to do; nobody does it here."""
-
-    def __init__(self, **kwargs: Any) -> None:
-        pass
-
-
-class ShutdownProcess(_Asked):
-    pass
-
-
-class SignalProcess(_Asked):
     pass
 
 
@@ -165,7 +150,8 @@ class OnShutdown(BaseEventHandler):
 process = module(
     "launch.events.process",
     *(ProcessExited, ProcessIO, ProcessStarted, RunningProcessEvent),
-    *(ShutdownProcess, SignalProcess),
+    # what a process is asked to do; nobody does it here
+    *(type(name, (RunningProcessEvent,), {}) for name in ("ShutdownProcess", "SignalProcess")),
     matches_action=matches_action,
 )
 event_handlers = module(

@@ -23,13 +23,9 @@ SCALARS = (int, float, bool, str)
 
 def is_substitution(value: Any) -> bool:
     """Whether a value becomes a text: a substitution, or a list of texts with one."""
-    if isinstance(value, Substitution):
-        return True
-    is_list = isinstance(value, Iterable) and not isinstance(value, str | bytes)
-    found = list(value) if is_list else []
-    return any(isinstance(each, Substitution) for each in found) and all(
-        isinstance(each, Substitution | str) for each in found
-    )
+    parts = value if isinstance(value, list | tuple) else [value]
+    is_part = [isinstance(each, Substitution) for each in parts]
+    return any(is_part) and all(isinstance(each, Substitution | str) for each in parts)
 
 
 def is_instance_of(value: Any, kind: Any, *, can_be_str: bool = False) -> bool:
@@ -75,14 +71,11 @@ def _from_yaml(text: str, *, can_be_str: bool) -> Any:
     except yaml.YAMLError as error:
         if can_be_str:
             return text
-        raise ValueError(NOT_YAML) from error
-
-
-NOT_YAML = (
-    "Unable to parse the value of parameter as yaml. If the parameter is meant to be a "
-    "string, try wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, "
-    "value_type=str)"
-)
+        raise ValueError(
+            "Unable to parse the value of parameter as yaml. If the parameter is meant to be a "
+            "string, try wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, "
+            "value_type=str)"
+        ) from error
 
 
 def normalize_typed_substitution(value: Any, kind: Any = None) -> Any:
