@@ -48,7 +48,7 @@ class Entity:
         if not isinstance(given, dict | list):
             raise TypeError(f"expected what '{tag}' has, found {given!r:.80}")
         children = given if isinstance(given, list) else given.get("children", [])
-        if not isinstance(children, list):
+        if children and not isinstance(children, list):
             raise TypeError(f"expected a list of entities in '{tag}', found {children!r:.80}")
         nested = []
         for each in children:

@@ -68,7 +68,7 @@ def exported(name: str, *more: str) -> list[str]:
     return [*(each for each in own if not each.startswith("_")), *more]
 
 
-def module(name: str, *given: Any, **more: Any) -> ModuleType:
+def module(name: str, /, *given: Any, **more: Any) -> ModuleType:
     """A module that is a file of its own in the original: classes and functions, more by name."""
     names = {each.__name__: each for each in given} | more
     made = ModuleType(name, f"A double of ROS's `{name}`.")
