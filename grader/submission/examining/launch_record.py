@@ -53,6 +53,8 @@ FOLLOWED: Final = (
     *("SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime", "TimerAction"),
     "UnsetLaunchConfiguration",
 )
+#: Where a context has the launch file that is evaluated.
+_FILE: Final = "file_that_is_evaluated"
 _FILE_OPTIONS: Final = ("-d", "--display-config", "-file", "--file")
 #: How the names of files end that a node may be told to read.
 SUFFIXES: Final = (
@@ -99,8 +101,6 @@ class LaunchRecord:
         self._found: dict[str, list[Any]] = defaultdict(list)
         self._texts: list[str] = []
         self._depth = 0
-        #: the launch file that is evaluated
-        self._file = ""
         #: descriptions that were read, in their order
         self.sources: list[str] = []
         self.time = LaunchTime(self)
@@ -230,7 +230,7 @@ class LaunchRecord:
         file = self._place.own(path)
         return {
             **described,
-            "file": file or self._place.own(self._file),
+            "file": file or self._place.own(self.context.locals_.get(_FILE, "")),
             "line": line if file else 0,
             "condition": described["condition"][:LONG],
         }
@@ -407,16 +407,16 @@ class LaunchRecord:
         """
         from launch._core import walk
 
-        read, before = self.path(path), self._file
+        read, before = self.path(path), self.context.locals_.get(_FILE, "")
         if path.endswith(".py"):
             description = _python(path, read)
         else:
             from grader.submission.examining import frontend
 
             description = frontend.description(read)
-        self._file = self.context.locals_["current_launch_file_path"] = path
+        self.context.locals_ |= {_FILE: path, "current_launch_file_path": path}
         walk(entities(description), self.context)
-        self._file = before  # and not what `ThisLaunchFile` is, as in the original
+        self.context.locals_[_FILE] = before  # `ThisLaunchFile` stays, as in the original
 
     def filled(self, text: str) -> str:
         """A text with its substitutions, as in a launch file of XML."""

@@ -211,3 +211,10 @@ def test_a_package_that_is_asked_for_has_a_folder_of_its_own(tmp_path):
     """
     launch = started(tmp_path, body)
     assert launch.nodes[0].arguments == ("rviz2", "xacro")
+
+
+def test_a_node_that_starts_later_is_said_in_its_own_launch_file(tmp_path):
+    file = "launch/display.launch.xml"
+    node = "<node pkg='rviz2' exec='rviz2'/>"
+    launch = started(tmp_path, f"<launch><timer period='1.0'>{node}</timer></launch>", file)
+    assert [each.file for each in launch.nodes] == [file]

@@ -286,9 +286,9 @@ class SetParameter(Action):
 
     def execute(self, context: LaunchContext) -> None:
         # what a node reads of it as the original prints it: of a list, a text with brackets
-        found = _values(context, self._entry)
-        printed = ((n, str(tuple(v) if isinstance(v, list) else v), w) for n, v, w in found)
-        _extend(context, _PARAMETERS, [(n, yaml.safe_load(text), w) for n, text, w in printed])
+        for name, value, _ in _values(context, self._entry):
+            printed = str(tuple(value) if isinstance(value, list) else value)
+            _extend(context, _PARAMETERS, [(name, yaml.safe_load(printed), False)])
 
 
 class SetUseSimTime(Action):

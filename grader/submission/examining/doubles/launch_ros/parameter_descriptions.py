@@ -40,7 +40,8 @@ class ParameterValue:
 
     @property
     def is_text(self) -> bool:
-        return self._type is str
+        is_list = isinstance(self._value, list) and not is_substitution(self._value)
+        return self._type is str or is_list
 
     def evaluate(self, context: LaunchContext) -> Any:
         return perform_typed_substitution(context, self._value, self._type)
