@@ -75,7 +75,7 @@ def exercise_for(path: Path, marks: Marks) -> tuple[str, Message]:
     """Return the exercise that a submission names, else the default one; and what to say of it.
 
     Raises:
-        UsageError: the one that it names is not installed.
+        UsageError: the one that it names is not installed; or it names none, and fits several.
     """
     if len(marks.exercises) > 1:
         names = listed(marks.exercises)
@@ -100,10 +100,11 @@ def exercise_for(path: Path, marks: Marks) -> tuple[str, Message]:
         said = msg("Exercise: {name}, by what the source has; another one: --exercise NAME")
         return fitting[0], said.given(name=fitting[0])
     if fitting:
-        names = listed(fitting)
-        return DEFAULT, msg(
-            "It fits several exercises ({names}): choose one with --exercise"
-        ).given(names=names)
+        raise UsageError(
+            "{path} fits several exercises ({names}): choose one with --exercise NAME",
+            path=shown(path),
+            names=listed(fitting),
+        )
     return DEFAULT, NOTHING
 
 

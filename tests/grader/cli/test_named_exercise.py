@@ -144,6 +144,12 @@ def test_a_hand_in_fits_the_exercise_of_which_it_has_all_on_the_graph(roles, nam
     assert sorted(grading.fitting_exercises(Marks(programs=1, roles=found))) == names
 
 
+def test_where_several_fit_one_has_to_be_chosen(tmp_path):
+    marks = Marks(programs=2, roles=(Role("publisher", "/topic"), Role("subscription", "/topic")))
+    with pytest.raises(UsageError, match=r"fits several exercises \(.*talker.*--exercise NAME"):
+        grading.exercise_for(tmp_path, marks)
+
+
 @pytest.mark.parametrize(
     "marks", [Marks(files=("a.urdf", "node.py"), programs=1), Marks(files=("package.xml",))]
 )
