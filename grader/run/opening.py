@@ -43,7 +43,9 @@ def open_submission(
     Where nothing is started, the submission is all of it, a folder or an archive with a package.
 
     Args:
-        executable, launch: see `Request`.
+        executable: chooses among console scripts or Python files; a single .py file leaves no
+            choice. Where nothing is started, among packages.
+        launch: the launch file that is asked for.
         cpu_s: the processor time that it may use [s].
         of_exercise: the other attributes of a `Request`, as `Exercise.opening` has them.
 
