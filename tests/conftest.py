@@ -30,6 +30,8 @@ PART = os.environ.get("PART", "")
 #: So many hand-ins and recordings, as nobody makes them, are drawn by each search for a failure of
 #: the grader.
 CASES = max(15, 2 * EXAMPLES)
+#: A search with EXAMPLES may take so long [s].
+SEARCH_S = 3600
 settings.register_profile(
     "ours",
     max_examples=EXAMPLES or 30,
@@ -58,11 +60,13 @@ subprocess.Popen.__exit__ = _kill_or_leave
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out what does not apply to this system, and other parts than PART.
 
-    With EXAMPLES, `more` searches where `make test` did.
+    With EXAMPLES, `more` searches where `make test` did, and takes its time.
     """
     for item in items:
         if EXAMPLES and getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
             item.add_marker(pytest.mark.more("so many examples"))
+            if item.get_closest_marker("timeout") is None:
+                item.add_marker(pytest.mark.timeout(SEARCH_S))
     kept = {id(item) for item in items if _applies(item) and _is_in_part(item)}
     config.hook.pytest_deselected(items=[item for item in items if id(item) not in kept])
     items[:] = [item for item in items if id(item) in kept]

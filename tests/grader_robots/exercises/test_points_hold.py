@@ -65,6 +65,7 @@ def test_what_is_taken_away_earns_no_points(case):
 
 
 @pytest.mark.more("a minute for each exercise")
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize("name", TAKEN)
 def test_taking_away_one_thing_more_earns_no_points(name):
     gains = []
