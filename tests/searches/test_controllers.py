@@ -35,7 +35,8 @@ class Controller:
         # whether it uses the pose only when it publishes
         self.one_timer = chance.random() < 0.3
         turn = chance.choice((0.8, 1.0, 1.2, 1.5, 2.0))
-        self.period = chance.choice((6, 12, 31) if self.one_timer else (3, 6, 12, 31, 50))
+        # a pose that is looked at every 0.3 s, and a pen that is answered in 0.06 s, are in time
+        self.period = chance.choice((6, 12, 19) if self.one_timer else (3, 6, 12, 31, 50))
         per_turn = chance.uniform(0.2, 0.8)  # by so much the radius grows with each turn
         commands = 2 * math.pi / turn / (self.period * TICK_S)
         self.colors = [chance.choice(row) for row in PALETTES]
