@@ -225,7 +225,7 @@ def test_a_channel_may_have_a_type_of_a_hand_ins(recorded, tmp_path):
         assert reader.topics["/nums"].msgtype == "mine/msg/Nums"
 
 
-@pytest.mark.parametrize("name", ["follow_me", "talker_listener", "state_publisher"])
+@pytest.mark.parametrize("name", ["follow_me", "talker_listener", "own_interfaces"])
 def test_a_recording_that_is_read_and_saved_again_has_the_same_bytes(name, tmp_path):
     folder = archive.folder(name, "right")
     saving.save_all(reading.load_all(folder), tmp_path / "again")
