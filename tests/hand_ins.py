@@ -54,6 +54,12 @@ def find(folder: Path, name: str) -> Path:
     return path if path.exists() else path.with_name(f"{path.name}.py")
 
 
+def write(path: Path, node: Any) -> Path:
+    """Write a hand-in that is made of no other one; where it lies."""
+    assert not list(_write(path, node))
+    return path
+
+
 def _write(path: Path, node: Any) -> Iterator[tuple[Path, dict[str, Any]]]:
     """Write a file or a folder; yield what in it is made of others, with its path."""
     if isinstance(node, str | bytes):

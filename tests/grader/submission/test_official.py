@@ -8,33 +8,10 @@ import yaml
 from grader.exercise.loading import load_exercise
 from grader.grading import grade
 from grader.run.opening import open_submission
-from tests import runs
-from tests.files import lay
+from tests import hand_ins, runs
 
 PACKAGES = yaml.safe_load(Path(__file__).with_name("official.yaml").read_text())
 GRADED = [(name, exercise) for name, each in PACKAGES.items() for exercise in each["graded"]]
-SETUP = """from glob import glob
-from setuptools import find_packages, setup
-
-setup(
-    name={name!r},
-    version='0.0.0',
-    packages=find_packages(exclude=['test']),
-    data_files=[
-        ('share/ament_index/resource_index/packages', ['resource/{name}']),
-        ('share/{name}', ['package.xml']),
-        ('share/{name}/launch', glob('launch/*')),
-    ],
-    entry_points={{'console_scripts': {scripts!r}}},
-)
-"""
-MANIFEST = """<package format="3">
-  <name>{name}</name><version>0.0.0</version><description>TODO</description>
-  <maintainer email="user@todo.todo">user</maintainer><license>TODO</license>
-  {depends}
-  <export><build_type>ament_python</build_type></export>
-</package>
-"""
 DEPENDS = ("rclpy", "std_msgs", "example_interfaces", "geometry_msgs", "tf2_ros", "turtlesim")
 
 
@@ -45,17 +22,13 @@ def laid_out(folder, name):
         for script, of in scripts.items()
     }
     listed = [f"{script} = {name}.{script}:main" for script in scripts]
-    depends = "".join(f"<depend>{each}</depend>" for each in DEPENDS)
     files = {
-        "package.xml": MANIFEST.format(name=name, depends=depends),
-        "setup.py": SETUP.format(name=name, scripts=listed),
-        "setup.cfg": f"[install]\ninstall_scripts=$base/lib/{name}\n",
-        f"resource/{name}": "",
-        f"{name}/__init__.py": "",
+        "package.xml": {"name": name, "depend": DEPENDS},
+        "setup.py": {"console_scripts": listed, "data_files": ["launch/*"] if launch else []},
         **programs,
         **{f"launch/{file}": text for file, text in launch.items()},
     }
-    return lay(folder / name, files)
+    return hand_ins.write(folder / name, files)
 
 
 @pytest.mark.parametrize(("name", "exercise"), GRADED)
