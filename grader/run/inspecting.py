@@ -72,18 +72,21 @@ def inspect(
         submission: all of it.
         folders: those with set-up files, below its root.
     """
-    asked: dict[str, object] = {
-        "set_ups": list(folders),
-        "program": request.executable or request.usual,
-        "inspectors": None,
-        "given": dict(request.launch.given) if request.launch else {},
-    }
-    if request.inspections is not None:
-        asked["inspectors"] = inspector.places(request.inspections)
-    found, ending = _inspected(submission, asked, budget)
+    found, ending = _inspected(submission, order_of(folders, request), budget)
     if found is None or [each.folder for each in found.set_ups] != list(folders):
         found = Inspection(tuple(SetUp(each, SetUpFacts(), None) for each in folders))
     return found, ending.run.flags
+
+
+def order_of(folders: Sequence[str], request: Request) -> dict[str, object]:
+    """Return what `grader.submission.examining.main.inspect` is asked; see `inspect`."""
+    by = request.inspections
+    return {
+        "set_ups": list(folders),
+        "program": request.executable or request.usual,
+        "inspectors": None if by is None else inspector.places(by),
+        "given": dict(request.launch.given) if request.launch else {},
+    }
 
 
 def inspect_beside(submission: Submission, plan: Plan) -> tuple[Trace, tuple[Message, ...]]:

@@ -8,20 +8,12 @@ their own.
 import pytest
 
 from grader.run import inspecting
-from grader.submission import inspector
 from tests.grader_robots.packages import inspected
 
 
 @pytest.fixture(autouse=True)
 def inspection(monkeypatch):
     def inspect(submission, folders, request, _):
-        by = request.inspections
-        order = {
-            "set_ups": [*folders],
-            "program": request.executable or request.usual,
-            "inspectors": None if by is None else inspector.places(by),
-            "given": dict(request.launch.given) if request.launch else {},
-        }
-        return inspected(submission.root, **order), ()
+        return inspected(submission.root, **inspecting.order_of(folders, request)), ()
 
     monkeypatch.setattr(inspecting, "inspect", inspect)
