@@ -25,7 +25,7 @@ from grader.exercise.loading import load_exercise
 from grader.judging import AnyPath, judge, loaded
 from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Clock, Provenance, Recording, Recordings, now
-from grader.recording.subject import PACKAGE_SCENE, Trace, load_subject
+from grader.recording.subject import PACKAGE_SCENE, Role, Trace, load_subject
 from grader.result.result import Result
 from grader.run import inspecting, real_time, virtual_time
 from grader.run.finish import SimulatorLost, not_run, recording_of_nothing
@@ -127,10 +127,13 @@ def _worth(name: str, marks: Marks) -> int:
     except ExerciseError:
         return 0
     if not marks.programs:
-        files = product(marks.files, exercise.fits.get("files", ()))
+        files = product(marks.files, exercise.fits)
         return any(fnmatchcase(file.lower(), pattern) for file, pattern in files)
-    has_all = all(is_among(role, marks.roles) for role in exercise.roles)
-    return len(exercise.roles) if has_all and marks.programs >= len(exercise.programs) else 0
+    wanted, subject = exercise.roles, exercise.subject
+    if not wanted and isinstance(subject, Scene):  # what drives the scene
+        wanted = {Role("publisher", each) for each in subject.introduction.topics[:1]}
+    has_all = all(is_among(role, marks.roles) for role in wanted)
+    return len(wanted) if has_all and marks.programs >= len(exercise.programs) else 0
 
 
 def grade(

@@ -383,13 +383,13 @@ def _starter(where: object, place: Place) -> Path | None:
     return folder
 
 
-def _fits(given: Any) -> dict[str, tuple[str, ...]]:
+def _fits(given: Any) -> tuple[str, ...]:
     expect(isinstance(given, dict), (FITS,), "expected names with lists, found {found}", given)
     check_known(given, ("files",), (FITS,))
-    for key, value in given.items():
-        is_list = isinstance(value, list) and all(isinstance(each, str) for each in value)
-        expect(is_list, (FITS, key), "expected a list of texts, found {found}", value)
-    return {key: tuple(value) for key, value in given.items()}
+    value = given.get("files", [])
+    is_list = isinstance(value, list) and all(isinstance(each, str) for each in value)
+    expect(is_list, (FITS, "files"), "expected a list of texts, found {found}", value)
+    return tuple(value)
 
 
 def _points(points: Any, checks: Checks) -> dict[str, float]:

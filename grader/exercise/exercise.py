@@ -104,8 +104,8 @@ class Exercise:
         checks: the exercise's check functions.
         visible: check name -> what students see of it; everything for those that are not named.
         late: what a late submission costs; None for nothing.
-        fits: what a hand-in without a program has where it is plainly for this one: `files`,
-            patterns of names.
+        fits: patterns of names of files that a hand-in without a program has where it is plainly
+            for this one.
         explained: language -> tolerance -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
         interfaces: a type that it brings along, 'my_interfaces/msg/Num' -> its definition.
@@ -142,7 +142,7 @@ class Exercise:
     visible: Mapping[str, Visible] = field(default_factory=dict)
     late: LatePolicy | None = None
     explained: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    fits: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    fits: tuple[str, ...] = ()
     interfaces: Mapping[str, str] = field(default_factory=dict)
     cases: tuple[RunCase, ...] = (RunCase(),)
     is_to_end: bool = False
@@ -164,11 +164,8 @@ class Exercise:
 
     @property
     def roles(self) -> set[Role]:
-        """What programs have on the graph for its peers and checks; else what drives its scene."""
-        found = set[Role]().union(*(case.roles for case in self.cases))
-        if not found and isinstance(self.subject, Scene):
-            return {Role("publisher", each) for each in self.subject.introduction.topics[:1]}
-        return found
+        """What programs have on the graph for its peers and checks."""
+        return set[Role]().union(*(case.roles for case in self.cases))
 
     @property
     def opening(self) -> Opening:
@@ -178,7 +175,7 @@ class Exercise:
             found["name"] = self.starter.stem
         return {
             **found,
-            "roles": tuple(sorted(set().union(*(case.roles for case in self.cases)))),
+            "roles": tuple(sorted(self.roles)),
             "is_started": self.is_started,
             "programs": self.programs,
             "inspections": self.inspections if self.looks_at_package else None,
