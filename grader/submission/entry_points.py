@@ -44,15 +44,18 @@ class Packages:
     readable: tuple[PackageFolder, ...]
     faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
 
+    @property
+    def every(self) -> list[Choice]:
+        """All console scripts, each with its package."""
+        return [(package, script) for package in self.readable for script in package.scripts]
+
     def choose(self) -> Choice | None:
         """Choose the script asked for, else the usual one, else the only one; None without any.
 
         Of several it is the one whose source has most of what the exercise names.
         """
-        every = [(package, script) for package in self.readable for script in package.scripts]
-        executable = self.submitted.request.executable
-        wanted = executable or self.submitted.request.usual
-        matching = [choice for choice in every if fnmatchcase(choice[1].name, wanted)]
+        every, request = self.every, self.submitted.request
+        matching = [choice for choice in every if request.is_wanted(choice[1].name)]
         if len(matching) == 1:
             return matching[0]
         if matching:
@@ -60,8 +63,8 @@ class Packages:
         if self.faults:
             raise self.faults[0]
         names = [script.name for _, script in every]
-        if executable and every:
-            raise no_such_executable(self.submitted, "console script", executable, names)
+        if request.executable and every:
+            raise no_such_executable(self.submitted, "console script", request.executable, names)
         if len(every) > 1:
             fitting = self._fitting(every)
             if len(fitting) == 1:
@@ -92,7 +95,7 @@ class Packages:
 
     def together(self, names: Sequence[str]) -> list[Choice]:
         """Return the scripts of these names, or of several just as many others; else none."""
-        every = [(package, script) for package in self.readable for script in package.scripts]
+        every = self.every
         found = [[each for each in every if fnmatchcase(each[1].name, name)] for name in names]
         if all(len(each) == 1 for each in found):
             return [each[0] for each in found]
@@ -100,8 +103,8 @@ class Packages:
 
     def others(self, started: Sequence[ConsoleScript]) -> list[str]:
         """The names of the scripts that start something else than those that are started."""
-        every = [script for package in self.readable for script in package.scripts]
         targets = {(each.module, each.function) for each in started}
+        every = (script for _, script in self.every)
         return [each.name for each in every if (each.module, each.function) not in targets]
 
     def holding(self, file: Path) -> PackageFolder | None:

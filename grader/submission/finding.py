@@ -43,8 +43,10 @@ from grader.submission.folder import (
 )
 from grader.submission.interfaces import find_interfaces
 from grader.submission.launching import (
+    Launched,
     StartedScript,
     find_launched,
+    one_of,
     undeclared,
 )
 from grader.submission.manifest import FILE as MANIFEST
@@ -161,27 +163,24 @@ def _among(
 ) -> Submission:
     request, executable = submitted.request, submitted.request.executable
     packages = find_packages(submitted, inspection.set_ups if inspection else ())
-    choice, refused = None, None
-    try:
-        choice = packages.choose()
-    except SubmissionError as error:
-        refused = error
     together = [] if executable or request.launch else packages.together(request.programs)
-    notes: tuple[Message, ...] = ()
+    launched = Launched("", (), (), ())
     if inspection and executable is None and len(together) != 1:
-        is_needed = refused is not None and not together
-        launched = find_launched(submitted, packages, inspection, is_needed=is_needed)
-        notes = launched.notes
+        launched = find_launched(submitted, packages, inspection)
         if launched.scripts:
             found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
             found = replace(found, start=Launch(found.programs), found=launched.found)
-            return replace(found, notes=(*notes, *found.notes))
+            return replace(found, notes=(*launched.notes, *found.notes))
     if len(together) > 1:
         started = [StartedScript.plain(*each, number) for number, each in enumerate(together, 1)]
         found = _from_scripts(submitted, packages, started, unpacking.scratch)
-        return replace(found, notes=(*notes, *found.notes))
-    if refused is not None:
-        raise refused
+        return replace(found, notes=(*launched.notes, *found.notes))
+    try:
+        choice = packages.choose()
+    except SubmissionError:
+        if launched.several:
+            raise one_of(launched, submitted) from None
+        raise
     if choice is not None:
         started = [StartedScript.plain(*choice)]
         return _from_scripts(submitted, packages, started, unpacking.scratch)
@@ -241,8 +240,8 @@ def _set_ups(submitted: SubmissionFolder, files: list[Path]) -> list[str]:
     """Return the folders with set-up files, which an inspection is to evaluate."""
     found = dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES)
     for file in files:
-        is_one = file.name in SETUP_FILES or is_launch_file(file)
-        if is_one and not found.keys().isdisjoint(file.parents):
+        is_of_package = not found.keys().isdisjoint(file.parents)
+        if is_of_package and (file.name in SETUP_FILES or is_launch_file(file)):
             submitted.must_hold(file)
     return [str(folder.relative_to(submitted.base)) for folder in found][:MOST]
 
@@ -400,17 +399,15 @@ def _only(submitted: SubmissionFolder, candidates: list[Path]) -> Path:
 
 def _usual(submitted: SubmissionFolder, candidates: list[Path]) -> list[Path]:
     """Return the files with the usual name, else those called main, else all of them."""
-    usual = [
-        [file for file in candidates if file.stem == s] for s in (submitted.request.usual, "main")
-    ]
-    return usual[0] or usual[1] or candidates
+    usual = [file for file in candidates if submitted.request.is_wanted(file.stem)]
+    return usual or [file for file in candidates if file.stem == "main"] or candidates
 
 
 def _no_script(
     submitted: SubmissionFolder, package: PackageFolder, starting: list[Path]
 ) -> Message:
     """Say that a setup.py names no console script, and which line it lacks."""
-    likely = [file for file in starting if file.stem == submitted.request.usual] or starting
+    likely = [file for file in starting if submitted.request.is_wanted(file.stem)] or starting
     module = "my_package.turtle_controller"
     if len(likely) == 1:
         module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)

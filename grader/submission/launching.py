@@ -77,12 +77,14 @@ class Launched:
         scripts: the submission's, in the order in which they are started.
         notes: what is left out, and what is not followed.
         compiled: the submission's that are not in Python.
+        several: the launch files of which one would have to be chosen.
     """
 
     file: str
     scripts: tuple[StartedScript, ...]
     notes: tuple[Message, ...]
     compiled: tuple[str, ...]
+    several: tuple[str, ...] = ()
 
     @property
     def found(self) -> Message:
@@ -94,17 +96,12 @@ def find_launched(
     submitted: SubmissionFolder,
     packages: Packages,
     inspection: Inspection,
-    *,
-    is_needed: bool = True,
 ) -> Launched:
     """Find the launch file that is asked for, or the one that starts several programs.
 
     Where the exercise is about several, it may be one that starts a single one. It is none that
     starts more than an exercise names which is about one. One that starts nothing is returned where
     there is none, with notes.
-
-    Args:
-        is_needed: else there is none where one would have to be chosen.
     """
     launches, asked = inspection.trace.launches, submitted.request.launch
 
@@ -132,17 +129,9 @@ def find_launched(
             for each in reversed(every)
             if len(each.scripts) + len(each.compiled) >= least and _is_needed(each, packages)
         }
-        if len(several) > 1 and not is_needed:
-            names = listed(each.file for each in reversed(several.values()))
-            return Launched("", (), (*faulty, SEVERAL.given(names=names)), ())
         if len(several) > 1:
-            commands = [f"--launch {shown(each.file)}" for each in reversed(several.values())]
-            raise SubmissionError(
-                "{name} has several launch files that start several programs: choose one with "
-                "{commands}",
-                name=submitted.name,
-                commands=listed(commands),
-            )
+            files = tuple(each.file for each in reversed(several.values()))
+            return Launched("", (), (*faulty, SEVERAL.given(names=listed(files))), (), files)
         if not several:
             return Launched("", (), tuple(faulty), ())
         (found,) = several.values()
@@ -161,6 +150,15 @@ def find_launched(
             most=MOST_PROGRAMS,
         )
     return found
+
+
+def one_of(launched: Launched, submitted: SubmissionFolder) -> SubmissionError:
+    """Return the error that nothing else tells which of several launch files is meant."""
+    return SubmissionError(
+        "{name} has several launch files that start several programs: choose one with {commands}",
+        name=submitted.name,
+        commands=listed(f"--launch {shown(file)}" for file in launched.several),
+    )
 
 
 def _is_needed(launched: Launched, packages: Packages) -> bool:

@@ -67,7 +67,7 @@ class Marks:
         exercises: those that it names, each with the file that does.
         files: the names of its files, so many of them.
         programs: how many of them may be a node.
-        roles: what its source has on the graph.
+        roles: what its source has on the graph; none of one that names its exercise.
     """
 
     exercises: Mapping[str, str] = field(default_factory=dict)
@@ -263,7 +263,8 @@ def _marks(path: Path, scratch: Path) -> Marks:
         return Marks()
     names = tuple(shown(file.name) for file in files[:_MAX_MODULES])
     programs = [file for file in files if may_be_node(file) and not file.is_symlink()]
-    roles = sorted(each for each in roles_in(programs) if len(each.name) <= _MAX_NAME)
+    roles = [] if exercises else sorted(roles_in(programs))
+    roles = [each for each in roles if len(each.name) <= _MAX_NAME]
     return Marks(_some(exercises), names, len(programs), tuple(roles[:_MAX_MODULES]))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -57,3 +58,9 @@ class Request:
     def usual(self) -> str:
         """The name, or its pattern, of what is started where there are several."""
         return self.programs[0] if self.programs else self.name
+
+    def is_wanted(self, name: str) -> bool:
+        """Whether a program is called as it is asked for, else as the usual one is."""
+        if self.executable:
+            return name == self.executable
+        return fnmatchcase(name, self.usual)

@@ -11,6 +11,7 @@ from typing import Final
 from grader.recording.subject import Role, RoleKind
 from grader.submission.folder import read_bounded
 from grader.submission.python_source import parse
+from grader.submission.scopes import last
 
 #: What makes an end: which one, and where it gets its name, the place and the keyword.
 _MADE_BY: Final[Mapping[str, tuple[RoleKind, int, str]]] = {
@@ -55,7 +56,7 @@ def is_among(role: Role, found: Iterable[Role]) -> bool:
 
 
 def _made(call: ast.Call, texts: Mapping[str, str]) -> set[Role]:
-    called = _last(call.func)
+    called = last(call.func)
     if called in _OF_TF:
         return {_OF_TF[called]}
     if called not in _MADE_BY:
@@ -76,7 +77,7 @@ def _texts(tree: ast.Module) -> dict[str, str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant | ast.JoinedStr):
             for target in node.targets:
-                name, text = _last(target), _text(node.value, {})
+                name, text = last(target), _text(node.value, {})
                 found[name] = _ANY if found.get(name, text) != text else text
     return found
 
@@ -92,12 +93,5 @@ def _text(node: ast.expr, texts: Mapping[str, str]) -> str:
         case ast.BinOp(left=left, op=ast.Add(), right=right):
             return _text(left, texts) + _text(right, texts)
         case ast.Name() | ast.Attribute():
-            return texts.get(_last(node), _ANY)
+            return texts.get(last(node), _ANY)
     return _ANY
-
-
-def _last(node: ast.expr) -> str:
-    match node:
-        case ast.Name(id=name) | ast.Attribute(attr=name):
-            return name
-    return ""

@@ -16,6 +16,7 @@ import tempfile
 import traceback
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from fnmatch import fnmatchcase
 from pathlib import Path
 from pkgutil import resolve_name
 from types import MappingProxyType
@@ -72,7 +73,7 @@ def inspect(
     Args:
         set_ups: folders that hold set-up files, below the root; the package that counts is then
             the one that has the program.
-        program: the console script that is asked for.
+        program: the console script that is asked for, or a pattern of its name.
         package, folder: which package counts otherwise, by its name or by where it lies; '' for
             the one that describes a robot.
         inspectors: where the inspectors are that examine it besides; None where only what launch
@@ -85,7 +86,7 @@ def inspect(
 
     def worth(set_up: SetUp) -> tuple[bool, bool]:
         names = [line.partition("=")[0].strip() for line in set_up.told.scripts]
-        return program in names, bool(names)
+        return any(fnmatchcase(name, program) for name in names), bool(names)
 
     best = max(evaluated, key=worth).folder if evaluated else ""
     judged = root / best if evaluated else Path(folder).resolve() if folder else None

@@ -198,6 +198,17 @@ def test_an_exercise_may_name_its_program_by_a_pattern(tmp_path, wanted, started
     lay(tmp_path, package("spiral", *scripts))
     with open_submission(tmp_path, programs=(wanted,)) as submission:
         assert submission.executable == started
+    with (
+        pytest.raises(SubmissionError, match="no console script"),
+        open_submission(tmp_path, "*d*"),
+    ):
+        pass
+
+
+def test_a_pattern_is_one_of_files_too(tmp_path):
+    lay(tmp_path, {"a_node.py": GUARDED, "my_draw.py": GUARDED, "other.py": GUARDED})
+    with open_submission(tmp_path, programs=("*draw*",)) as submission:
+        assert submission.executable == "my_draw.py"
 
 
 @pytest.mark.parametrize(
