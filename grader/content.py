@@ -17,10 +17,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 
-def of_folder(folder: Path) -> str:
-    """Return the hash of all files in a folder and below, hexadecimal."""
+def of_folder(folder: Path, without: Path | None = None) -> str:
+    """Return the hash of all files in a folder and below, hexadecimal; without one folder."""
     found: dict[str, str] = {}
     for at, folders, files in os.walk(folder):
+        folders[:] = [name for name in folders if Path(at, name) != without]
         links = (name for name in folders if Path(at, name).is_symlink())
         for path in (Path(at, name) for name in (*files, *links)):
             is_link = path.is_symlink()

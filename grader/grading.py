@@ -274,7 +274,7 @@ def provenance(
         rclpy=system.rclpy_version(),
         ros_distro=system.ros_distro(),
         submission=submission.name,
-        submission_sha256="" if copy is None else content.of_folder(copy.folder),
+        submission_sha256="" if copy is None else content.of_folder(copy.folder, copy.installed),
         exercise=exercise.name,
         exercise_sha256=exercise.sha256,
         seed=used if exercise.varied.count and not hides_seed else None,

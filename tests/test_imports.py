@@ -99,7 +99,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader.rosidl", "bag_types", "cdr", "definitions", "fields"),
     # a package is examined in the submission's process, which sees little of ours
     "grader.submission.trace": below("grader", "strict_json", "message"),
-    "grader.submission.answer": {"grader.strict_json", "grader.submission.trace"},
+    "grader.submission.program": set(),
+    "grader.submission.answer": {"grader.strict_json"}
+    | below("grader.submission", "program", "trace"),
     # what checks make of it
     "grader.submission.unknown": below("grader", "message", "exercise.verdict")
     | below("grader.submission", "error_texts", "trace"),
@@ -110,6 +112,7 @@ MAY_IMPORT: dict[str, set[str]] = {
         "answer",
         "folder",
         "manifest",
+        "program",
         "request",
         "safe_files",
         "__init__",

@@ -33,7 +33,7 @@ from grader.run import handover, run_context
 from grader.run.limits import CpuBudget
 from grader.run.run_context import RunContext
 from grader.run.sandbox.confinement import LANDLOCK, NAMESPACES
-from grader.submission.start import Submission, Whole
+from grader.submission.start import Submission
 
 #: The program that compiles.
 PROGRAM: Final = Path(compiler.__file__).with_name("building.py")
@@ -152,7 +152,7 @@ def _built(texts: Mapping[str, str]) -> tuple[dict[str, str], bytes]:
         order = {"texts": dict(texts), "leaves": context.recording}
         command = [sys.executable, str(PROGRAM), json.dumps(order)]
         _, process = context.start(
-            Submission(nothing.name, nothing, Whole(), NOTHING),
+            Submission(nothing.name, nothing, (), NOTHING),
             *(lambda _: command, (context.recording,), {}),
         )
         with process.ended_at_exit(gently=False):

@@ -32,10 +32,10 @@ from grader.run.handover import Plan
 from grader.run.limits import INSPECTION_BYTES, INSPECTION_S, CpuBudget
 from grader.run.processes.started_process import SubmissionProcess
 from grader.submission import answer, inspector
-from grader.submission.answer import Inspection, SetUp, SetUpFacts
+from grader.submission.answer import Inspection, SetUp
 from grader.submission.launched import unlike_launched
 from grader.submission.request import Request
-from grader.submission.start import EntryPoint, Submission, Whole
+from grader.submission.start import Submission
 from grader.submission.trace import FAILED, PackageTrace
 
 #: Called with the simulated time [s], of which none passes here.
@@ -53,8 +53,7 @@ _LOST: Final = msg(
 
 def run(submission: Submission, plan: Plan, progress: Progress | None = None) -> Recording:
     """Inspect a submission once, as its only run."""
-    asked = submission.start.package if isinstance(submission.start, Whole) else ""
-    order = {"package": asked, "inspectors": inspector.places(plan.inspections)}
+    order = {"package": submission.asked, "inspectors": inspector.places(plan.inspections)}
     found, ending = _inspected(submission, order, plan.budget)
     trace = load_subject(plan.scene).untouched(None) if found is None else found.trace
     return record(plan, trace, (), ending)
@@ -74,7 +73,7 @@ def inspect(
     """
     found, ending = _inspected(submission, order_of(folders, request), budget)
     if found is None or [each.folder for each in found.set_ups] != list(folders):
-        found = Inspection(tuple(SetUp(each, SetUpFacts(), None) for each in folders))
+        found = Inspection(tuple(map(SetUp, folders)))
     return found, ending.run.flags
 
 
@@ -99,14 +98,12 @@ def inspect_beside(submission: Submission, plan: Plan) -> tuple[Trace, tuple[Mes
     found = submission.seen
     flags: tuple[Message, ...] = ()
     if not isinstance(found, PackageTrace):
-        whole = replace(submission, root=submission.folder, start=Whole())
+        whole = replace(submission, root=submission.folder, programs=())
         added = [str((submission.root / each).relative_to(whole.root)) for each in submission.added]
         order = {"added": added, "inspectors": inspector.places(plan.inspections)}
         inspected, ending = _inspected(whole, order, plan.budget)
         found, flags = (inspected or Inspection()).trace, ending.run.flags
-    unlike: list[Message] = []
-    if isinstance(submission.start, EntryPoint):
-        unlike = unlike_launched(found, submission.start.module, submission.start.function)
+    unlike = unlike_launched(found, submission.entry) if submission.is_by_itself else []
     return found, (*flags, *unlike)
 
 

@@ -19,11 +19,11 @@ from grader.message import NOTHING, Message
 from grader.run.limits import CpuBudget
 from grader.scratch import make_folder
 from grader.submission import reader
-from grader.submission.private_copy import PrivateCopy, copy_privately
+from grader.submission.private_copy import PrivateCopy, copy_privately, install
 from grader.submission.reader import Marks
 from grader.submission.request import LaunchAsked, Request
 from grader.submission.set_ups import Unevaluated
-from grader.submission.start import EntryPoint, Submission, Whole
+from grader.submission.start import Submission
 
 if TYPE_CHECKING:
     from grader.submission.trace import PackageTrace
@@ -80,7 +80,7 @@ def _evaluated(
     from grader.run import inspecting  # here: most submissions are a file
 
     copy = copy_privately(path, package.base, scratch)
-    everything = Submission(path.name, copy.of(package.base), Whole(), NOTHING, copy=copy)
+    everything = Submission(path.name, copy.of(package.base), (), NOTHING, copy=copy)
     inspection, remarks = inspecting.inspect(everything, package.folders, request, budget)
     name = path.name or path.resolve().name
     found = reader.read_evaluated(package, inspection, name, request, scratch)
@@ -95,6 +95,7 @@ def _evaluated(
         found = replace(found, seen=inspection.trace)
     if found.added:  # it was repaired in a copy of its own
         copy = copy_privately(path, found.root, scratch)
+    copy = install(copy, inspection.set_ups)
     return replace(found, notes=notes, spent_s=budget.spent_s), copy
 
 
@@ -107,8 +108,7 @@ def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
     """Return notes on how a program started by itself differs from its start by launch files."""
     from grader.submission.launched import not_installed, not_read, unlike_launched
 
-    if not isinstance(submission.start, EntryPoint):
+    if not submission.is_by_itself:
         return not_installed(trace)
-    target = submission.start.module, submission.start.function
-    unlike = unlike_launched(trace, *target)
-    return [*not_installed(trace), *not_read(trace, *target), *unlike]
+    entry = submission.entry
+    return [*not_installed(trace), *not_read(trace, entry), *unlike_launched(trace, entry)]

@@ -12,7 +12,8 @@ from grader.recording.recording import LONGEST_OUTPUT, Clock, Outcome, ProgramRu
 from grader.run.evidence import EvidencePage
 from grader.run.finish import Ending, ended
 from grader.run.processes.started_process import SubmissionProcess
-from grader.submission.start import Program, Submission
+from grader.submission.program import Program
+from grader.submission.start import Submission
 from grader.text import plain
 
 

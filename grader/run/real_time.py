@@ -35,7 +35,8 @@ from grader.run.simulator_process import (
 )
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction, Reason
-from grader.submission.start import Program, Submission
+from grader.submission.program import Program
+from grader.submission.start import Submission
 
 #: Called with the simulated time [s] now and then.
 Progress = Callable[[float], None]
@@ -152,7 +153,7 @@ class _Programs:
 
     def _starts_at(self, program: Program) -> float | None:
         """When it is to start [s]; None where that is not known yet."""
-        if program.after is None:
+        if program.after < 0:
             return program.delay_s
         ended = self._ended.get(program.after)
         return None if ended is None else ended[1] + program.delay_s
@@ -204,7 +205,7 @@ def command(
     heard = [] if plan.cast is None else script.heard(script.parse(plan.cast), plan.hears)
     topics = [*introduction.topics, *heard]
     beside = list(map(str, submission.beside))
-    introduced = json.dumps([topics, introduction.services, arguments, beside])
+    introduced = json.dumps([topics, introduction.services, submission.words(arguments), beside])
     words = [introduced, str(page), *run_context.start_arguments(submission)]
     return [sys.executable, str(STUDENT / "main.py"), *words]
 

@@ -17,7 +17,8 @@ from grader.run.processes import levels, network
 from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
-from grader.submission.start import EntryPoint, Script, Submission
+from grader.submission.program import Script
+from grader.submission.start import Submission
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,10 @@ class RunContext:
             others=MOST_PROGRAMS - 1 if beside is None else 0,
         )
         submission = submission.moved(confinement.copy)
-        env = {**self.env, **env, **confinement.env}
+        env = {**submission.environment, **self.env, **env, **confinement.env}
+        if submission.installed:
+            places = filter(None, (submission.installed, env.get("AMENT_PREFIX_PATH")))
+            env["AMENT_PREFIX_PATH"] = os.pathsep.join(places)
         if "meeting" in (confinement.order or ()):
             fds = (*fds, meeting.fileno())
         command = ProcessCommand(
@@ -121,11 +125,11 @@ def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
 
 def start_arguments(submission: Submission) -> list[str]:
     """Return a submission's start, of one program, as arguments of its process's `main`."""
-    start = submission.start
-    if isinstance(start, EntryPoint):
-        words = [f"{start.module}:{start.function}"]
-    elif isinstance(start, Script):
-        words = [str(start.path), *([start.function] if start.function else [])]
+    (program,) = submission.programs
+    entry = program.entry
+    if isinstance(entry, Script):
+        words = [str(entry.path), *([entry.function] if entry.function else [])]
     else:
-        raise ValueError("this submission starts nothing, or several programs")
+        assert entry is not None
+        words = [f"{entry.module}:{entry.function}"]
     return [str(submission.root), *words]

@@ -47,7 +47,8 @@ from grader.run.simulator_process import (
 )
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
-from grader.submission.start import Program, Submission
+from grader.submission.program import Program
+from grader.submission.start import Submission
 
 WAITS_FOR_EVER = msg("every thread of the node waits for something that will not come")
 STUCK = msg("the node waits for something that can no longer happen")
@@ -236,7 +237,7 @@ def _exit_code(each: RunningProgram, ended: dict[str, Any]) -> int | None:
 
 
 def _never_started(program: Program, beside: Sequence[Program]) -> Message:
-    if program.after is None:
+    if program.after < 0:
         return TOO_LATE.given(program=program.name, at=program.delay_s)
     return NEVER_ENDED.given(program=program.name, other=beside[program.after].name)
 
@@ -263,7 +264,12 @@ def command(
     known = json.dumps(
         [
             *(introduction.compares_stamps, own.texts, list(own.unlike)),
-            *(plan.cast is not None, number, arguments, list(map(str, submission.beside))),
+            *(
+                plan.cast is not None,
+                number,
+                submission.words(arguments),
+                list(map(str, submission.beside)),
+            ),
         ]
     )
     words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]

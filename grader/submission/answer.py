@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from grader.submission import trace
+from grader.submission.program import Program
 from grader.submission.trace import Obstacle, PackageTrace
 
 
@@ -53,41 +54,13 @@ class SetUp:
     Attributes:
         folder: where they lie in what was handed in; '.' for its top.
         problem: what ended their evaluation; None where it came to its end.
+        installed: path below the prefix -> file of the folder, as far as both are known.
     """
 
     folder: str
-    told: SetUpFacts
-    problem: Obstacle | None
-
-
-@dataclass(frozen=True)
-class LaunchStart:
-    """A program that a launch file starts.
-
-    Attributes:
-        name: as `ros2 launch` prints it: 'talker-1'.
-        package: '' for a command.
-        executable: of the package; of a command all of it.
-        script: the submission's file that a command runs; '' for none.
-        words: its arguments, and ROS's.
-        lacking: of these, what it cannot get.
-        after: the number of the one at whose end it starts; None: it starts with the launch; -1:
-            nobody knows when.
-        delay_s: how long after that [s].
-        respawns: how often it is started again when it ends; below 0: always.
-        respawn_s: how long after its end [s].
-    """
-
-    name: str
-    package: str
-    executable: str
-    script: str = ""
-    words: tuple[str, ...] = ()
-    lacking: tuple[str, ...] = ()
-    after: int | None = None
-    delay_s: float = 0.0
-    respawns: int = 0
-    respawn_s: float = 0.0
+    told: SetUpFacts = field(default_factory=SetUpFacts)
+    problem: Obstacle | None = None
+    installed: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -95,12 +68,13 @@ class LaunchOrder:
     """What a launch file starts, and when.
 
     Attributes:
-        starts: in the order in which it does.
+        programs: in the order in which it starts them; a script that a command runs is a path in
+            what was handed in.
         included: the submission's own launch files that it includes.
         ignored: actions and options that are not followed, by their names.
     """
 
-    starts: tuple[LaunchStart, ...] = ()
+    programs: tuple[Program, ...] = ()
     included: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
 

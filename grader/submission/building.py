@@ -9,6 +9,7 @@ searched in lib/PACKAGE).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import Final
 
@@ -17,8 +18,8 @@ from grader.submission import safe_files
 from grader.submission.folder import SubmissionFolder
 from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
-from grader.submission.set_ups import ConsoleScript, PackageFolder
-from grader.submission.start import EntryPoint, Program
+from grader.submission.program import EntryPoint, Program
+from grader.submission.set_ups import PackageFolder
 from grader.text import listed, shown
 
 _NOT_BUILT: Final = msg("colcon would not build this: {why}")
@@ -27,13 +28,13 @@ _NOT_STARTED: Final = msg("ros2 run would not start this: {why}")
 
 
 def shortcomings(
-    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript | None
+    submitted: SubmissionFolder, package: PackageFolder, program: Program | None
 ) -> Iterator[Message]:
     """Yield a sentence on each shortcoming, without a point at its end.
 
     Args:
         package: of which something is started.
-        script: the one that is started; None if its set-up files name none.
+        program: that is started; None if its set-up files name none.
     """
     folder = package.folder
     if problem := package.problem:
@@ -51,8 +52,8 @@ def shortcomings(
         yield sentence.given(why=why)
     elif (manifest := read_manifest(folder / FILE)) is not None:
         yield from _of_manifest(manifest, submitted.called(folder / FILE))
-    yield from _of_setup(submitted, package, script)
-    if script is not None and manifest is not None and manifest.name:
+    yield from _of_setup(submitted, package, program)
+    if program is not None and manifest is not None and manifest.name:
         yield from _of_place(submitted, package, manifest.name)
 
 
@@ -79,7 +80,7 @@ def _of_manifest(manifest: Manifest, called: str) -> Iterator[Message]:
 
 
 def _of_setup(
-    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript | None
+    submitted: SubmissionFolder, package: PackageFolder, program: Program | None
 ) -> Iterator[Message]:
     """Compare what setup.py installs with the files and the script."""
     called = submitted.called(package.folder / "setup.py")
@@ -106,16 +107,14 @@ def _of_setup(
                 names=listed(absent),
             )
         )
-    if script is None or packages is None:
+    if packages is None or program is None or not isinstance(program.entry, EntryPoint):
         return
-    top, _, _ = script.module.partition(".")
+    module = program.entry.module
+    top, _, _ = module.partition(".")
     root = next((r for r in package.roots(top) if (r / top).is_dir()), package.folder.resolve())
-    entry = EntryPoint(script.module, script.function)
-    loaded = read_imports(root, [Program(script.name, "", script.name, entry, root)]).files
+    loaded = read_imports(root, [replace(program, root=root)]).files
     folders = [file.parent.relative_to(root) for file in loaded]
-    parents = dict.fromkeys(
-        (script.module.rpartition(".")[0], *(".".join(f.parts) for f in folders))
-    )
+    parents = dict.fromkeys((module.rpartition(".")[0], *(".".join(f.parts) for f in folders)))
     if lacking := [parent for parent in parents if parent and parent not in packages]:
         bare = [root.joinpath(*each.split("."), "__init__.py") for each in lacking]
         missing = [submitted.called(each) for each in bare if not each.exists()]

@@ -1,31 +1,31 @@
-"""Chooses the console script of a folder that is the node, and finds its module."""
+"""Chooses the program of a package that is the node, and finds its module."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from grader.errors import SubmissionError
-from grader.message import Message, msg
+from grader.message import Message, msg, msg_many
 from grader.submission.folder import SubmissionFolder, files_below
 from grader.submission.imports import read_imports
+from grader.submission.program import Program, Script
 from grader.submission.python_source import read_source
 from grader.submission.request import USUAL_NAME
 from grader.submission.roles import is_among, roles_in
-from grader.submission.set_ups import ConsoleScript, PackageFolder, read_package
-from grader.submission.start import EntryPoint, Program
+from grader.submission.set_ups import Executable, PackageFolder, read_package
 from grader.text import listed, nearest, shown
 
 if TYPE_CHECKING:
     from grader.recording.subject import Role
     from grader.submission.answer import SetUp
 
-Choice = tuple[PackageFolder, ConsoleScript]
+Choice = tuple[PackageFolder, Executable]
 #: What a submission may have several of that could be started.
-Kind = Literal["console script", "Python file", "program"]
+Kind = Literal["console script", "Python file"]
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class Packages:
 
     @property
     def every(self) -> list[Choice]:
-        """All console scripts, each with its package."""
-        return [(package, script) for package in self.readable for script in package.scripts]
+        """All programs, each with its package."""
+        return [(package, each) for package in self.readable for each in package.executables]
 
     def choose(self) -> Choice | None:
         """Choose the script asked for, else the usual one, else the only one; None without any.
@@ -73,23 +73,55 @@ class Packages:
             raise self._several(names) if len(set(names)) > 1 else self._twice(every)
         return every[0] if every else None
 
-    def roles(self, package: PackageFolder | None, script: ConsoleScript | Path) -> set[Role]:
-        """Return what the source of a program has on the graph."""
-        if isinstance(script, Path):
-            return roles_in([script])
+    def program(self, package: PackageFolder, executable: Executable, number: int = 1) -> Program:
+        """Return a program as it is started without a launch file, see `found`."""
+        name = executable.name
+        return Program(f"{name}-{number}", package.name, name, executable.entry, package.folder)
+
+    def package(self, program: Program) -> PackageFolder | None:
+        """Return the package of a program whose root is its folder; None of a file in none."""
+        of = {each.folder: each for each in self.readable} if program.package else {}
+        return of.get(program.root)
+
+    def found(self, program: Program) -> tuple[Program, tuple[Path, ...]]:
+        """Return a program of a package with the root that it has when it runs.
+
+        Returns:
+            The program; and folders below that root, on the way to its module, that lack an
+            __init__.py.
+
+        Raises:
+            SubmissionError: its module is not there, or lacks its function.
+        """
+        package = self.package(program)
+        if isinstance(program.entry, Script):
+            return replace(program, root=program.entry.path.parent), ()
         assert package is not None
+        executable = package.executable(program.executable)
+        module = find_module(self.submitted, package, executable)
+        return replace(program, root=module.root), module.bare
+
+    @property
+    def roots(self) -> list[Path]:
+        """The folders from which packages in Python are imported."""
+        return [
+            each.roots(each.name)[0]
+            for each in self.readable
+            if each.has_setup_py or (each.folder / each.name / "__init__.py").is_file()
+        ]
+
+    def roles(self, program: Program) -> set[Role]:
+        """Return what the source of a program has on the graph."""
         try:
-            root = find_module(self.submitted, package, script).root
+            program, _ = self.found(program)
         except SubmissionError:
             return set()
-        entry = EntryPoint(script.module, script.function)
-        program = Program(script.name, package.name, script.name, entry, root)
-        return roles_in(read_imports(root, [program]).files)
+        return roles_in(read_imports(program.root, [program]).files)
 
     def _fitting(self, every: list[Choice]) -> list[Choice]:
-        """Return the scripts that have most of what the exercise names, or all where none has."""
+        """Return the programs that have most of what the exercise names, or all where none has."""
         wanted = self.submitted.request.roles
-        found = [self.roles(*choice) for choice in every]
+        found = [self.roles(self.program(*choice)) for choice in every]
         counts = [sum(is_among(role, roles) for role in wanted) for roles in found]
         return [each for each, n in zip(every, counts, strict=True) if n == max(counts)]
 
@@ -101,11 +133,10 @@ class Packages:
             return [each[0] for each in found]
         return every if len(every) == len(names) > 1 else []
 
-    def others(self, started: Sequence[ConsoleScript]) -> list[str]:
-        """The names of the scripts that start something else than those that are started."""
-        targets = {(each.module, each.function) for each in started}
-        every = (script for _, script in self.every)
-        return [each.name for each in every if (each.module, each.function) not in targets]
+    def others(self, started: Sequence[Program]) -> list[str]:
+        """The names of the programs that are something else than those that are started."""
+        entries = [each.entry for each in started]
+        return [each.name for _, each in self.every if each.entry not in entries]
 
     def holding(self, file: Path) -> PackageFolder | None:
         """The package with a setup.py in whose folder a file lies."""
@@ -147,13 +178,11 @@ def find_packages(submitted: SubmissionFolder, set_ups: Sequence[SetUp]) -> Pack
             faults.append(fault)
         else:
             readable.append(package)
-            have_script |= {folder} if package.scripts else set()
+            have_script |= {folder} if package.executables else set()
     return Packages(submitted, tuple(readable), tuple(faults))
 
 
-def find_module(
-    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript
-) -> Module:
+def find_module(submitted: SubmissionFolder, package: PackageFolder, script: Executable) -> Module:
     """Find the script's module in its package, and nowhere else."""
     inside = Path(*script.module.split("."))
     roots = package.roots(script.module)
@@ -190,18 +219,18 @@ def no_such_executable(
     )
 
 
-def not_started(kind: Kind, names: list[str]) -> list[Message]:
+def not_started(names: list[str]) -> list[Message]:
     """Return a note on the programs of a submission that were not started; empty without any."""
     if not names:
         return []
-    words = {"names": listed(names)}
-    if kind == "console script":
-        if len(names) > 1:
-            return [msg("other console scripts were not started: {names}", **words)]
-        return [msg("another console script was not started: {names}", **words)]
-    if len(names) > 1:
-        return [msg("other programs were not started: {names}", **words)]
-    return [msg("another program was not started: {names}", **words)]
+    return [
+        msg_many(
+            "another program was not started: {names}",
+            "other programs were not started: {names}",
+            len(names),
+            names=listed(names),
+        )
+    ]
 
 
 def example(module: str, name: str = USUAL_NAME) -> str:
@@ -209,7 +238,7 @@ def example(module: str, name: str = USUAL_NAME) -> str:
     return f"'console_scripts': ['{name} = {module}:main']"
 
 
-def _must_define(submitted: SubmissionFolder, script: ConsoleScript, file: Path) -> None:
+def _must_define(submitted: SubmissionFolder, script: Executable, file: Path) -> None:
     source = read_source(file)
     wanted = script.function.split(".")[0]
     if not source.surely_lacks(wanted):
@@ -226,7 +255,7 @@ def _must_define(submitted: SubmissionFolder, script: ConsoleScript, file: Path)
 
 
 def _no_module(
-    submitted: SubmissionFolder, package: PackageFolder, script: ConsoleScript, expected: Path
+    submitted: SubmissionFolder, package: PackageFolder, script: Executable, expected: Path
 ) -> SubmissionError:
     found = [file for file in files_below(package.folder) if file.suffix == ".py"]
     wanted = submitted.called(expected)
@@ -258,7 +287,7 @@ def _no_module(
     )
 
 
-def _starts(submitted: SubmissionFolder, script: ConsoleScript) -> Message:
+def _starts(submitted: SubmissionFolder, script: Executable) -> Message:
     target = shown(f"{script.module}:{script.function}")
     return msg(
         "{file} starts {script} by {target}",

@@ -26,14 +26,15 @@ from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
     Packages,
     example,
-    find_module,
     find_packages,
     no_such_executable,
     not_started,
 )
+from grader.submission.examining.cmake import FILE as CMAKE
 from grader.submission.examining.packages import is_launch_file
 from grader.submission.folder import (
     HAND_IN,
+    SETUP_FILES,
     SubmissionFolder,
     entries_of,
     files_below,
@@ -44,24 +45,22 @@ from grader.submission.folder import (
 from grader.submission.interfaces import find_interfaces
 from grader.submission.launching import (
     Launched,
-    StartedScript,
     find_launched,
     one_of,
     undeclared,
 )
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
+from grader.submission.program import EntryPoint, Program, Script
 from grader.submission.python_source import read_source
 from grader.submission.refusals import CPP, advice, missing, no_python
 from grader.submission.request import LaunchAsked, Request
 from grader.submission.set_ups import (
     MOST,
-    SETUP_FILES,
-    ConsoleScript,
     PackageFolder,
     Unevaluated,
 )
-from grader.submission.start import EntryPoint, Launch, Program, Script, Submission
+from grader.submission.start import Submission
 from grader.submission.unpacking import Unpacking, is_archive
 from grader.text import listed, nearest, shown
 
@@ -167,13 +166,13 @@ def _among(
     launched = Launched("", (), (), ())
     if inspection and executable is None and len(together) != 1:
         launched = find_launched(submitted, packages, inspection)
-        if launched.scripts:
-            found = _from_scripts(submitted, packages, launched.scripts, unpacking.scratch)
-            found = replace(found, start=Launch(found.programs), found=launched.found)
+        if launched.programs:
+            found = _from_programs(submitted, packages, launched.programs, unpacking.scratch)
+            found = replace(found, is_launched=True, found=launched.found)
             return replace(found, notes=(*launched.notes, *found.notes))
     if len(together) > 1:
-        started = [StartedScript.plain(*each, number) for number, each in enumerate(together, 1)]
-        found = _from_scripts(submitted, packages, started, unpacking.scratch)
+        started = [packages.program(*each, number) for number, each in enumerate(together, 1)]
+        found = _from_programs(submitted, packages, started, unpacking.scratch)
         return replace(found, notes=(*launched.notes, *found.notes))
     try:
         choice = packages.choose()
@@ -182,8 +181,8 @@ def _among(
             raise one_of(launched, submitted) from None
         raise
     if choice is not None:
-        started = [StartedScript.plain(*choice)]
-        return _from_scripts(submitted, packages, started, unpacking.scratch)
+        started = [packages.program(*choice)]
+        return _from_programs(submitted, packages, started, unpacking.scratch)
     candidates = [file for file in files if may_be_node(file)]
     if not candidates:
         raise no_python(submitted, files)
@@ -199,7 +198,7 @@ def _among(
         return _without_script(submitted, package, chosen)
     others = [submitted.called(file) for file in starting if file != chosen]
     found = _from_file(submitted, chosen)
-    more = [*(_unbuilt(submitted, chosen) or found.notes), *not_started("program", others)]
+    more = [*(_unbuilt(submitted, chosen) or found.notes), *not_started(others)]
     return replace(found, notes=tuple(more))
 
 
@@ -238,28 +237,22 @@ def _with_archive(found: Submission, archive: str) -> Submission:
 
 def _set_ups(submitted: SubmissionFolder, files: list[Path]) -> list[str]:
     """Return the folders with set-up files, which an inspection is to evaluate."""
-    found = dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES)
+    of_set_ups = (*SETUP_FILES, CMAKE)
+    found = dict.fromkeys(file.parent for file in files if file.name in of_set_ups)
     for file in files:
         is_of_package = not found.keys().isdisjoint(file.parents)
-        if is_of_package and (file.name in SETUP_FILES or is_launch_file(file)):
+        if is_of_package and (file.name in of_set_ups or is_launch_file(file)):
             submitted.must_hold(file)
     return [str(folder.relative_to(submitted.base)) for folder in found][:MOST]
 
 
-def _from_scripts(
-    submitted: SubmissionFolder,
-    packages: Packages,
-    started: Sequence[StartedScript],
-    scratch: Path,
+def _from_programs(
+    submitted: SubmissionFolder, packages: Packages, started: Sequence[Program], scratch: Path
 ) -> Submission:
-    """Start console scripts; one by itself is no launch."""
+    """Start programs of packages, and files by their paths."""
     base, notes, added = submitted.base, list[Message](), dict[Path, None]()
-    modules = {
-        each: find_module(submitted, each.package, each.script)
-        for each in started
-        if each.package and isinstance(each.script, ConsoleScript)
-    }
-    if any(module.bare for module in modules.values()):
+    located = [packages.found(each) for each in started]
+    if any(bare for _, bare in located):
         # without its __init__.py, Python prefers any installed package of the same name
         base = scratch / "with_init"
         notes += copy_folder(submitted.base, base)  # all of it: there may be packages beside
@@ -267,53 +260,41 @@ def _from_scripts(
     def placed(path: Path) -> Path:
         return base / path.relative_to(submitted.base)
 
-    programs = []
-    for each in started:
-        of_package = each.package.name if each.package else ""
-        entry: EntryPoint | Script
-        if isinstance(each.script, ConsoleScript):
-            root = placed(modules[each].root)
-            added |= {root / f / "__init__.py": None for f in modules[each].bare}
-            entry = EntryPoint(each.script.module, each.script.function)
-        else:
-            entry = Script(placed(each.script))
-            root = entry.path.parent
-        files = tuple(n for n, word in enumerate(each.arguments) if isinstance(word, Path))
-        words = tuple(w if isinstance(w, str) else str(placed(w)) for w in each.arguments)
-        given = words, files, each.after, each.delay_s
-        programs.append(Program(each.name, of_package, each.called, entry, root, *given))
+    for program, bare in located:
+        added |= {program.root / folder / "__init__.py": None for folder in bare}
     for file in added:
-        file.touch()
-    first, scripts = programs[0], [e.script for e in started if isinstance(e.script, ConsoleScript)]
-    found = msg("the console scripts {names}", names=listed(each.called for each in started))
-    if len(started) == len(scripts) == 1:
-        found = msg(
-            "console script {script} in {file}",
-            script=shown(scripts[0].name),
-            file=submitted.called(scripts[0].file),
-        )
-    if len(started) == 1 and added:
-        missing = listed(str(each.relative_to(first.root)) for each in added)
-        found = msg("{found}, with the missing {missing} added", found=found, missing=missing)
-    package = next((each.package for each in started if each.package), None)
-    short = shortcomings(submitted, package, scripts[0] if scripts else None) if package else ()
-    others = packages.others(scripts)
+        placed(file).touch()
+    programs = tuple(program for program, _ in located)
     roots = {each.root for each in programs}
-    root = first.root if len(roots) == 1 else base
-    is_plain = len(programs) == 1 and not first.arguments and not first.delay_s
-    return Submission(
-        *(submitted.name, root, first.entry if is_plain else Launch(tuple(programs)), found),
-        notes=(*short, *not_started("console script", others), *notes),
+    root = programs[0].root if len(roots) == 1 else submitted.base
+    short = list[Message]()
+    within = ((package, each) for each in started if (package := packages.package(each)))
+    package, first = next(within, (None, started[0]))
+    if package is not None:
+        short += shortcomings(submitted, package, first)
+    found = msg("the programs {names}", names=listed(each.executable for each in started))
+    if len(started) == 1 and package is not None:
+        found = _one_program(submitted, package, first)
+    if len(started) == 1 and added:
+        missing = listed(str(each.relative_to(root)) for each in added)
+        found = msg("{found}, with the missing {missing} added", found=found, missing=missing)
+    submission = Submission(
+        *(submitted.name, root, programs, found),
+        notes=(*short, *not_started(packages.others(started)), *notes),
         added=tuple(each.relative_to(root) for each in added),
-        package=placed(package.folder) if package else None,
-        beside=tuple(
-            dict.fromkeys(
-                placed(each.roots(each.name)[0]) for each in packages.readable if each.has_setup_py
-            )
-        ),
-        of_package=first.package,
-        executable=first.executable,
+        package=None if package is None else package.folder,
+        beside=tuple(dict.fromkeys(packages.roots)),
     )
+    return submission.with_paths(placed)
+
+
+def _one_program(submitted: SubmissionFolder, package: PackageFolder, program: Program) -> Message:
+    executable = package.executable(program.executable)
+    called = submitted.called(executable.file)
+    if not executable.module:
+        words = {"file": called, "package": shown(package.name)}
+        return msg("{file}, a program of {package}", **words)
+    return msg("console script {script} in {file}", script=shown(executable.name), file=called)
 
 
 def _without_script(submitted: SubmissionFolder, package: PackageFolder, file: Path) -> Submission:
@@ -325,12 +306,9 @@ def _without_script(submitted: SubmissionFolder, package: PackageFolder, file: P
     inside = file.relative_to(package.folder).with_suffix("").parts
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
         return replace(_from_file(submitted, file), notes=short, package=package.folder)
-    start = EntryPoint(".".join(inside), "main")
+    entry = EntryPoint(".".join(inside), "main")
     found = msg("function main of {file}", file=submitted.called(file))
-    folder = package.folder
-    return Submission(
-        *(submitted.name, folder, start, found), notes=short, package=folder, executable=file.name
-    )
+    return _of_file(submitted, file, entry, found, short, package.folder)
 
 
 def _unbuilt(submitted: SubmissionFolder, file: Path) -> list[Message]:
@@ -349,20 +327,35 @@ def _from_file(submitted: SubmissionFolder, file: Path) -> Submission:
     called = submitted.called(file)
     is_imported = source.parses and not source.is_refused and source.has_main
     if not is_imported or source.has_guard or source.calls_main:
-        found = msg("file {file}", file=called)
-        return Submission(submitted.name, file.parent, Script(file), found, executable=file.name)
+        return _of_file(submitted, file, Script(file), msg("file {file}", file=called))
     # one called like a module of Python may find that loaded already, instead of itself
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
-    start = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
+    entry = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
     note = msg(
         "Nothing in {file} calls main(): the grader did, as an entry point of a package would. By "
         "itself `python3 {file}` does nothing: end it with if __name__ == '__main__': main()",
         file=called,
     )
     found = msg("function main of {file}", file=called)
-    return Submission(
-        submitted.name, file.parent, start, found, notes=(note,), executable=file.name
-    )
+    return _of_file(submitted, file, entry, found, (note,))
+
+
+def _of_file(
+    submitted: SubmissionFolder,
+    file: Path,
+    entry: EntryPoint | Script,
+    found: Message,
+    notes: tuple[Message, ...] = (),
+    package: Path | None = None,
+) -> Submission:
+    """Start a file that no package installs.
+
+    Args:
+        package: the folder of the package that it is in, from which it is imported.
+    """
+    root = package or file.parent
+    program = Program(file.name, "", file.name, entry, root)
+    return Submission(submitted.name, root, (program,), found, notes=notes, package=package)
 
 
 def _is_source(file: Path) -> bool:

@@ -26,6 +26,8 @@ MAX_ENTRIES: Final = 10_000  # files and folders that are searched
 MAX_SOURCE_BYTES: Final = 1_000_000  # a Python or set-up file larger than this is not read here
 MAX_BYTES: Final = 200_000_000  # of all files together, where they are unpacked or copied
 
+SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
+
 RESULT: Final = "result.json"
 BEGINNING_BYTES: Final = 200  # of a file are read to recognise a result
 _OUR_RESULT: Final = re.compile(rb'\s*\{\s*"schema"\s*:\s*"turtlesim-grader/result/')
@@ -98,7 +100,7 @@ def is_result(begin: bytes) -> bool:
 
 def is_source(name: str) -> bool:
     """Whether a file of this name is part of a program or a package."""
-    return name.endswith(".py") or name in ("package.xml", "setup.cfg", "pyproject.toml")
+    return name.endswith(".py") or name in ("package.xml", *SETUP_FILES)
 
 
 def top_of(folder: Path) -> Path:

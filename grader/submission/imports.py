@@ -11,8 +11,9 @@ from typing import Final
 
 from grader.submission import safe_files
 from grader.submission.folder import read_bounded
+from grader.submission.program import Program, Script
 from grader.submission.python_source import parse
-from grader.submission.start import Imports, Program, Script
+from grader.submission.start import Imports
 from grader.text import shown
 
 #: What runs together with the statement that it stands in, once and in any case.
@@ -47,7 +48,7 @@ def read_imports(
     for each in programs:
         if isinstance(each.entry, Script):
             pending.append((each.entry.path, "", each.root, True))
-        else:
+        elif each.entry is not None:
             pending.extend((*file, True) for file in files(each.entry.module, each.root))
     seen: set[tuple[Path, bool]] = set()
     while pending:

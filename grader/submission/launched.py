@@ -9,6 +9,7 @@ from grader.message import NOTHING, Message, Text, joined, msg, msg_many, plain_
 from grader.recording.recording import NOT_THERE
 from grader.recording.view import Cell, Table
 from grader.submission.error_texts import described, placed
+from grader.submission.program import EntryPoint, Script
 from grader.submission.trace import PREFIX, Lacking, LaunchedNode, LaunchFile, PackageTrace, Skipped
 
 HEADINGS = (
@@ -151,10 +152,10 @@ def _clipped(content: Text) -> Text:
 # A program that was started by itself ------------------------------------------------------------
 
 
-def not_read(trace: PackageTrace, module: str, function: str) -> list[Message]:
+def not_read(trace: PackageTrace, entry: EntryPoint | Script | None) -> list[Message]:
     """A sentence on each launch file that may start more of the package, and cannot be read."""
     scripts = trace.setup.scripts if trace.setup else ()
-    name = next((s.name for s in scripts if (s.module, s.function) == (module, function)), "")
+    name = next((s.name for s in scripts if EntryPoint(s.module, s.function) == entry), "")
     return [
         msg(
             "{file} was not run, and what it starts cannot be read ({unread}): "
@@ -190,16 +191,16 @@ def not_installed(trace: PackageTrace) -> list[Message]:
     return found
 
 
-def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[Message]:
+def unlike_launched(trace: PackageTrace, entry: EntryPoint | Script | None) -> list[Message]:
     """A sentence on each launch file that starts more of the package, or starts it otherwise.
 
     Args:
-        module, function: what was started.
+        entry: what was started.
     """
     setup = trace.setup
     if setup is None:
         return []
-    started = [s.name for s in setup.scripts if (s.module, s.function) == (module, function)]
+    started = [s.name for s in setup.scripts if EntryPoint(s.module, s.function) == entry]
     scripts = {script.name for script in setup.scripts}
     found = []
     for launch in trace.launches:

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
 from grader.message import Message, joined, msg
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
+from grader.submission.examining.cmake import FILE as CMAKE
 from grader.submission.folder import SubmissionFolder
+from grader.submission.program import WITH_THE_LAUNCH, Program, Script
 from grader.submission.request import LaunchAsked
 from grader.submission.roles import is_among
-from grader.submission.set_ups import ConsoleScript, PackageFolder
 from grader.text import listed, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
-    from grader.submission.answer import Inspection, LaunchOrder, LaunchStart
+    from grader.submission.answer import Inspection, LaunchOrder
     from grader.submission.trace import LaunchFile
 
 #: What the simulator stands in for.
@@ -34,38 +34,6 @@ SEVERAL: Final = msg(
     "several launch files start several programs, and none of them was used: {names}"
 )
 AGAIN: Final = msg("{program} of {file} is started again {n} times at most")
-#: How an inspection names the folder of the submission.
-_SOURCE: Final = "/source/"
-
-
-class StartedScript(NamedTuple):
-    """A program of a submission that is started.
-
-    Attributes:
-        package: in which it is; None for a file that is started by its path.
-        script: a console script; or the file itself.
-        name: as `ros2 launch` prints it.
-        arguments: of ROS, and its own; a file of the submission is a path.
-        after: the place, among those that are started, of the one at whose end it is; None: none.
-        delay_s: how long after that, or after the others [s].
-    """
-
-    package: PackageFolder | None
-    script: ConsoleScript | Path
-    name: str
-    arguments: tuple[str | Path, ...] = ()
-    after: int | None = None
-    delay_s: float = 0.0
-
-    @property
-    def called(self) -> str:
-        """The name of the script, or of the file."""
-        return self.script.name
-
-    @classmethod
-    def plain(cls, package: PackageFolder, script: ConsoleScript, number: int = 1) -> StartedScript:
-        """Return one that is started without a launch file."""
-        return cls(package, script, f"{script.name}-{number}")
 
 
 @dataclass(frozen=True)
@@ -74,21 +42,21 @@ class Launched:
 
     Attributes:
         file: its name.
-        scripts: the submission's, in the order in which they are started.
+        programs: the submission's, in the order in which they are started; see `Packages.found`.
         notes: what is left out, and what is not followed.
         compiled: the submission's that are not in Python.
         several: the launch files of which one would have to be chosen.
     """
 
     file: str
-    scripts: tuple[StartedScript, ...]
+    programs: tuple[Program, ...]
     notes: tuple[Message, ...]
     compiled: tuple[str, ...]
     several: tuple[str, ...] = ()
 
     @property
     def found(self) -> Message:
-        names = listed({each.name: each.called for each in self.scripts}.values())
+        names = listed({each.name: each.executable for each in self.programs}.values())
         return msg("{file}, which starts {names}", file=shown(self.file), names=names)
 
 
@@ -111,7 +79,7 @@ def find_launched(
 
     if asked:
         found = launched(_asked(submitted, launches, asked.file))
-        if not (found.scripts or found.compiled):
+        if not (found.programs or found.compiled):
             raise SubmissionError(
                 "{file} starts no program of {name}", file=shown(found.file), name=submitted.name
             )
@@ -125,9 +93,9 @@ def find_launched(
         ]
         least = 1 if len(submitted.request.programs) > 1 else 2
         several = {
-            each.scripts: each
+            each.programs: each
             for each in reversed(every)
-            if len(each.scripts) + len(each.compiled) >= least and _is_needed(each, packages)
+            if len(each.programs) + len(each.compiled) >= least and _is_needed(each, packages)
         }
         if len(several) > 1:
             files = tuple(each.file for each in reversed(several.values()))
@@ -142,11 +110,11 @@ def find_launched(
             file=shown(found.file),
             names=listed(found.compiled),
         )
-    if len(found.scripts) > MOST_PROGRAMS:
+    if len(found.programs) > MOST_PROGRAMS:
         raise SubmissionError(
             "{file} starts {number} programs; a run may have {most}",
             file=shown(found.file),
-            number=len(found.scripts),
+            number=len(found.programs),
             most=MOST_PROGRAMS,
         )
     return found
@@ -166,7 +134,7 @@ def _is_needed(launched: Launched, packages: Packages) -> bool:
     request = packages.submitted.request
     if len(request.programs) > 1 or not request.roles:
         return True
-    found = [packages.roles(each.package, each.script) for each in launched.scripts]
+    found = map(packages.roles, launched.programs)
     return all(any(is_among(role, roles) for role in request.roles) for roles in found)
 
 
@@ -226,15 +194,15 @@ class _Launching:
             self._names.add(setup.name)
             if judged is not None:  # by both of its names
                 self._own |= {setup.name: judged, setup.told: judged}
-        self._scripts, self._compiled = list[StartedScript](), list[str]()
-        self._places = dict[int, int]()  # of the scripts, by their numbers in the launch file
+        self._programs, self._compiled = list[Program](), list[str]()
+        self._places = dict[int, int]()  # of the programs, by their numbers in the launch file
         self._others, self._later = list[str](), list[str]()
         self._has_simulator = False
 
     def launched(self, launch: LaunchFile, order: LaunchOrder) -> Launched:
         """Return what a launch file starts."""
         notes = list[Message]()
-        for number, start in enumerate(order.starts):
+        for number, start in enumerate(order.programs):
             if lacking := self._add(number, start):
                 program = shown(start.executable)
                 notes.append(LACKING.given(program=program, names=listed(lacking)))
@@ -243,26 +211,24 @@ class _Launching:
         left = {OTHERS: self._others, LATER: self._later, NOT_FOLLOWED: order.ignored}
         notes += [text.given(names=listed(names)) for text, names in left.items() if names]
         told = tuple(each.given(file=shown(launch.file)) for each in notes)
-        return Launched(launch.file, tuple(self._scripts), told, tuple(self._compiled))
+        return Launched(launch.file, tuple(self._programs), told, tuple(self._compiled))
 
-    def _add(self, number: int, start: LaunchStart) -> Sequence[str]:
+    def _add(self, number: int, start: Program) -> Sequence[str]:
         """Add a program to those of its kind; return what it does not get."""
-        package, script = self._own.get(start.package), self._script(start)
+        package, program = self._own.get(start.package), self._program(start)
         name = f"{start.package} {start.executable}".strip()
-        if script is not None:
-            if start.after is not None and start.after not in self._places:
+        if program is not None:
+            if start.after != WITH_THE_LAUNCH and start.after not in self._places:
                 self._later.append(start.executable)
                 return ()
-            self._places[number] = len(self._scripts)
-            after = None if start.after is None else self._places[start.after]
-            arguments = tuple(self._file(word) or word for word in start.words)
-            started = StartedScript(package, script, start.name, arguments, after, start.delay_s)
-            self._scripts.append(started)
+            self._places[number] = len(self._programs)
+            after = self._places.get(start.after, WITH_THE_LAUNCH)
+            self._programs.append(replace(program, after=after))
             return start.lacking
         if (start.package, start.executable) == _SIMULATOR and not self._has_simulator:
             self._has_simulator = True
-            return [word for word in start.words if not word.startswith(("-", "__node:="))]
-        if package is None or (package.folder / "CMakeLists.txt").is_file():
+            return [word for word in start.arguments if not word.startswith(("-", "__node:="))]
+        if package is None or (package.folder / CMAKE).is_file():
             is_own = start.package in self._names
             (self._compiled if is_own else self._others).append(name)
         return ()  # its set-up does not install it: `not_installed` says so
@@ -270,26 +236,27 @@ class _Launching:
     def _respawn(self, order: LaunchOrder) -> Iterator[Message]:
         """Add to those that are started what is started again at their ends."""
         for number, place in self._places.items():
-            start, again = order.starts[number], self._scripts[place]
-            room = MOST_PROGRAMS - len(self._scripts)
+            start, again = order.programs[number], self._programs[place]
+            room = MOST_PROGRAMS - len(self._programs)
             most = min(MOST_RESPAWNS, max(room, 0))
             times = start.respawns if 0 <= start.respawns <= most else most
             if times != start.respawns:
                 yield AGAIN.given(program=shown(start.executable), n=times)
             for _ in range(times):
-                self._scripts.append(again._replace(after=place, delay_s=start.respawn_s))
-                place = len(self._scripts) - 1
+                self._programs.append(replace(again, after=place, delay_s=start.respawn_s))
+                place = len(self._programs) - 1
 
-    def _script(self, start: LaunchStart) -> ConsoleScript | Path | None:
+    def _program(self, start: Program) -> Program | None:
         """Return the submission's program that a launch file means, in Python."""
-        package = self._own.get(start.package)
-        named = {} if package is None else {each.name: each for each in package.scripts}
-        return named.get(start.executable) or self._file(start.script)
-
-    def _file(self, name: str) -> Path | None:
-        """Return the file of the submission that an inspection names; None for other texts."""
-        file = self._submitted.base / name.removeprefix(_SOURCE)
-        if not name.startswith(_SOURCE) or ".." in file.parts or not file.is_file():
+        if package := self._own.get(start.package):
+            named = {each.name: each for each in package.executables}
+            if executable := named.get(start.executable):
+                start = replace(start, package=package.name, root=package.folder)
+                return replace(start, entry=executable.entry)
+        if start.package or not isinstance(start.entry, Script):
+            return None
+        file = self._submitted.base / start.entry.path
+        if ".." in file.parts or not file.is_file():
             return None
         self._submitted.must_hold(file)
-        return file
+        return replace(start, executable=file.name, entry=Script(file), root=file.parent)

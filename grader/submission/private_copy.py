@@ -20,12 +20,14 @@ import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from itertools import count
 from pathlib import Path
 from sys import stdlib_module_names
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg
+from grader.submission import safe_files
 from grader.submission.folder import (
     MAX_BYTES,
     MAX_ENTRIES,
@@ -36,6 +38,12 @@ from grader.submission.folder import (
 )
 from grader.text import listed, shown
 
+if TYPE_CHECKING:
+    from grader.submission.answer import SetUp
+
+#: Where ROS looks for which packages there are: a file in their names, which colcon adds.
+_MARKS: Final = "share/ament_index/resource_index/packages"
+_SHARE_OF: Final = re.compile(r"^share/(?!ament_index/)(\w+)/", re.MULTILINE)
 MAX_LEVELS: Final = 32  # of folders; what lies deeper is left out
 _CHUNK_BYTES: Final = 1 << 20
 
@@ -61,6 +69,7 @@ class PrivateCopy:
         shown: what people are shown instead of that.
         beside: the folder of a single file that was submitted; None for all else.
         remarks: for the result: what was left out.
+        installed: the prefix below which packages are laid out as installed; None where none are.
     """
 
     folder: Path
@@ -69,6 +78,7 @@ class PrivateCopy:
     shown: str
     beside: Path | None = None
     remarks: tuple[Message, ...] = ()
+    installed: Path | None = None
 
     def of(self, path: Path) -> Path:
         """Map a path of the original into the copy; one that is in the copy stays."""
@@ -79,7 +89,9 @@ class PrivateCopy:
     def moved(self, folder: Path) -> PrivateCopy:
         """Return the same copy, moved to another folder of this name."""
         is_all = self.prefix == str(self.folder)
-        return replace(self, folder=folder, prefix=str(folder if is_all else folder.parent))
+        installed = self.installed and folder / self.installed.name
+        prefix = str(folder if is_all else folder.parent)
+        return replace(self, folder=folder, prefix=prefix, installed=installed)
 
     def with_original_paths(self, text: str) -> str:
         """Replace the copy's paths in a run's output by the original ones."""
@@ -135,6 +147,44 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
         beside=None if path.is_dir() else base,
         remarks=remarks,
     )
+
+
+def install(copy: PrivateCopy, set_ups: Iterable[SetUp]) -> PrivateCopy:
+    """Lay out below a prefix in a copy what packages install, as `--symlink-install` does.
+
+    Packages in Python are not laid out: their folders are on the path of each program.
+    """
+    free = (copy.folder / f".installed{number or ''}" for number in count())
+    prefix = next(path for path in free if not os.path.lexists(path))
+    copy.folder.chmod(0o755)
+    prefix.mkdir()
+    for each in set_ups:
+        for path, file in each.installed.items():
+            link, to = prefix / path, copy.folder / each.folder / file
+            # they are a stranger's: within the copy, and a file, through which nothing is made
+            if _within(link, prefix) and _within(to, copy.folder) and safe_files.is_file(to):
+                _link(link, to)
+        for name in {*re.findall(_SHARE_OF, "\n".join(each.installed))}:
+            _mark(prefix / _MARKS / name)
+    _close(copy.folder)
+    return replace(copy, installed=prefix)
+
+
+def _within(path: Path, folder: Path) -> bool:
+    return Path(os.path.normpath(path)).is_relative_to(folder)
+
+
+def _link(link: Path, to: Path) -> None:
+    """Make a link that stays right where the copy is moved."""
+    with suppress(OSError, ValueError):  # its name is none that a file can have, or there is one
+        link.parent.mkdir(parents=True, exist_ok=True)
+        link.symlink_to(os.path.relpath(to, link.parent))
+
+
+def _mark(file: Path) -> None:
+    with suppress(OSError):  # its name is none that a file can have
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()
 
 
 def copy_folder(top: Path, into: Path) -> tuple[Message, ...]:

@@ -33,7 +33,7 @@ from grader.submission.refusals import readable
 from grader.submission.request import Request
 from grader.submission.roles import roles_in
 from grader.submission.set_ups import Unevaluated
-from grader.submission.start import Imports, Submission, Whole
+from grader.submission.start import Imports, Submission
 from grader.text import clip, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -293,7 +293,6 @@ def _with_its_source(found: Submission, only: Path | None, request: Request) -> 
     Args:
         only: the one file that is the submission, if it is one.
     """
-    assert not isinstance(found.start, Whole)
     imports = read_imports(found.root, found.programs, only, found.beside)
     files = [each for each in imports.files if each.is_relative_to(found.root)]
     refused = python_source.byte_faults(files, found.root)

@@ -8,21 +8,21 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
 from grader.message import NOTHING, Message, msg
-from grader.submission.folder import SubmissionFolder, read_bounded
+from grader.submission.folder import SETUP_FILES, SubmissionFolder, read_bounded
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import read_manifest
+from grader.submission.program import EntryPoint, Script
 from grader.text import shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import SetUp, SetUpFacts
 
-SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
 #: So many folders with set-up files are inspected.
 MOST: Final = 50
 
@@ -45,13 +45,23 @@ class Unevaluated:
 
 
 @dataclass(frozen=True)
-class ConsoleScript:
-    """An entry point `name = module:function`, as `file` declares it."""
+class Executable:
+    """A program that a package installs for `ros2 run`, in Python.
+
+    Attributes:
+        module, function: of a console script; '' of a file that is one by itself.
+        file: where a console script is declared; or that file.
+    """
 
     name: str
     module: str
     function: str
     file: Path
+
+    @property
+    def entry(self) -> EntryPoint | Script:
+        """What of it runs."""
+        return EntryPoint(self.module, self.function) if self.module else Script(self.file)
 
 
 @dataclass(frozen=True)
@@ -63,8 +73,12 @@ class PackageFolder:
     """
 
     folder: Path
-    scripts: tuple[ConsoleScript, ...] = ()
+    executables: tuple[Executable, ...] = ()
     set_up: SetUp | None = None
+
+    def executable(self, name: str) -> Executable:
+        """Return the program of a name; KeyError: it has none."""
+        return {each.name: each for each in self.executables}[name]
 
     @property
     def name(self) -> str:
@@ -110,19 +124,31 @@ class PackageFolder:
 
 
 def read_package(set_up: SetUp, submitted: SubmissionFolder) -> PackageFolder:
-    """Read the console scripts that the set-up files of a folder declare."""
-    folder = submitted.base / set_up.folder
-    scripts: dict[str, ConsoleScript] = {}
+    """Read the programs that the set-up files of a folder install."""
+    package = PackageFolder(submitted.base / set_up.folder, set_up=set_up)
+    found: dict[str, Executable] = {}
     for line in set_up.told.scripts:
         name, _, target = line.partition("=") if "=" in line else ("", "", line)
-        script = _console_script(name.strip(), target.strip(), folder, submitted)
-        scripts.setdefault(script.name, script)
-    return PackageFolder(folder, tuple(scripts.values()), set_up)
+        script = _console_script(name.strip(), target.strip(), package.folder, submitted)
+        found.setdefault(script.name, script)
+    for path, source in set_up.installed.items():
+        place, _, name = path.rpartition("/")
+        file = Path(os.path.normpath(package.folder / source))
+        is_own = place == f"lib/{package.name}" and file.is_relative_to(package.folder)
+        if is_own and file.is_file() and is_python(file):
+            found.setdefault(name, Executable(name, "", "", file))
+    return replace(package, executables=tuple(found.values()))
+
+
+def is_python(file: Path) -> bool:
+    """Whether a file is Python by its name, or by its first line."""
+    first_line = (read_bounded(file) or b"").partition(b"\n")[0]
+    return file.suffix == ".py" or (first_line.startswith(b"#!") and b"python" in first_line)
 
 
 def _console_script(
     name: str, target: str, folder: Path, submitted: SubmissionFolder
-) -> ConsoleScript:
+) -> Executable:
     file = _file_of(folder, name or target)
     match = _TARGET.fullmatch(target)
     if not name or match is None:
@@ -136,7 +162,7 @@ def _console_script(
             found=found,
             hint=hint,
         )
-    return ConsoleScript(name, match[1], match[2], file)
+    return Executable(name, match[1], match[2], file)
 
 
 def _file_of(folder: Path, name: str) -> Path:

@@ -2,85 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any
 
 from grader.message import Message
 from grader.recording.observations import LintFinding
 from grader.recording.recording import OwnInterfaces
-from grader.strict_json import UNSTORED, not_empty
+from grader.strict_json import UNSTORED
 from grader.submission.private_copy import PrivateCopy
-
-
-@dataclass(frozen=True)
-class EntryPoint:
-    """Import `module`, call `function` without arguments."""
-
-    module: str
-    function: str  # may be dotted: "Controller.main"
-
-
-@dataclass(frozen=True)
-class Script:
-    """Run the file as `__main__`.
-
-    With a `function`, load the file by its path under another name instead, and call that: the
-    file does not start itself, and its name cannot be imported.
-    """
-
-    path: Path  # absolute
-    function: str | None = None
-
-
-@dataclass(frozen=True)
-class Program:
-    """A program that is started, in a process of its own.
-
-    Attributes:
-        name: as `ros2 launch` prints it, 'talker-1'; of a script that of its file.
-        package: in which it is; '' for a script.
-        executable: its console script, or its file.
-        entry: what runs.
-        root: comes first on its sys.path, and is its working directory; absolute.
-        arguments: "--ros-args", "-r", "__ns:=/left".
-        files: which of them are files of the submission, as absolute paths.
-        after: the place among all of the one at whose end it is started; None: of none.
-        delay_s: how long after that, or after the others [s].
-    """
-
-    name: str
-    package: str
-    executable: str
-    entry: EntryPoint | Script
-    root: Path
-    arguments: tuple[str, ...] = ()
-    files: tuple[int, ...] = ()
-    after: int | None = None
-    delay_s: float = 0.0
-
-    def is_respawned(self, beside: Sequence[Program]) -> bool:
-        """Whether it is another of these that is started again."""
-        return self.after is not None and beside[self.after].name == self.name
-
-
-@dataclass(frozen=True)
-class Launch:
-    """Start programs as a launch file does."""
-
-    programs: Annotated[tuple[Program, ...], not_empty]
-
-
-@dataclass(frozen=True)
-class Whole:
-    """Start nothing: all of it is inspected.
-
-    Attributes:
-        package: the one that is asked for, where there may be several; '' for none in particular.
-    """
-
-    package: str = ""
+from grader.submission.program import BASE, OF_THE_RUN, PREFIX, EntryPoint, Program, Script
 
 
 @dataclass(frozen=True)
@@ -102,11 +33,12 @@ class Imports:
 
 @dataclass(frozen=True)
 class Submission:
-    """A submission, and how it starts."""
+    """A submission, and what of it is started."""
 
     name: str  # of the original: "alice.zip", "turtle_controller.py"
     root: Path  # in its copy, absolute; comes first on sys.path and is the working directory
-    start: EntryPoint | Script | Launch | Whole
+    #: what is started, in this order; nothing where all of it is inspected
+    programs: tuple[Program, ...]
     found: Message  # a sentence for the user: "console script turtle_controller in setup.py"
     imports: Imports = field(default_factory=Imports, compare=False)
     #: for the result: faults that a run does not show, and what was not started
@@ -123,9 +55,10 @@ class Submission:
     package: Path | None = field(default=None, compare=False)
     #: the folders of other packages in it, from which it can import, absolute
     beside: tuple[Path, ...] = field(default=(), compare=False)
-    #: the package and the console script of its program; '' and the file of a script
-    of_package: str = field(default="", compare=False)
-    executable: str = field(default="", compare=False)
+    #: whether a launch file starts it
+    is_launched: bool = field(default=False, compare=False)
+    #: the name of the package that is asked for, where nothing is started
+    asked: str = field(default="", compare=False)
     #: a trace of the scene package, where its whole package was inspected
     seen: object = field(default=None, compare=False, metadata=UNSTORED)
     #: the processor time that the inspection took [s]
@@ -144,17 +77,24 @@ class Submission:
         return self.copy.folder if self.copy else self.root
 
     @property
-    def programs(self) -> tuple[Program, ...]:
-        """What is started, in this order."""
-        if isinstance(self.start, Launch):
-            return self.start.programs
-        assert not isinstance(self.start, Whole)
-        name = f"{self.executable}-1" if self.of_package else self.executable
-        return (Program(name, self.of_package, self.executable, self.start, self.root),)
+    def installed(self) -> str:
+        """The prefix below which its packages are laid out as installed; '' where none are."""
+        return str(self.copy.installed or "") if self.copy else ""
+
+    @property
+    def entry(self) -> EntryPoint | Script | None:
+        """What its first program runs."""
+        return self.programs[0].entry
+
+    @property
+    def is_by_itself(self) -> bool:
+        """Whether it is one function that no launch file starts."""
+        is_one = len(self.programs) == 1 and isinstance(self.entry, EntryPoint)
+        return is_one and not self.is_launched
 
     def alone(self, program: Program) -> Submission:
         """Return the submission with one of its programs."""
-        return replace(self, start=program.entry, root=program.root)
+        return replace(self, programs=(program,), root=program.root)
 
     def moved(self, folder: Path) -> Submission:
         """Return the submission as one run finds it, copied to another folder."""
@@ -166,21 +106,31 @@ class Submission:
     def with_paths(self, there: Callable[[Path], Path]) -> Submission:
         """Return the submission with each path of its files replaced."""
 
-        def placed(start: Any) -> Any:
-            if isinstance(start, Script):
-                return replace(start, path=there(start.path))
-            if isinstance(start, Launch):
-                return Launch(tuple(map(placed, start.programs)))
-            if isinstance(start, Program):
-                words, root = list(start.arguments), there(start.root)
-                for each in start.files:
-                    words[each] = str(there(Path(words[each])))
-                return replace(start, entry=placed(start.entry), root=root, arguments=tuple(words))
-            return start
+        def placed(program: Program) -> Program:
+            entry = program.entry
+            if isinstance(entry, Script):
+                entry = replace(entry, path=there(entry.path))
+            return replace(program, entry=entry, root=there(program.root))
 
         package, beside = self.package and there(self.package), tuple(map(there, self.beside))
-        moved = replace(self, root=there(self.root), start=placed(self.start), package=package)
+        programs = tuple(map(placed, self.programs))
+        moved = replace(self, root=there(self.root), programs=programs, package=package)
         return replace(moved, beside=beside)
+
+    def words(self, arguments: Iterable[str]) -> list[str]:
+        """Return arguments of a program with the places of its files in them."""
+        places = {BASE: str(self.folder), PREFIX: self.installed}
+        words = list(arguments)
+        for mark, place in places.items():
+            words = [word.replace(mark, place) for word in words]
+        return words
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The variables that a launch file sets for its one program, as far as they can be."""
+        given = self.programs[0].environment if len(self.programs) == 1 else ()
+        pairs = (word.partition("=")[::2] for word in self.words(given) if "\0" not in word)
+        return {n: value for n, value in pairs if n.isidentifier() and not n.startswith(OF_THE_RUN)}
 
     def with_original_paths(self, text: str) -> str:
         """Replace the copy's paths in a run's output by the original ones."""

@@ -8,11 +8,10 @@ from typing import Final
 
 from grader.errors import SubmissionError
 from grader.message import msg, msg_many
-from grader.submission.folder import SubmissionFolder, files_below, top_of
+from grader.submission.folder import SETUP_FILES, SubmissionFolder, files_below, top_of
 from grader.submission.manifest import FILE, read_manifest
 from grader.submission.refusals import missing
-from grader.submission.set_ups import SETUP_FILES
-from grader.submission.start import Submission, Whole
+from grader.submission.start import Submission
 from grader.submission.unpacking import Unpacking, is_archive
 from grader.text import listed, nearest, shown
 
@@ -52,7 +51,7 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
     found = msg("a package without {file}", file=FILE)
     if names:
         found = msg_many("the package {names}", "packages {names}", len(names), names=listed(names))
-    return Submission(name, submitted.base, Whole(package or ""), found)
+    return Submission(name, submitted.base, (), found, asked=package or "")
 
 
 def opened(

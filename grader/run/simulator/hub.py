@@ -5,7 +5,7 @@
 The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to a program's
 process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
 each program; PIDS a JSON list of their processes, each with its name, with the place of the one at
-whose end it is started (null: with the run), and how long after that [ns]; CORE the
+whose end it is started (-1: with the run), and how long after that [ns]; CORE the
 processor core that all are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
 
 One program runs at a time, in the order in which they were started, until it asks for time
@@ -456,7 +456,7 @@ def main(argv: list[str]) -> int:
     links = []
     for link, page, (pid, _, after, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
         its = (socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
-        links.append((StudentLink(*its), 0 if after is None else after + 1, start_ns))
+        links.append((StudentLink(*its), after + 1, start_ns))
 
     def share_core() -> None:
         # for all, from here: a submission's process may not choose its cores

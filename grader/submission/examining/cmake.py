@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import islice
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -51,7 +51,7 @@ class Read(NamedTuple):
 
     Attributes:
         project: the name that it gives; '' where it tells none.
-        files: (folder below the prefix, file of the package).
+        files: (path below the prefix, file of the package).
         absent: what it installs, and is not there.
         programs: what is compiled and installed: 'lib/NAME/PROGRAM'.
         problems: what ended its evaluation; commands that nobody can follow here.
@@ -190,7 +190,7 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
     if words[0].upper() == "TARGETS":
         programs += [f"{where}/{name}" for name in named]
         return
-    is_kept = _patterns(words)
+    is_kept, renamed = _patterns(words), dict(pairwise(words)).get("RENAME")
     for name in named:
         source = Path(os.path.normpath(folder / name))
         if not source.resolve().is_relative_to(folder.resolve()):
@@ -207,11 +207,10 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
                     if is_kept(path.relative_to(source).as_posix(), each) and (
                         len(files) < _MOST_FILES
                     ):
-                        below = path.relative_to(base).parent.as_posix()
-                        to = f"{where}/{below}" if below != "." else where
+                        to = f"{where}/{path.relative_to(base).as_posix()}"
                         files.append((to, os.path.relpath(path, folder)))
         elif safe_files.is_file(source):
-            files.append((where, os.path.relpath(source, folder)))
+            files.append((f"{where}/{renamed or source.name}", os.path.relpath(source, folder)))
         else:
             absent.append(name)
 

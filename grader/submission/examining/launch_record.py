@@ -15,11 +15,12 @@ from typing import Annotated, Any, Final
 from grader.message import Message, msg
 from grader.strict_json import STRANGERS
 from grader.submission import safe_files
-from grader.submission.answer import LaunchOrder, LaunchStart
+from grader.submission.answer import LaunchOrder
 from grader.submission.examining import commands, external, known
-from grader.submission.examining.launch_time import NEVER, WITH_THE_LAUNCH, LaunchTime
+from grader.submission.examining.launch_time import LaunchTime
 from grader.submission.examining.layout import Workspace
 from grader.submission.examining.steps import LIMITS, NotKnown, end_of, it
+from grader.submission.program import BASE, OF_THE_RUN, PREFIX, Program, Script
 from grader.submission.trace import (
     Include,
     Lacking,
@@ -42,6 +43,7 @@ FOLLOWED: Final = (
     *("DeclareLaunchArgument", "GroupAction", "IncludeLaunchDescription", "LaunchDescription"),
     *("LogInfo", "Node", "LifecycleNode", "ComposableNodeContainer", "OpaqueFunction"),
     *("PushROSNamespace", "PushRosNamespace", "PushEnvironment", "PopEnvironment"),
+    *("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable"),
     *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetEnvironment"),
     *(
         "ROSTimer",
@@ -113,7 +115,7 @@ class LaunchRecord:
         """All of it; with packages that were asked for, those that are there and the others."""
         found: dict[str, Any] = {name: tuple(each) for name, each in self._found.items()}
         found["nodes"] = tuple(node for _, node in sorted(self._nodes, key=lambda each: each[0]))
-        ordered = {name: found.pop(name, ()) for name in ("starts", "included", "ignored")}
+        ordered = {name: found.pop(name, ()) for name in ("programs", "included", "ignored")}
         of_all = {name: found.pop(name, ()) for name in ("refused", "borrowed")}
         order = LaunchOrder(**ordered)
         launch = LaunchFile(file, problem, packages=tuple(there), **found)
@@ -152,15 +154,14 @@ class LaunchRecord:
             launched = LaunchedNode(**made, later=self.time.is_later)
             self._nodes.append((self.time.next_place(), launched))
         package, executable = node["package"], node["executable"]
-        script = self._program_file(package, executable)
-        start = LaunchStart("", package, executable, script, tuple(ros), tuple(lacking))
+        start = Program("", package, executable, arguments=tuple(ros), lacking=tuple(lacking))
         if type(action).__name__ == "LifecycleNode":
-            start = LaunchStart("", "", f"LifecycleNode {package} {executable}")
+            start = Program("", "", f"LifecycleNode {package} {executable}")
         self._start(start, action, command or executable)
 
-    def _start(self, start: LaunchStart, action: Any, program: str) -> None:
+    def _start(self, start: Program, action: Any, program: str) -> None:
         """Note a program that starts now."""
-        starts = self._found["starts"]
+        starts = self._found["programs"]
         if len(starts) >= _MOST:
             return
         number, name = len(starts), os.path.basename(program)
@@ -175,49 +176,58 @@ class LaunchRecord:
 
                 self.time.handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
         after, delay_s = self.time.when
-        words, lacking = self._with_sources(start.words)
+        words, lacking = self._placed(start.arguments)
+        environment = self._environment(start, action)
         printed = f"{name}-{number + 1}"[:LONG]
         starts.append(
             replace(
                 start,
                 name=printed,
                 executable=start.executable[:LONG],
-                words=words,
+                arguments=words,
+                environment=environment,
                 lacking=(*start.lacking, *lacking)[:_MOST],
-                after={WITH_THE_LAUNCH: None, NEVER: -1}.get(after, after),
+                after=after,
                 delay_s=delay_s,
             )
         )
         if action is not None:
             self.time.started(number, printed, action)
 
-    def _with_sources(self, words: Sequence[str]) -> tuple[tuple[str, ...], list[str]]:
-        """Arguments with the submission's files where they come from; and what cannot be given."""
+    def _placed(self, words: Sequence[str]) -> tuple[tuple[str, ...], list[str]]:
+        """Arguments with the marks of places, see `program`; and what cannot be given."""
         given, lacking = list[str](), list[str]()
         for word in words:
-            shown = self._source(word) or word
-            fits = str(self._place.prefix) not in shown and "\0" not in shown and len(shown) < 1000
-            (given if fits else lacking).append(shown if fits else shown[:LONG])
-            if not fits and given[-1:] in (["-p"], ["-r"], ["--params-file"]):
+            marked = self._marked(word)
+            if marked is not None:
+                given.append(marked)
+                continue
+            lacking.append(word[:LONG])
+            if given[-1:] in (["-p"], ["-r"], ["--params-file"]):
                 given.pop()
         return tuple(given[:_MOST]), lacking
 
-    def _source(self, path: str) -> str:
-        """Where a file of the submission comes from, as '/source/FILE'; '' for others."""
-        for each in self._place.all:
-            if own := each.own(path, self._place.prefix):
-                return f"/source/{os.path.relpath(each.package.folder / own, self._place.root)}"
-        return ""
+    def _marked(self, text: str) -> str | None:
+        """A text with the marks of places; None of one that no process of a run can get."""
+        place = self._place
+        marked = text.replace(str(place.prefix), PREFIX).replace(str(place.root), BASE)
+        is_here = str(place.asked.parent) in marked
+        return None if is_here or "\0" in text or len(marked) >= 1000 else marked
 
-    def _program_file(self, package: str, name: str) -> str:
-        """The submission's file of the same name as a program that it installs; '' for none."""
-        path = self._place.prefix / "lib" / package / name
-        meant = (
-            self._place.meant(str(path))
-            if name.endswith(".py") and safe_files.is_file(path)
-            else ""
-        )
-        return self._source(meant) if meant else ""
+    def _environment(self, start: Program, action: Any) -> tuple[str, ...]:
+        """The variables that a launch file sets for a program."""
+        first = self.context.first_environment
+        now = self.context.environment | (action.environment(self.context) if action else {})
+        found = list[str]()
+        for name, value in now.items():
+            if first.get(name) == value:
+                continue
+            marked = self._marked(value)
+            if marked is None or name.startswith(OF_THE_RUN):
+                self.ignored(f"{name} of {start.executable}")
+            elif len(found) < _MOST:
+                found.append(f"{name[:LONG]}={marked}")
+        return tuple(found)
 
     def skipped(self, node: dict[str, Any]) -> None:
         """A node that would start on a condition that is not met."""
@@ -264,16 +274,24 @@ class LaunchRecord:
         self._look_for_paths(words)
         self._add("processes", " ".join(words)[:1000])
         own = self._own_script(words)
-        start = LaunchStart("", "", self._place.shown(" ".join(words)), *own)
+        start = Program("", "", self._place.shown(" ".join(words)), *own)
         self._start(start, action, command)
 
-    def _own_script(self, words: list[str]) -> tuple[str, tuple[str, ...]]:
-        """The submission's file that a command runs in Python, and its arguments."""
+    def _own_script(self, words: list[str]) -> tuple[Script | None, Path, tuple[str, ...]]:
+        """The submission's file that a command runs in Python, no root, and its arguments."""
         rest = words[1:] if words and _PYTHON.fullmatch(os.path.basename(words[0])) else words
         script = rest[1:] if rest[:1] == ["-u"] else rest
         if not script or not script[0].endswith(".py"):
-            return "", ()
-        return self._source(os.path.abspath(script[0])), tuple(script[1:])
+            return None, Path(), ()
+        path = os.path.abspath(script[0])
+        sources = (
+            each.package.folder / own
+            for each in self._place.all
+            if (own := each.own(path, self._place.prefix))
+        )
+        source = next(sources, None)
+        entry = None if source is None else Script(source.relative_to(self._place.root))
+        return entry, Path(), tuple(script[1:])
 
     def declared(self, name: str) -> None:
         self._add("declared", name)

@@ -13,8 +13,8 @@ import itertools
 from collections.abc import Iterable
 from typing import Any, Final, NamedTuple
 
-#: After which program something happens, by its number; or after none, or nobody knows.
-WITH_THE_LAUNCH, NEVER = -1, -2
+from grader.submission.program import NEVER, WITH_THE_LAUNCH
+
 #: So many actions may wait, and so many are done: some have others wait without end.
 _MOST_WAITING, _MOST_DONE = 400, 800
 

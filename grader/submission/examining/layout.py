@@ -48,7 +48,7 @@ class Installed:
         package: it.
         name: what it is called below the prefix.
         setup: what it installs; what is told of it.
-        files: path below the prefix -> file of the package.
+        files: path below the prefix -> file of the package, plain scripts as well.
     """
 
     package: SourcePackage
@@ -86,20 +86,20 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
     name = (package.name or facts.name or package.folder.name)[:_LONGEST]
     folders: list[str] = []
     found: dict[str, str] = {}
-    for where, source in read.files[:_MOST_FILES]:
+    for to, source in read.files[:_MOST_FILES]:
         path = package.folder / source
         if safe_files.is_folder(path):
             folders.append(source)
         elif not safe_files.is_file(path):
             read.absent.append(source)
         else:
-            to = os.path.normpath(os.path.join(where, os.path.basename(source)))
+            to = os.path.normpath(to)
             if _copy(path, prefix, to):
                 found[to] = os.path.relpath(path, package.folder)
     where = facts.scripts_folder or "bin"
     programs = [*read.programs, *(f"{where}/{script.name}" for script in scripts)]
-    programs += [f"{where}/{os.path.basename(each)}" for each in facts.plain_scripts]
-    for program in programs:
+    plain = {f"{where}/{os.path.basename(each)}": each for each in facts.plain_scripts[:_MOST]}
+    for program in (*programs, *plain):
         _touch(prefix / os.path.normpath(program.lstrip("/")), prefix)
     _make_known(package, name, prefix)
     setup = Setup(
@@ -118,7 +118,7 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
         sources=tuple(found[each] for each in sorted(found)),
         left=_left(package, set(found.values())),
     )
-    return Installed(package, name, setup, found)
+    return Installed(package, name, setup, {**plain, **found})
 
 
 def _set_up_facts(package: SourcePackage, known: Known) -> tuple[SetUpFacts, cmake.Read]:
@@ -129,7 +129,11 @@ def _set_up_facts(package: SourcePackage, known: Known) -> tuple[SetUpFacts, cma
         return SetUpFacts(), cmake.Read("", [], [], [], [problem])
     if not package.is_cmake:
         facts, why = known.get(package.folder) or evaluate(package.folder)
-        files = [(each.folder, name) for each in facts.data_files for name in each.files]
+        files = [
+            (os.path.join(each.folder, os.path.basename(name)), name)
+            for each in facts.data_files
+            for name in each.files
+        ]
         return facts, cmake.Read(facts.name, files, [], [], [why] if why else [])
     try:
         read = attempt(lambda: cmake.read(package.folder), cmake.FILE)

@@ -16,7 +16,9 @@ import tempfile
 import traceback
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from fnmatch import fnmatchcase
+from functools import partial
 from pathlib import Path
 from pkgutil import resolve_name
 from types import MappingProxyType
@@ -26,12 +28,13 @@ if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
 from grader import linux  # noqa: E402
-from grader.submission import trace  # noqa: E402
-from grader.submission.answer import Inspection, LaunchOrder, SetUp  # noqa: E402
+from grader.submission import safe_files, trace  # noqa: E402
+from grader.submission.answer import Inspection, SetUp  # noqa: E402
 from grader.submission.examining import layout, leftovers, packages, setup_call  # noqa: E402
 from grader.submission.examining.examination import Examination  # noqa: E402
 from grader.submission.examining.layout import Workspace  # noqa: E402
 from grader.submission.examining.steps import Ended, attempt, open_account  # noqa: E402
+from grader.submission.folder import SETUP_FILES  # noqa: E402
 from grader.submission.trace import FAILED, PackageTrace  # noqa: E402
 
 
@@ -81,44 +84,34 @@ def inspect(
         given: values of launch arguments.
     """
     root = root.resolve()
-    evaluated = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in set_ups)
-    known = {root / each.folder: (each.told, each.problem) for each in evaluated}
-
-    def worth(set_up: SetUp) -> tuple[bool, bool]:
-        names = [line.partition("=")[0].strip() for line in set_up.told.scripts]
-        return any(fnmatchcase(name, program) for name in names), bool(names)
-
-    best = max(evaluated, key=worth).folder if evaluated else ""
-    judged = root / best if evaluated else Path(folder).resolve() if folder else None
+    evaluated = tuple(_set_up(root, each) for each in set_ups)
+    look = partial(_look, root, scratch, evaluated, program, package, folder, inspectors, given)
     try:
-        found, orders = attempt(
-            lambda: _examine(root, package, scratch, judged, known, inspectors, given)
-        )
+        return attempt(look)
     except Ended as ended:  # nothing that a step was made of: so much can be said
-        found, orders = PackageTrace(setup=layout.nothing("", ended.problem)), {}
-    return Inspection(evaluated, best, found, orders)
+        return Inspection(evaluated, trace=PackageTrace(setup=layout.nothing("", ended.problem)))
 
 
-def _examine(
+def _set_up(root: Path, folder: str) -> SetUp:
+    """What the set-up files of a folder say; nothing of one that has CMake's alone."""
+    if any(safe_files.is_file(root / folder / each) for each in SETUP_FILES):
+        return SetUp(folder, *setup_call.evaluate(root / folder))
+    return SetUp(folder)
+
+
+def _look(
     root: Path,
-    asked: str,
     scratch: Path,
-    folder: Path | None,
-    known: layout.Known,
+    set_ups: Sequence[SetUp],
+    program: str,
+    package: str,
+    folder: str,
     inspectors: Sequence[str] | None,
     given: Mapping[str, str],
-) -> tuple[PackageTrace, Mapping[str, LaunchOrder]]:
-    """What was found, and the orders of launch files.
-
-    Args:
-        known: set-ups that were evaluated already.
-        inspectors: see `inspect`.
-    """
+) -> Inspection:
+    """Lay out all packages, and examine the one that counts; see `inspect`."""
     open_account()
     found = packages.find(root)
-    one = packages.judged(found, asked, folder)
-    if one is None:
-        return PackageTrace(), {}
     with suppress(ImportError):  # once, and not by each copy that runs it
         import xacro  # noqa: F401
     prefix = scratch / "prefix"
@@ -126,13 +119,29 @@ def _examine(
     declared = {name for each in found for name in each.depends}
     layout.make_stubs(stubs, declared, {each.name for each in found})
     (empty / "home").mkdir(parents=True)
-    laid = {id(each): layout.lay_out(each, root, prefix, known) for each in found}
-    judged, everything = laid[id(one)], tuple(laid.values())
+    known = {root / each.folder: (each.told, each.problem) for each in set_ups}
+    laid = {each.folder: layout.lay_out(each, root, prefix, known) for each in found}
+    files = {folder: each.files for folder, each in laid.items()}
+    set_ups = tuple(replace(s, installed=files.get(root / s.folder, {})) for s in set_ups)
+    likely = max(set_ups, key=partial(_worth, program)).folder if set_ups else folder
+    one = packages.judged(found, package, (root / likely).resolve() if likely else None)
+    best = likely if set_ups else ""
+    if one is None:
+        return Inspection(set_ups, best)
+    judged, everything = laid[one.folder], tuple(laid.values())
     place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
     examination = Examination(place, scratch, given)
     examine = [resolve_name(place).examine for place in inspectors or ()]
     of_package = examination.trace(examine, is_whole=inspectors is not None)
-    return of_package, examination.orders
+    return Inspection(set_ups, best, of_package, examination.orders)
+
+
+def _worth(program: str, set_up: SetUp) -> tuple[bool, bool, bool]:
+    """Whether a package has a program of this name; has console scripts; has any program."""
+    scripts = [line.partition("=")[0].strip() for line in set_up.told.scripts]
+    files = [path.rpartition("/")[2] for path in set_up.installed if path.startswith("lib/")]
+    is_named = any(fnmatchcase(name, program) for name in (*scripts, *files))
+    return is_named, bool(scripts), bool(files)
 
 
 if __name__ == "__main__":

@@ -12,8 +12,9 @@ from grader.run.handover import Plan
 from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
 from grader.submission.answer import Inspection, decode
+from grader.submission.program import EntryPoint, Script
 from grader.submission.request import Request
-from grader.submission.start import EntryPoint, Script, Submission, Whole
+from grader.submission.start import Submission
 from grader.submission.trace import encode
 from tests.files import lay
 from tests.grader.submission.test_entry_points import SETUP, package
@@ -64,20 +65,20 @@ HOSTILE = [
 )
 def test_a_set_up_says_nothing_of_another_one(tmp_path, does, before):
     submission = found_in(two(tmp_path, before))
-    assert submission.start == EntryPoint("second.turtle_controller", "main")
+    assert submission.entry == EntryPoint("second.turtle_controller", "main")
     assert str(submission.found) == "console script turtle_controller in second/setup.py"
 
 
 def test_a_set_up_that_kills_who_inspects_is_found_by_its_files(tmp_path):
     submission = found_in(lay(tmp_path, with_set_up(KILLS)))
-    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.entry == EntryPoint("spiral.turtle_controller", "main")
     assert str(submission.notes[0]).startswith("the process that looked at the package left noth")
 
 
 @pytest.mark.more("it waits as long as the inspection does")
 def test_a_set_up_that_never_ends_is_ended_and_told(tmp_path):
     submission = found_in(lay(tmp_path, with_set_up("import time\ntime.sleep(1e6)")))
-    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.entry == EntryPoint("spiral.turtle_controller", "main")
     assert str(submission.notes[0]) == (
         "colcon would not build this: setup.py waited for what did not come"
     )
@@ -102,7 +103,7 @@ def test_a_script_that_is_claimed_is_none_of_another_place(tmp_path, target):
 def test_a_launch_file_says_nothing_of_set_ups(tmp_path):
     files = package("spiral") | {"launch/a.launch.py": TEXTS["forges"]}
     submission = found_in(lay(tmp_path, files))
-    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.entry == EntryPoint("spiral.turtle_controller", "main")
     assert "a.launch.py was not run, and what it starts cannot be read" in str(submission.notes[-1])
 
 
@@ -116,7 +117,7 @@ def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path):
 
 def test_an_answer_about_other_folders_is_none(tmp_path, monkeypatch):
     with open_submission(lay(tmp_path, package("spiral"))) as found:
-        whole = Submission("a", found.copy.folder, Whole(), "", copy=found.copy)
+        whole = Submission("a", found.copy.folder, (), "", copy=found.copy)
         asked = (whole, ["."], Request(), CpuBudget())
         said, _ = inspecting.inspect(*asked)
         assert [each.told.name for each in said.set_ups] == ["spiral"]
@@ -138,7 +139,7 @@ def test_a_single_file_is_not_inspected(tmp_path, monkeypatch):
 
     monkeypatch.setattr(inspecting, "inspect", fail)
     lay(tmp_path, {"node.py": "print(1)\n", "setup.py": "1 / 0\n"})
-    start = found_in(tmp_path / "node.py").start
+    start = found_in(tmp_path / "node.py").entry
     assert isinstance(start, Script)
     assert start.path.name == "node.py"
 

@@ -209,6 +209,16 @@ def test_a_script_of_its_own_is_started_by_its_path(tmp_path):
     assert (last.package, last.executable, last.exit_code) == ("", "prepare.py", 0)
 
 
+def test_programs_that_cmake_installs_run_with_the_files_that_it_installs():
+    recording = recorded(LAUNCHED / "in_cmake")
+    assert said(recording, "teller-1") == ["Hello World Hello World"]
+    (line,) = said(recording, "node.py-2")
+    assert line.startswith("--folder ")
+    assert line.endswith("/share/tells burger one True")
+    programs = [(each.package, each.executable) for each in recording.run.programs]
+    assert programs == [("tells", "teller"), ("hears", "node.py")]
+
+
 @pytest.mark.more("a run in each time")
 def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_path):
     folder = package(tmp_path, "drives", "starts")

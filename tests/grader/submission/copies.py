@@ -1,12 +1,9 @@
 """Hand-ins, and what is found in them: in a copy that goes, but told as it was handed in."""
 
-from dataclasses import replace
-
 import pytest
 
 from grader.errors import SubmissionError, UsageError
 from grader.run.opening import open_submission
-from grader.submission.start import Script
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
 GUARDED = NODE + '\n\nif __name__ == "__main__":\n    main()\n'
@@ -35,7 +32,4 @@ def in_place(submission):
     def back(path):
         return copy.origin / path.relative_to(copy.folder)
 
-    start = submission.start
-    if isinstance(start, Script):
-        start = replace(start, path=back(start.path))
-    return replace(submission, root=back(submission.root), start=start)
+    return submission.with_paths(back)

@@ -107,7 +107,7 @@ def test_other_console_scripts_are_told_as_not_started(tmp_path):
     scripts = "'again = spiral.node:main', 'pen_node = spiral.pens:main', 'turtle_controller"
     change = changed("setup.py", "'turtle_controller", scripts)
     lay(tmp_path, PACKAGE | change | {"spiral/pens.py": NODE})
-    assert notes(tmp_path) == ("another console script was not started: pen_node",)
+    assert notes(tmp_path) == ("another program was not started: pen_node",)
 
 
 def test_other_programs_of_a_folder_are_told_as_not_started(tmp_path):

@@ -5,8 +5,8 @@ import pytest
 from grader.errors import SubmissionError
 from grader.recording.subject import Role
 from grader.run.opening import open_submission
+from grader.submission.program import EntryPoint
 from grader.submission.roles import roles_in
-from grader.submission.start import EntryPoint
 from tests.files import lay
 from tests.grader.submission.copies import GUARDED, NODE, below, found_in, refused
 
@@ -41,7 +41,7 @@ def test_turtle_controller_is_preferred_and_the_only_script_needs_no_particular_
     assert str(found_in(tmp_path / "two").found) == said.format("turtle_controller")
     assert str(found_in(tmp_path / "two", "a").found) == said.format("a")
     only = found_in(lay(tmp_path / "one", package("spiral", f"draw = {TARGET}")))
-    assert only.start == EntryPoint("spiral.turtle_controller", "main")
+    assert only.entry == EntryPoint("spiral.turtle_controller", "main")
 
 
 SPIRAL = package("spiral")
@@ -93,7 +93,7 @@ def test_the_package_is_found_in_a_workspace_and_may_be_called_test(tmp_path):
     lay(tmp_path, {"src/msgs/package.xml": "", "src/msgs/CMakeLists.txt": ""})
     submission = found_in(tmp_path)
     assert submission.root == tmp_path / "src/test"
-    assert submission.start == EntryPoint("test.turtle_controller", "main")
+    assert submission.entry == EntryPoint("test.turtle_controller", "main")
     assert str(submission.found) == "console script turtle_controller in src/test/setup.py"
 
 
@@ -123,7 +123,7 @@ def test_where_setup_py_cannot_be_evaluated_the_program_is_found_as_without_scri
     tmp_path, setup, why
 ):
     submission = found_in(lay(tmp_path, package("spiral") | {"setup.py": setup}))
-    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.entry == EntryPoint("spiral.turtle_controller", "main")
     assert str(submission.notes[0]).startswith("colcon would not build this: setup.py ")
     assert str(submission.notes[0]).endswith(why)
     files = package("spiral", module="draw") | {"spiral/pens.py": GUARDED, "setup.py": setup}
@@ -132,7 +132,7 @@ def test_where_setup_py_cannot_be_evaluated_the_program_is_found_as_without_scri
 
 def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_told(tmp_path):
     submission = found_in(lay(tmp_path, SPIRAL | NO_SCRIPTS))
-    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.entry == EntryPoint("spiral.turtle_controller", "main")
     assert submission.root == tmp_path
     (note,) = (note for note in map(str, submission.notes) if note.startswith("setup.py names no"))
     assert "'turtle_controller = spiral.turtle_controller:main'" in note
@@ -185,7 +185,7 @@ def test_of_several_scripts_the_one_that_has_what_the_exercise_names_is_started(
     lay(tmp_path, files)
     if started is not None:
         with open_submission(tmp_path, **asked) as submission:
-            assert submission.executable == started
+            assert submission.programs[0].executable == started
     else:
         said = f"several console scripts: {', '.join(scripts)}. Expected one called talker"
         with pytest.raises(SubmissionError, match=said), open_submission(tmp_path, **asked):
@@ -197,7 +197,7 @@ def test_an_exercise_may_name_its_program_by_a_pattern(tmp_path, wanted, started
     scripts = [f"{each} = {TARGET}" for each in ("a", "my_draw_node", "b")]
     lay(tmp_path, package("spiral", *scripts))
     with open_submission(tmp_path, programs=(wanted,)) as submission:
-        assert submission.executable == started
+        assert submission.programs[0].executable == started
     with (
         pytest.raises(SubmissionError, match="no console script"),
         open_submission(tmp_path, "*d*"),
@@ -208,7 +208,7 @@ def test_an_exercise_may_name_its_program_by_a_pattern(tmp_path, wanted, started
 def test_a_pattern_is_one_of_files_too(tmp_path):
     lay(tmp_path, {"a_node.py": GUARDED, "my_draw.py": GUARDED, "other.py": GUARDED})
     with open_submission(tmp_path, programs=("*draw*",)) as submission:
-        assert submission.executable == "my_draw.py"
+        assert submission.programs[0].executable == "my_draw.py"
 
 
 @pytest.mark.parametrize(

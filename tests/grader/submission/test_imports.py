@@ -3,7 +3,8 @@
 import pytest
 
 from grader.submission.imports import read_imports
-from grader.submission.start import EntryPoint, Imports, Program, Script
+from grader.submission.program import EntryPoint, Program, Script
+from grader.submission.start import Imports
 from tests.files import lay
 
 

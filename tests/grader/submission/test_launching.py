@@ -4,11 +4,12 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.run.opening import open_submission
+from grader.submission.program import EntryPoint, Program, Script
 from grader.submission.request import LaunchAsked
-from grader.submission.start import EntryPoint, Launch, Program
 from tests.files import lay
 from tests.grader.submission.copies import NODE
 from tests.grader.submission.test_building import PACKAGE
+from tests.hand_ins import SUBMISSIONS
 
 HEAD = """from launch import LaunchDescription
 from launch.actions import *
@@ -106,14 +107,12 @@ def test_a_launch_file_that_another_includes_is_none_to_choose(tmp_path):
 def test_several_nodes_of_a_launch_file_are_started(tmp_path):
     submission = launched(tmp_path, f"{DRIVE}, {PENS}", "both.launch.py")
     root = submission.root
-    assert submission.start == Launch(
-        (
-            Program(
-                *("turtle_controller-1", "spiral", "turtle_controller"),
-                *(EntryPoint("spiral.node", "main"), root),
-            ),
-            Program("pen_node-2", "spiral", "pen_node", EntryPoint("spiral.pens", "main"), root),
-        )
+    assert submission.programs == (
+        Program(
+            *("turtle_controller-1", "spiral", "turtle_controller"),
+            *(EntryPoint("spiral.node", "main"), root),
+        ),
+        Program("pen_node-2", "spiral", "pen_node", EntryPoint("spiral.pens", "main"), root),
     )
     assert notes(submission) == [NOT_INSTALLED.format("both.launch.py")]
     assert "rclpy" in submission.imports.surely
@@ -129,7 +128,7 @@ def test_it_settles_what_to_start_where_no_script_has_the_usual_name(tmp_path):
 
 def test_who_asks_for_one_program_gets_that_alone(tmp_path):
     submission = launched(tmp_path, f"{DRIVE}, {PENS}", "both.launch.py", executable="pen_node")
-    assert submission.start == EntryPoint("spiral.pens", "main")
+    assert submission.entry == EntryPoint("spiral.pens", "main")
     assert str(submission.remarks[-1]) == (
         "launch/both.launch.py was evaluated and not run: pen_node was started by itself, "
         "without turtle_controller"
@@ -160,12 +159,12 @@ def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path):
             "launch/a.launch.py was evaluated and not run: turtle_controller was started by "
             "itself, without its namespace",
         ),
-        (DRIVE.replace(")", ", name='me')"), "another console script"),
+        (DRIVE.replace(")", ", name='me')"), "another program"),
     ],
 )
 def test_a_launch_file_that_is_not_run_is_told_where_it_matters(tmp_path, actions, note):
     submission = launched(tmp_path, actions)
-    assert submission.start == EntryPoint("spiral.node", "main")
+    assert submission.entry == EntryPoint("spiral.node", "main")
     assert any(str(remark).startswith(note) for remark in submission.remarks)
 
 
@@ -273,3 +272,33 @@ def test_programs_of_several_packages_of_a_workspace_are_started(tmp_path):
     assert names(submission) == ["turtle_controller-1", "pen_node-2"]
     assert [each.package for each in submission.programs] == ["spiral", "pens"]
     assert [each.root.name for each in submission.programs] == ["spiral", "pens"]
+
+
+IN_CMAKE = SUBMISSIONS / "launched/in_cmake"
+
+
+def test_what_cmake_installs_is_a_program_by_its_package_and_name():
+    submission = opened(IN_CMAKE)
+    paths = [program.entry.path for program in submission.programs]
+    assert names(submission) == ["teller-1", "node.py-2"]
+    assert [path.parts[-3:] for path in paths] == [
+        ("tells", "scripts", "node.py"),
+        ("hears", "scripts", "node.py"),
+    ]
+    left = "PYTHONPATH of teller, PYTHONPATH of node.py"
+    assert notes(submission) == [f"of tells/launch/both.launch.py was not followed: {left}"]
+
+
+def test_one_of_those_that_cmake_installs_can_be_asked_for():
+    submission = opened(IN_CMAKE, "teller")
+    assert str(submission.found) == "src/tells/scripts/node.py, a program of tells"
+    assert "another program was not started: node.py" in notes(submission)
+
+
+def test_a_script_that_setup_py_installs_is_a_program(tmp_path):
+    files = {"scripts/draw": "#!/usr/bin/env python3\n" + NODE, "scripts/run.sh": "#!/bin/sh\n"}
+    listed = "('lib/spiral', ['scripts/draw', 'scripts/run.sh'])"
+    text = TWO["setup.py"].replace("data_files=[", f"data_files=[{listed}, ")
+    assert listed in text
+    submission = opened(lay(tmp_path, TWO | files | {"setup.py": text}), "draw")
+    assert submission.entry == Script(submission.root / "draw")

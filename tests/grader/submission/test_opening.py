@@ -10,8 +10,8 @@ from grader.errors import UsageError
 from grader.run.opening import open_submission
 from grader.submission import safe_members
 from grader.submission.folder import HAND_IN
+from grader.submission.program import EntryPoint, Script
 from grader.submission.safe_members import ArchiveLimits, Budget
-from grader.submission.start import EntryPoint, Script
 from tests.files import lay, packed
 from tests.grader.submission.copies import GUARDED, NODE, below, found_in, refused
 
@@ -58,9 +58,9 @@ def test_a_file_is_run_as_a_script_or_imported_and_its_main_called(tmp_path, nam
     said = f"file {name}" if runs == "script" else f"function main of {name}"
     assert str(found.found) == said
     if runs == "import":
-        assert found.start == EntryPoint(name.removesuffix(".py"), "main")
+        assert found.entry == EntryPoint(name.removesuffix(".py"), "main")
     else:
-        assert found.start == Script(tmp_path / name, "main" if runs == "by its path" else None)
+        assert found.entry == Script(tmp_path / name, "main" if runs == "by its path" else None)
 
 
 def test_the_root_is_absolute_where_the_path_is_not(tmp_path, monkeypatch):
@@ -100,17 +100,17 @@ PASSED_OVER = [
 )
 def test_the_file_that_starts_itself_or_is_the_only_one_is_taken_from_a_folder(tmp_path, files):
     submission = found_in(lay(tmp_path, files))
-    assert submission.start == Script(tmp_path / "a/node.py")
+    assert submission.entry == Script(tmp_path / "a/node.py")
     assert submission.root == tmp_path / "a"
     assert str(submission.found) == "file a/node.py"
 
 
 def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path):
     lay(tmp_path, {"a.py": GUARDED, "main.py": GUARDED})
-    assert found_in(tmp_path).start == Script(tmp_path / "main.py")
+    assert found_in(tmp_path).entry == Script(tmp_path / "main.py")
     lay(tmp_path, {"turtle_controller.py": GUARDED})
-    assert found_in(tmp_path).start == Script(tmp_path / "turtle_controller.py")
-    assert found_in(tmp_path, "a").start == Script(tmp_path / "a.py")
+    assert found_in(tmp_path).entry == Script(tmp_path / "turtle_controller.py")
+    assert found_in(tmp_path, "a").entry == Script(tmp_path / "a.py")
 
 
 def test_several_files_to_start_are_listed(tmp_path):
@@ -148,7 +148,7 @@ def test_the_folder_of_a_courses_server_with_a_zip_in_it_is_looked_into(tmp_path
     pack(folder / "spiral.zip", below("spiral", PACKAGE))
     with open_submission(folder) as submission:
         assert submission.name == folder.name
-        assert submission.start == EntryPoint("spiral.node", "main")
+        assert submission.entry == EntryPoint("spiral.node", "main")
         said = "console script turtle_controller in spiral/setup.py, in spiral.zip"
         assert str(submission.found) == said
         assert submission.with_original_paths(str(submission.root)).startswith(str(folder))
@@ -161,14 +161,14 @@ def test_a_zip_in_a_zip_is_unpacked_and_so_is_a_tar(tmp_path):
     with tarfile.open(tmp_path / "a.tar.gz", "w:gz") as archive:
         archive.add(tmp_path / "a", "a")
     with open_submission(tmp_path / "a.tar.gz") as submission:
-        assert submission.start == EntryPoint("spiral.node", "main")
+        assert submission.entry == EntryPoint("spiral.node", "main")
         assert (submission.root / "spiral/node.py").read_text() == GUARDED
 
 
 def test_archives_are_unpacked_three_levels_deep_and_no_further(tmp_path):
     inside = packed({"node.py": NODE})
     (tmp_path / "a.zip").write_bytes(nested(2, inside))
-    assert found_in(tmp_path / "a.zip").start == EntryPoint("node", "main")
+    assert found_in(tmp_path / "a.zip").entry == EntryPoint("node", "main")
     (tmp_path / "b.zip").write_bytes(nested(3, inside))
     assert "level0.zip lies in an archive in an archive in an archive" in refused(
         tmp_path / "b.zip"

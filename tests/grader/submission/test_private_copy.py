@@ -11,7 +11,8 @@ from grader import grading, scratch
 from grader.exercise.loading import load_exercise
 from grader.run.opening import open_submission
 from grader.submission import private_copy
-from grader.submission.private_copy import PrivateCopy
+from grader.submission.answer import SetUp
+from grader.submission.private_copy import PrivateCopy, install
 from tests.files import lay
 from tests.grader.submission.copies import GUARDED as NODE
 from tests.grader.submission.copies import refused
@@ -27,8 +28,10 @@ def home(tmp_path):
 
 
 def held(submission):
-    folder = submission.copy.folder
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+    """All that was handed in; without what its packages install."""
+    copy = submission.copy
+    found = (str(path.relative_to(copy.folder)) for path in copy.folder.rglob("*"))
+    return sorted(name for name in found if not name.startswith(".installed"))
 
 
 def flags(submission):
@@ -226,3 +229,28 @@ def test_letters_beside_a_cut_that_are_no_path_stay_as_they_are():
     copy = PrivateCopy(Path("/tmp/a/copy/x"), Path("/home/ada/x"), "/tmp/a/copy", "/home/ada")
     text = "it is /\n[... 7 bytes left out ...]\nyes, py"
     assert copy.with_original_paths(text) == text
+
+
+def test_what_a_package_claims_to_install_stays_within_the_copy(tmp_path):
+    lay(tmp_path, {"home/a.py": "", "home/made/b.py": "", "other/c.py": ""})
+    copy = PrivateCopy(tmp_path / "home", tmp_path, "", "")
+    installed = {
+        "share/a/a.py": "a.py",
+        "../../outside": "a.py",
+        "share/a/up": "../other/c.py",
+        "share/a/root": "/etc/passwd",
+        "share/a/folder": "made",
+        "share/a/folder/d": "a.py",
+        "share/a/" + 300 * "n": "a.py",
+        "share/a/nul\0": "a.py",
+        "share/a/gone": "gone.py",
+    }
+    copy = install(copy, [SetUp(".", installed=installed)])
+    found = {str(path.relative_to(copy.installed)) for path in copy.installed.rglob("*.*")}
+    assert (copy.installed / "share/a/a.py").resolve() == tmp_path / "home/a.py"
+    assert found == {"share/a/a.py"}
+    assert (copy.installed / "share/ament_index/resource_index/packages/a").is_file()
+    assert not [path for path in (tmp_path / "home/made").iterdir() if path.name != "b.py"]
+    assert not (tmp_path / "outside").exists()
+    # one that has the name already is another's
+    assert install(copy, ()).installed != copy.installed

@@ -8,8 +8,8 @@ import pytest
 
 from grader.run.opening import open_submission
 from grader.run.student import loading
+from grader.submission.program import EntryPoint, Script
 from grader.submission.python_source import byte_fault
-from grader.submission.start import EntryPoint, Script
 from tests.grader.submission.copies import in_place
 
 NODE = b"import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
@@ -45,7 +45,7 @@ def test_a_lone_file_is_refused_as_python3_would_and_noted(tmp_path):
     file = tmp_path / "node.py"
     file.write_bytes(LATIN_1)
     with open_submission(file) as submission:
-        assert in_place(submission).start == Script(file)
+        assert in_place(submission).entry == Script(file)
         (note,) = submission.remarks
     assert str(note).startswith("node.py has a byte (0xe9) in line 6 that is no UTF-8")
     file.write_bytes(UTF_16)
@@ -63,7 +63,7 @@ def test_a_module_that_only_an_import_passes_over_is_imported_and_noted(tmp_path
     (tmp_path / "node.py").write_bytes(b"import helper\n" + NODE)
     (tmp_path / "helper.py").write_bytes(LATIN_1)
     with open_submission(tmp_path) as submission:
-        assert submission.start == EntryPoint("node", "main")
+        assert submission.entry == EntryPoint("node", "main")
         assert str(submission.notes[0]).startswith("helper.py has a byte (0xe9) in line 6")
 
 

@@ -14,7 +14,7 @@ import pytest
 from grader.errors import GraderFailure, SubmissionError
 from grader.run.opening import open_submission
 from grader.submission import reader
-from grader.submission.start import EntryPoint
+from grader.submission.program import EntryPoint
 from tests.files import lay
 from tests.limited import printed_by
 from tests.tiers import others_are_more
@@ -269,7 +269,7 @@ def test_a_copy_that_dies_is_no_fault_of_the_submission_s(tmp_path, monkeypatch)
         pass
     monkeypatch.undo()
     with open_submission(tmp_path / "node.py") as found:
-        assert found.start == EntryPoint("node", "main")
+        assert found.entry == EntryPoint("node", "main")
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ def read(folder, *scripts, package_folders=(), **texts):
     ],
 )
 def test_a_console_script_is_a_name_with_a_module_and_a_function(tmp_path, line, target):
-    (script,) = read(tmp_path, line).scripts
+    (script,) = read(tmp_path, line).executables
     assert (script.name, script.module, script.function) == ("go", *target)
 
 
@@ -47,12 +47,12 @@ def test_an_entry_that_no_tool_could_install_is_refused(tmp_path, entry, words):
 
 @pytest.mark.parametrize("named", ["setup.cfg", "pyproject.toml", "setup.py"])
 def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path, named):
-    (script,) = read(tmp_path, "go = pkg.node:main", **{named: "go: pkg.node:main"}).scripts
+    (script,) = read(tmp_path, "go = pkg.node:main", **{named: "go: pkg.node:main"}).executables
     assert script.file == tmp_path / named
 
 
 def test_a_script_whose_name_no_file_has_is_of_setup_py(tmp_path):
-    (script,) = read(tmp_path, "computed = pkg.node:main").scripts
+    (script,) = read(tmp_path, "computed = pkg.node:main").executables
     assert script.file == tmp_path / "setup.py"
 
 

@@ -25,7 +25,7 @@ INSTALLS = yaml.safe_load(Path(__file__).with_name("cmake.yaml").read_text(encod
 def test_what_is_installed_is_found(case, tmp_path):
     made = read(tmp_path, case["text"])
     assert (made.project, made.absent, made.problems) == ("a", [], [])
-    assert [f"{where}: {name}" for where, name in made.files] == case["installs"]
+    assert [f"{path}: {name}" for path, name in made.files] == case["installs"]
 
 
 @pytest.mark.parametrize(

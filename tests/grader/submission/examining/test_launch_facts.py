@@ -15,8 +15,9 @@ from typing import Any
 import pytest
 import yaml
 
-from grader.submission.answer import LaunchOrder, LaunchStart
+from grader.submission.answer import LaunchOrder
 from grader.submission.examining.frontend_substitutions import has_later
+from grader.submission.program import NEVER, Program
 from grader.submission.trace import LaunchFile
 from tests.files import lay
 from tests.grader_robots.packages import inspected
@@ -59,12 +60,12 @@ def look(part: int, folder: Path) -> dict[str, tuple[LaunchFile, LaunchOrder]]:
     return {each.file: (each, found.orders.get(each.file)) for each in found.trace.launches}
 
 
-def described(at_s: float, start: LaunchStart) -> dict[str, Any]:
+def described(at_s: float, start: Program) -> dict[str, Any]:
     """A program, as the facts have it: what is empty is left out."""
     told: dict[str, Any] = {"name": start.name, "at": at_s}
     if not start.package:  # without the folder of the program
         return told | {"command": re.sub(r"^\S*/", "", start.executable)}
-    words = start.words
+    words = start.arguments
     own = words.index("--ros-args") if "--ros-args" in words else len(words)
     entries = iter(words[own:])
     lists: dict[str, list[str]] = {"arguments": [*words[:own]], "remappings": [], "ros": []}
@@ -87,11 +88,12 @@ def described(at_s: float, start: LaunchStart) -> dict[str, Any]:
 def in_order(order: LaunchOrder) -> Iterator[dict[str, Any]]:
     """The programs of which it is known when they start."""
     at = list[float | None]()
-    for start in order.starts:
-        before = 0.0 if start.after is None else at[start.after] if start.after >= 0 else None
-        end_s = 0.0 if start.after is None else END_S * (start.after + 1)
+    for start in order.programs:
+        unknown = None if start.after == NEVER else 0.0
+        before = at[start.after] if start.after >= 0 else unknown
+        end_s = END_S * (start.after + 1)
         at.append(None if before is None else before + end_s + start.delay_s)
-    known = ((s, start) for s, start in zip(at, order.starts, strict=True) if s is not None)
+    known = ((s, start) for s, start in zip(at, order.programs, strict=True) if s is not None)
     for at_s, start in sorted(known, key=lambda each: each[0]):
         yield described(at_s, start)
 

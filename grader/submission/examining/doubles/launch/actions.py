@@ -267,8 +267,16 @@ class ExecuteProcess(ExecuteLocal):
             ),
             **kwargs,
         )
-        given = {"prefix": prefix, "cwd": cwd, "env": env, "additional_env": additional_env}
+        self._environment = [
+            [normalize_to_list_of_substitutions(text) for text in each]
+            for each in dict(additional_env or {}).items()
+        ]
+        given = {"prefix": prefix, "cwd": cwd, "env": env}
         self.ignored += [name for name, value in given.items() if value]
+
+    def environment(self, context: LaunchContext) -> dict[str, str]:
+        """The variables of its process alone."""
+        return {text_of(context, name): text_of(context, to) for name, to in self._environment}
 
     @property
     def cmd(self) -> list[Any]:
