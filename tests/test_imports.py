@@ -99,7 +99,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader.rosidl", "bag_types", "cdr", "definitions", "fields"),
     # a package is examined in the submission's process, which sees little of ours
     "grader.submission.trace": below("grader", "strict_json", "message"),
-    "grader.submission.program": set(),
+    "grader.submission.program": {"grader.strict_json"},
     "grader.submission.answer": {"grader.strict_json"}
     | below("grader.submission", "program", "trace"),
     # what checks make of it

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg, msg_many
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from grader.submission.answer import SetUp
 
 Choice = tuple[PackageFolder, Executable]
-#: What a submission may have several of that could be started.
-Kind = Literal["console script", "Python file"]
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,7 @@ class Packages:
             raise self.faults[0]
         names = [script.name for _, script in every]
         if request.executable and every:
-            raise no_such_executable(self.submitted, "console script", request.executable, names)
+            raise no_such_executable(self.submitted, request.executable, names)
         if len(every) > 1:
             fitting = self._fitting(every)
             if len(fitting) == 1:
@@ -146,16 +144,16 @@ class Packages:
     def _twice(self, matching: list[Choice]) -> SubmissionError:
         where = listed(self.submitted.called(script.file) for _, script in matching)
         return SubmissionError(
-            "{name} has the console script {script} more than once: {where}. Hand in"
+            "{name} has the program {program} more than once: {where}. Hand in"
             " only one of these packages.",
             name=self.submitted.name,
-            script=shown(matching[0][1].name),
+            program=shown(matching[0][1].name),
             where=where,
         )
 
     def _several(self, names: list[str]) -> SubmissionError:
         return SubmissionError(
-            "{name} has several console scripts: {names}. Expected one called "
+            "{name} has several programs: {names}. Expected one called "
             "{usual}; choose another with --executable NAME.",
             name=self.submitted.name,
             names=listed(names),
@@ -198,24 +196,15 @@ def find_module(submitted: SubmissionFolder, package: PackageFolder, script: Exe
 
 
 def no_such_executable(
-    submitted: SubmissionFolder, kind: Kind, executable: str, names: list[str]
+    submitted: SubmissionFolder, executable: str, names: list[str]
 ) -> SubmissionError:
     """The error that nothing has the name that was asked for."""
-    words = {"name": submitted.name, "executable": shown(executable), "names": listed(names)}
-    if kind == "console script":
-        return SubmissionError(
-            msg(
-                "{name} has no console script {executable}; it has: {names}. Choose one of these "
-                "with --executable NAME, or correct the name.",
-                **words,
-            )
-        )
     return SubmissionError(
-        msg(
-            "{name} has no Python file {executable}; it has: {names}. Choose one of these with "
-            "--executable NAME, or correct the name.",
-            **words,
-        )
+        "{name} has no program {executable}; it has: {names}. Choose one of these with "
+        "--executable NAME, or correct the name.",
+        name=submitted.name,
+        executable=shown(executable),
+        names=listed(names),
     )
 
 

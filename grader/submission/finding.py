@@ -375,7 +375,7 @@ def _only(submitted: SubmissionFolder, candidates: list[Path]) -> Path:
         chosen = [file for file in candidates if executable in (file.stem, file.name)]
         if not chosen:
             names = [submitted.called(file) for file in candidates]
-            raise no_such_executable(submitted, "Python file", executable, names)
+            raise no_such_executable(submitted, executable, names)
     else:
         chosen = _usual(submitted, candidates)
     if len(chosen) > 1:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Annotated, Final
+
+from grader.strict_json import STRANGERS
 
 #: In place of the number of a program that is waited for: with the launch; nobody knows when.
 WITH_THE_LAUNCH: Final = -1
@@ -14,6 +16,8 @@ NEVER: Final = -2
 #: lie elsewhere in each run. No argument of a process has such a character of its own.
 BASE: Final = "\0base"
 PREFIX: Final = "\0prefix"
+#: The most that its arguments take as JSON [characters]: one argument of its process holds them.
+LONGEST_ARGUMENTS: Final = 60_000
 #: How variables begin that a run sets, or that change how Python and ROS are loaded.
 OF_THE_RUN: Final = (
     *("LD_", "DYLD_", "PYTHON", "ROS_", "RMW_", "AMENT_", "COLCON_", "FASTDDS_", "FASTRTPS_"),
@@ -64,7 +68,7 @@ class Program:
     executable: str
     entry: EntryPoint | Script | None = None
     root: Path = Path()
-    arguments: tuple[str, ...] = ()
+    arguments: Annotated[tuple[str, ...], STRANGERS._replace(characters=LONGEST_ARGUMENTS)] = ()
     environment: tuple[str, ...] = ()
     lacking: tuple[str, ...] = ()
     after: int = WITH_THE_LAUNCH

@@ -20,7 +20,14 @@ from grader.submission.examining import commands, external, known
 from grader.submission.examining.launch_time import LaunchTime
 from grader.submission.examining.layout import Workspace
 from grader.submission.examining.steps import LIMITS, NotKnown, end_of, it
-from grader.submission.program import BASE, OF_THE_RUN, PREFIX, Program, Script
+from grader.submission.program import (
+    BASE,
+    LONGEST_ARGUMENTS,
+    OF_THE_RUN,
+    PREFIX,
+    Program,
+    Script,
+)
 from grader.submission.trace import (
     Include,
     Lacking,
@@ -148,7 +155,10 @@ class LaunchRecord:
         given = [*node["parameters"], *self._by_argument(node)]
         parameters = tuple(self._parameter(each) for each in given)
         self._look_for_paths(node["arguments"])
-        words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
+        most = int(STRANGERS.characters)
+        words = {
+            each: tuple(word[:most] for word in node[each]) for each in ("arguments", "remappings")
+        }
         made = {**self._from_where(node), **words, "parameters": parameters}
         if len(self._nodes) < _MOST:  # one may be there twice
             launched = LaunchedNode(**made, later=self.time.is_later)
@@ -196,11 +206,12 @@ class LaunchRecord:
 
     def _placed(self, words: Sequence[str]) -> tuple[tuple[str, ...], list[str]]:
         """Arguments with the marks of places, see `program`; and what cannot be given."""
-        given, lacking = list[str](), list[str]()
+        given, lacking, room = list[str](), list[str](), LONGEST_ARGUMENTS
         for word in words:
             marked = self._marked(word)
-            if marked is not None:
+            if marked is not None and (size := len(json.dumps(marked))) < room:
                 given.append(marked)
+                room -= size
                 continue
             lacking.append(word[:LONG])
             if given[-1:] in (["-p"], ["-r"], ["--params-file"]):
@@ -211,8 +222,7 @@ class LaunchRecord:
         """A text with the marks of places; None of one that no process of a run can get."""
         place = self._place
         marked = text.replace(str(place.prefix), PREFIX).replace(str(place.root), BASE)
-        is_here = str(place.asked.parent) in marked
-        return None if is_here or "\0" in text or len(marked) >= 1000 else marked
+        return None if str(place.asked.parent) in marked or "\0" in text else marked
 
     def _environment(self, start: Program, action: Any) -> tuple[str, ...]:
         """The variables that a launch file sets for a program."""
@@ -223,7 +233,7 @@ class LaunchRecord:
             if first.get(name) == value:
                 continue
             marked = self._marked(value)
-            if marked is None or name.startswith(OF_THE_RUN):
+            if marked is None or len(marked) > 1000 or name.startswith(OF_THE_RUN):
                 self.ignored(f"{name} of {start.executable}")
             elif len(found) < _MOST:
                 found.append(f"{name[:LONG]}={marked}")

@@ -212,9 +212,10 @@ def test_a_script_of_its_own_is_started_by_its_path(tmp_path):
 def test_programs_that_cmake_installs_run_with_the_files_that_it_installs():
     recording = recorded(LAUNCHED / "in_cmake")
     assert said(recording, "teller-1") == ["Hello World Hello World"]
-    (line,) = said(recording, "node.py-2")
-    assert line.startswith("--folder ")
-    assert line.endswith("/share/tells burger one True")
+    first, *more = said(recording, "node.py-2")
+    assert first.startswith("--folder ")
+    assert first.endswith("/share/tells burger one True")
+    assert more == ["5000 ['--ros-args', '-p', 'of:=\"hears\"']"]
     programs = [(each.package, each.executable) for each in recording.run.programs]
     assert programs == [("tells", "teller"), ("hears", "node.py")]
 

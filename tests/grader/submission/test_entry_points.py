@@ -55,9 +55,9 @@ OTHERS = "class Node: ...\ndef Main(): ...\n"
 @pytest.mark.parametrize(
     ("files", "executable", "words"),
     [
-        (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "console scripts: a, b"),
+        (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "programs: a, b"),
         (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "--executable NAME"),
-        (SPIRAL, "spirral", "no console script spirral; it has: turtle_controller"),
+        (SPIRAL, "spirral", "no program spirral; it has: turtle_controller"),
         # a module is never taken from elsewhere
         (package("spiral", "x = json.tool:main"), None, "there is no file json/tool.py"),
         (
@@ -107,7 +107,7 @@ def test_of_several_packages_the_one_with_the_script_is_taken(tmp_path):
 def test_a_broken_set_up_file_does_not_matter_beside_a_good_one(tmp_path):
     lay(tmp_path, {"src/bad/setup.py": "setup(\n"} | below("src/good", package("good")))
     assert found_in(tmp_path).root == tmp_path / "src/good"
-    assert "no console script other; it has: turtle_controller" in refused(tmp_path, "other")
+    assert "no program other; it has: turtle_controller" in refused(tmp_path, "other")
 
 
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_of_several_scripts_the_one_that_has_what_the_exercise_names_is_started(
         with open_submission(tmp_path, **asked) as submission:
             assert submission.programs[0].executable == started
     else:
-        said = f"several console scripts: {', '.join(scripts)}. Expected one called talker"
+        said = f"several programs: {', '.join(scripts)}. Expected one called talker"
         with pytest.raises(SubmissionError, match=said), open_submission(tmp_path, **asked):
             pass
 
@@ -199,7 +199,7 @@ def test_an_exercise_may_name_its_program_by_a_pattern(tmp_path, wanted, started
     with open_submission(tmp_path, programs=(wanted,)) as submission:
         assert submission.programs[0].executable == started
     with (
-        pytest.raises(SubmissionError, match="no console script"),
+        pytest.raises(SubmissionError, match="no program"),
         open_submission(tmp_path, "*d*"),
     ):
         pass
