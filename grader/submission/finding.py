@@ -30,15 +30,13 @@ from grader.submission.entry_points import (
     no_such_executable,
     not_started,
 )
-from grader.submission.examining.cmake import FILE as CMAKE
 from grader.submission.examining.packages import is_launch_file
 from grader.submission.folder import (
+    CMAKE,
     HAND_IN,
     SETUP_FILES,
     SubmissionFolder,
-    entries_of,
     files_below,
-    is_junk,
     read_bounded,
     top_of,
 )
@@ -53,7 +51,7 @@ from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
 from grader.submission.program import EntryPoint, Program, Script
 from grader.submission.python_source import read_source
-from grader.submission.refusals import CPP, advice, missing, no_python
+from grader.submission.refusals import no_python
 from grader.submission.request import LaunchAsked, Request
 from grader.submission.set_ups import (
     MOST,
@@ -61,7 +59,7 @@ from grader.submission.set_ups import (
     Unevaluated,
 )
 from grader.submission.start import Submission
-from grader.submission.unpacking import Unpacking, is_archive
+from grader.submission.unpacking import opened
 from grader.text import listed, nearest, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -79,37 +77,34 @@ def find(path: Path, request: Request, scratch: Path) -> Submission | Unevaluate
         UsageError: there is no such path; or a choice is asked for where there is none.
         OSError: a file cannot be read, or something is wrong with the machine.
     """
-    name, executable = shown(path.name or path.resolve().name), request.executable
-    if not path.exists():
-        raise missing(path)
-    unpacking = Unpacking(scratch)
-    if path.is_dir():
-        return _in_folder(SubmissionFolder(name, path.resolve(), request), unpacking)
-    is_python = path.suffix == ".py"
-    if not is_python and not is_archive(path):
-        raise SubmissionError(
-            "{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice}",
-            name=name,
-            advice=advice(path),
-        )
+    if path.suffix == ".py" and path.exists() and not path.is_dir():
+        return _alone(path, request)
+    submitted, files, inside = opened(path, request, scratch)
+    if folders := _set_ups(submitted, files):
+        return Unevaluated(submitted.base, tuple(folders), inside)
+    if request.launch:
+        raise _no_launch_files(submitted, request.launch)
+    return _found(submitted, files, inside, scratch)
+
+
+def _alone(path: Path, request: Request) -> Submission:
+    """Start a single file, of which nothing but itself is handed in."""
+    submitted = SubmissionFolder(shown(path.name), path.parent.resolve(), request)
     if not path.is_file():
         raise SubmissionError(
-            "{name} is not an ordinary file. {hand_in}", name=name, hand_in=HAND_IN
+            "{name} is not an ordinary file. {hand_in}", name=submitted.name, hand_in=HAND_IN
         )
-    if is_python:
-        if executable is not None and executable not in (path.stem, path.name):
-            raise UsageError(
-                "there is no {executable!r} in {name}: a single .py file is itself what"
-                " is started, and there is nothing to choose. Leave out --executable.",
-                executable=executable,
-                name=name,
-            )
-        folder = path.parent.resolve()
-        submitted = SubmissionFolder(name, folder, request)
-        if request.launch:
-            raise _no_launch_files(submitted, request.launch)
-        return _from_file(submitted, folder / path.name)
-    return _in_folder(SubmissionFolder(name, unpacking.unpack(path), request), unpacking)
+    executable = request.executable
+    if executable is not None and executable not in (path.stem, path.name):
+        raise UsageError(
+            "there is no {executable!r} in {name}: a single .py file is itself what"
+            " is started, and there is nothing to choose. Leave out --executable.",
+            executable=executable,
+            name=submitted.name,
+        )
+    if request.launch:
+        raise _no_launch_files(submitted, request.launch)
+    return _from_file(submitted, submitted.base / path.name)
 
 
 def find_evaluated(
@@ -118,46 +113,31 @@ def find_evaluated(
     """Find what to start of a submission that was evaluated; see `find`."""
     submitted = SubmissionFolder(shown(name), package.base, request)
     files = files_below(top_of(package.base))
-    found = _found(submitted, files, Unpacking(scratch), inspection)
-    if request.launch is not None:
-        found = replace(found, notes=(*undeclared(inspection, request.launch), *found.notes))
-    for archive in package.inside:
-        found = _with_archive(found, archive)
-    return found
-
-
-def _in_folder(submitted: SubmissionFolder, unpacking: Unpacking) -> Submission | Unevaluated:
-    top = top_of(submitted.base)
-    if all(is_junk(entry.name) for entry in entries_of(top)):
-        raise SubmissionError(
-            "{name} is an empty folder. {hand_in}", name=submitted.name, hand_in=HAND_IN
-        )
-    files = files_below(top)
-    archives = [file for file in files if is_archive(file)]
-    if archives and not any(_is_source(file) for file in files):
-        return _in_archive(submitted, archives, unpacking)
-    if folders := _set_ups(submitted, files):
-        return Unevaluated(submitted.base, tuple(folders))
-    if submitted.request.launch:
-        raise _no_launch_files(submitted, submitted.request.launch)
-    return _found(submitted, files, unpacking)
+    found = _found(submitted, files, package.inside, scratch, inspection)
+    if request.launch is None:
+        return found
+    return replace(found, notes=(*undeclared(inspection, request.launch), *found.notes))
 
 
 def _found(
     submitted: SubmissionFolder,
     files: list[Path],
-    unpacking: Unpacking,
+    inside: Sequence[str],
+    scratch: Path,
     inspection: Inspection | None = None,
 ) -> Submission:
-    found = _among(submitted, files, unpacking, inspection)
+    found = _among(submitted, files, scratch, inspection)
     interfaces, notes = find_interfaces(submitted, files)
-    return replace(found, interfaces=interfaces, notes=(*found.notes, *notes))
+    where = found.found
+    for archive in inside:
+        where = msg("{found}, in {file}", found=where, file=archive)
+    return replace(found, found=where, interfaces=interfaces, notes=(*found.notes, *notes))
 
 
 def _among(
     submitted: SubmissionFolder,
     files: list[Path],
-    unpacking: Unpacking,
+    scratch: Path,
     inspection: Inspection | None,
 ) -> Submission:
     request, executable = submitted.request, submitted.request.executable
@@ -167,12 +147,12 @@ def _among(
     if inspection and executable is None and len(together) != 1:
         launched = find_launched(submitted, packages, inspection)
         if launched.programs:
-            found = _from_programs(submitted, packages, launched.programs, unpacking.scratch)
+            found = _from_programs(submitted, packages, launched.programs, scratch)
             found = replace(found, is_launched=True, found=launched.found)
             return replace(found, notes=(*launched.notes, *found.notes))
     if len(together) > 1:
         started = [packages.program(*each, number) for number, each in enumerate(together, 1)]
-        found = _from_programs(submitted, packages, started, unpacking.scratch)
+        found = _from_programs(submitted, packages, started, scratch)
         return replace(found, notes=(*launched.notes, *found.notes))
     try:
         choice = packages.choose()
@@ -182,7 +162,7 @@ def _among(
         raise
     if choice is not None:
         started = [packages.program(*choice)]
-        return _from_programs(submitted, packages, started, unpacking.scratch)
+        return _from_programs(submitted, packages, started, scratch)
     candidates = [file for file in files if may_be_node(file)]
     if not candidates:
         raise no_python(submitted, files)
@@ -209,30 +189,6 @@ def _no_launch_files(submitted: SubmissionFolder, launch: LaunchAsked) -> Submis
         name=submitted.name,
         file=shown(launch.file),
     )
-
-
-def _in_archive(
-    submitted: SubmissionFolder, archives: list[Path], unpacking: Unpacking
-) -> Submission | Unevaluated:
-    """Unpack the one archive that a folder holds, as folders from a course's server do."""
-    if len(archives) > 1:
-        raise SubmissionError(
-            "{name} holds several archives, and no Python file beside them: "
-            "{names}. Hand in only one of them.",
-            name=submitted.name,
-            names=listed(map(submitted.called, archives)),
-        )
-    (archive,) = archives
-    submitted.must_hold(archive)
-    found = _in_folder(replace(submitted, base=unpacking.unpack(archive)), unpacking)
-    if isinstance(found, Unevaluated):
-        return replace(found, inside=(*found.inside, submitted.called(archive)))
-    return _with_archive(found, submitted.called(archive))
-
-
-def _with_archive(found: Submission, archive: str) -> Submission:
-    """Add to a submission's description that it was found in an archive inside."""
-    return replace(found, found=msg("{found}, in {file}", found=found.found, file=archive))
 
 
 def _set_ups(submitted: SubmissionFolder, files: list[Path]) -> list[str]:
@@ -356,10 +312,6 @@ def _of_file(
     root = package or file.parent
     program = Program(file.name, "", file.name, entry, root)
     return Submission(submitted.name, root, (program,), found, notes=notes, package=package)
-
-
-def _is_source(file: Path) -> bool:
-    return file.suffix == ".py" or file.name in SETUP_FILES or file.suffix.lower() in CPP
 
 
 def may_be_node(file: Path) -> bool:

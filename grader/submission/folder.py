@@ -26,6 +26,7 @@ MAX_ENTRIES: Final = 10_000  # files and folders that are searched
 MAX_SOURCE_BYTES: Final = 1_000_000  # a Python or set-up file larger than this is not read here
 MAX_BYTES: Final = 200_000_000  # of all files together, where they are unpacked or copied
 
+CMAKE: Final = "CMakeLists.txt"
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
 
 RESULT: Final = "result.json"

@@ -10,8 +10,7 @@ from grader.errors import SubmissionError
 from grader.message import Message, joined, msg
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
-from grader.submission.examining.cmake import FILE as CMAKE
-from grader.submission.folder import SubmissionFolder
+from grader.submission.folder import CMAKE, SubmissionFolder
 from grader.submission.program import WITH_THE_LAUNCH, Program, Script
 from grader.submission.request import LaunchAsked
 from grader.submission.roles import is_among

@@ -23,7 +23,6 @@ from grader.recording.recording import OwnInterfaces
 from grader.recording.subject import Role
 from grader.submission import folder, python_source, whole
 from grader.submission.finding import find, find_evaluated, may_be_node
-from grader.submission.folder import is_source
 from grader.submission.imports import read_imports
 from grader.submission.interfaces import completed, undeclared
 from grader.submission.lint import lint
@@ -34,6 +33,7 @@ from grader.submission.request import Request
 from grader.submission.roles import roles_in
 from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Imports, Submission
+from grader.submission.unpacking import opened
 from grader.text import clip, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -251,7 +251,7 @@ def _marks(path: Path, scratch: Path) -> Marks:
         if path.suffix == ".py" and path.is_file():
             base, files = path.parent, [path]
         else:
-            submitted, files = whole.opened(path, scratch, lambda file: is_source(file.name))
+            submitted, files, _ = opened(path, Request(), scratch)
             base = submitted.base
         exercises = {
             shown(exercise): shown(file.relative_to(base))
