@@ -16,7 +16,7 @@ import json
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Final
 
@@ -84,7 +84,7 @@ def order_of(folders: Sequence[str], request: Request) -> dict[str, object]:
         "set_ups": list(folders),
         "program": request.executable or request.usual,
         "inspectors": None if by is None else inspector.places(by),
-        "given": dict(request.launch.given) if request.launch else {},
+        "launch": asdict(request.launch) if request.launch else {"file": ""},
     }
 
 

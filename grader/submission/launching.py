@@ -77,7 +77,7 @@ def find_launched(
         return made.launched(launch, inspection.orders[launch.file])
 
     if asked:
-        found = launched(_asked(submitted, launches, asked.file))
+        found = launched(_asked(submitted, launches, asked))
         if not (found.programs or found.compiled):
             raise SubmissionError(
                 "{file} starts no program of {name}", file=shown(found.file), name=submitted.name
@@ -141,7 +141,7 @@ def undeclared(inspection: Inspection, asked: LaunchAsked) -> Iterator[Message]:
     """Yield a note on each argument that the launch file asked for does not declare."""
     for each in inspection.trace.launches:
         names = sorted(asked.given.keys() - {*each.declared})
-        for name in names if _is_called(each, asked.file) else ():
+        for name in names if asked.is_called(each.file) else ():
             yield msg(
                 "{file} declares no argument {name}, only {known}",
                 file=shown(each.file),
@@ -150,23 +150,20 @@ def undeclared(inspection: Inspection, asked: LaunchAsked) -> Iterator[Message]:
             )
 
 
-def _is_called(launch: LaunchFile, asked: str) -> bool:
-    """Whether a launch file has a path, or ends with a name."""
-    return f"/{launch.file}".endswith(f"/{asked.removeprefix('./')}")
-
-
-def _asked(submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: str) -> LaunchFile:
+def _asked(
+    submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: LaunchAsked
+) -> LaunchFile:
     """Return the launch file of a path or a name."""
-    named = [each for each in launches if _is_called(each, asked)]
+    named = [each for each in launches if asked.is_called(each.file)]
     if not named:  # by its path in all that was handed in
-        ends = [each for each in launches if f"/{asked}".endswith(f"/{each.file}")]
+        ends = [each for each in launches if f"/{asked.file}".endswith(f"/{each.file}")]
         named = sorted(ends, key=lambda each: len(each.file))[-1:]
     if len(named) != 1:
         text = msg("{name} has no launch file {file}; it has: {names}")
         if named:
             text = msg("{name} has several launch files {file}: {names}. Give its path.")
         names = listed(each.file for each in named or launches) or msg("none")
-        raise SubmissionError(text.given(name=submitted.name, file=shown(asked), names=names))
+        raise SubmissionError(text.given(name=submitted.name, file=shown(asked.file), names=names))
     if named[0].problem:
         raise SubmissionError(_faulty(named[0]))
     return named[0]

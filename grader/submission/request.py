@@ -26,6 +26,10 @@ class LaunchAsked:
     file: str
     given: Mapping[str, str] = field(default_factory=dict)
 
+    def is_called(self, path: str) -> bool:
+        """Whether a launch file has the path, or ends with the name, that is asked for."""
+        return bool(self.file) and f"/{path}".endswith(f"/{self.file.removeprefix('./')}")
+
 
 @dataclass(frozen=True)
 class Request:

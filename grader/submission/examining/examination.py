@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from difflib import get_close_matches
@@ -19,6 +19,7 @@ from grader.submission.examining import launches
 from grader.submission.examining.launch_record import Evaluated
 from grader.submission.examining.layout import Installed, Workspace
 from grader.submission.examining.steps import Ended, attempt, it, step
+from grader.submission.request import LaunchAsked
 from grader.submission.trace import (
     Lacking,
     LaunchedNode,
@@ -56,10 +57,10 @@ class Examination:
         obstacle: why nothing is evaluated any more, if anything.
     """
 
-    def __init__(self, workspace: Workspace, scratch: Path, given: Mapping[str, str]) -> None:
-        """`given`: values of launch arguments."""
+    def __init__(self, workspace: Workspace, scratch: Path, asked: LaunchAsked) -> None:
+        """`asked`: the launch file that is looked at first."""
         self.workspace = workspace
-        self._given = given
+        self._asked = asked
         self.texts: list[str] = []
         self.evaluated: list[tuple[LaunchFile, Evaluated]] = []
         self.orders: dict[str, LaunchOrder] = {}
@@ -76,13 +77,14 @@ class Examination:
         """
         workspace = self.workspace
         files = _launch_files(workspace, with_beside=not is_whole)
-        self._files = dict([*files.items()][:_MOST_LAUNCHES])
+        names = sorted(files, key=lambda file: not self._asked.is_called(file))
+        self._files = {name: files[name] for name in names[:_MOST_LAUNCHES]}
         self._miss("a setup.py")
         evaluated = [self._launch(file) for file in self._files]
         setup = self.shown(self._setup())
         if is_whole:
             self._evaluate_elsewhere(evaluated)
-        if left_out := [*files][_MOST_LAUNCHES:]:
+        if left_out := names[_MOST_LAUNCHES:]:
             evaluated.append(_left_out(left_out))
         others = [each.name[:200] for each in workspace.all if each is not workspace.judged]
         found = PackageTrace(
@@ -154,8 +156,8 @@ class Examination:
         if self.obstacle:
             raise Ended.by_limit(msg("cannot be evaluated: {why}", why=self.obstacle))
         try:
-            evaluate = partial(launches.evaluate, self.workspace, *self._files[file], self._given)
-            answer = self.step(evaluate)
+            asked = (self.workspace, *self._files[file], self._asked.given)
+            answer = self.step(partial(launches.evaluate, *asked))
         finally:
             if gone := self._miss(file):
                 raise Ended.by_limit(msg("takes away {file}", file=gone))
@@ -223,7 +225,7 @@ class Examination:
             again: list[str] = []
             with suppress(Ended):
                 files = self._files[launch.file]
-                evaluate = partial(launches.evaluate, self.workspace, *files, self._given)
+                evaluate = partial(launches.evaluate, self.workspace, *files, self._asked.given)
                 again = attempt(partial(_lacking_files, self.step(evaluate)))
             known = {each.name for each in launch.lacking}
             other = next((name for name in again if name not in known), "")

@@ -22,6 +22,7 @@ from functools import partial
 from pathlib import Path
 from pkgutil import resolve_name
 from types import MappingProxyType
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[3]
 if __name__ == "__main__":
@@ -35,6 +36,7 @@ from grader.submission.examining.examination import Examination  # noqa: E402
 from grader.submission.examining.layout import Workspace  # noqa: E402
 from grader.submission.examining.steps import Ended, attempt, open_account  # noqa: E402
 from grader.submission.folder import SETUP_FILES  # noqa: E402
+from grader.submission.request import LaunchAsked  # noqa: E402
 from grader.submission.trace import FAILED, PackageTrace  # noqa: E402
 
 
@@ -69,7 +71,7 @@ def inspect(
     package: str = "",
     folder: str = "",
     inspectors: Sequence[str] | None = (),
-    given: Mapping[str, str] = MappingProxyType({}),
+    launch: Mapping[str, Any] = MappingProxyType({"file": ""}),
 ) -> Inspection:
     """Return what set-ups name to be started, and what there is of one package.
 
@@ -81,11 +83,12 @@ def inspect(
             the one that describes a robot.
         inspectors: where the inspectors are that examine it besides; None where only what launch
             files would start is asked for.
-        given: values of launch arguments.
+        launch: the attributes of a `LaunchAsked`.
     """
     root = root.resolve()
     evaluated = tuple(_set_up(root, each) for each in set_ups)
-    look = partial(_look, root, scratch, evaluated, program, package, folder, inspectors, given)
+    asked = LaunchAsked(**launch)
+    look = partial(_look, root, scratch, evaluated, program, package, folder, inspectors, asked)
     try:
         return attempt(look)
     except Ended as ended:  # nothing that a step was made of: so much can be said
@@ -107,7 +110,7 @@ def _look(
     package: str,
     folder: str,
     inspectors: Sequence[str] | None,
-    given: Mapping[str, str],
+    launch: LaunchAsked,
 ) -> Inspection:
     """Lay out all packages, and examine the one that counts; see `inspect`."""
     open_account()
@@ -130,7 +133,7 @@ def _look(
         return Inspection(set_ups, best)
     judged, everything = laid[one.folder], tuple(laid.values())
     place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
-    examination = Examination(place, scratch, given)
+    examination = Examination(place, scratch, launch)
     examine = [resolve_name(place).examine for place in inspectors or ()]
     of_package = examination.trace(examine, is_whole=inspectors is not None)
     return Inspection(set_ups, best, of_package, examination.orders)

@@ -28,7 +28,7 @@ OF_COMPOSED = ("component_container", "talker")
 
 @cache
 def all_of_it(*folders):
-    order = {"set_ups": folders, "program": "turtle_controller", "inspectors": None, "given": {}}
+    order = {"set_ups": folders, "program": "turtle_controller", "inspectors": None}
     return inspected(FOLDER, **order)
 
 

@@ -202,6 +202,12 @@ def test_the_launch_file_that_is_asked_for_may_start_one_program_by_its_argument
         opened(tmp_path, launch=LaunchAsked("a.launch.py"))
 
 
+def test_the_launch_file_that_is_asked_for_is_looked_at_however_many_there_are(tmp_path):
+    files = {f"launch/{n:02}.launch.py": BOTH for n in range(41)}
+    submission = opened(lay(tmp_path, TWO | files), launch=LaunchAsked("launch/40.launch.py"))
+    assert names(submission) == ["turtle_controller-1", "pen_node-2"]
+
+
 def test_an_argument_that_is_not_declared_is_told(tmp_path):
     declares = "DeclareLaunchArgument('speed', default_value='1')"
     asked = LaunchAsked("a.launch.py", {"sped": "2"})
