@@ -147,13 +147,6 @@ def not_negative(number: Any) -> Any:
     return number
 
 
-def not_empty(entries: Any) -> Any:
-    """For `Annotated`: a list."""
-    if not entries:
-        raise ValueError("expected one or more, found none")
-    return entries
-
-
 def _value(kind: Any, data: Any, bounds: Bounds) -> Any:
     origin, args = get_origin(kind), get_args(kind)
     if origin is Annotated:
