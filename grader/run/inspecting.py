@@ -82,7 +82,7 @@ def order_of(folders: Sequence[str], request: Request) -> dict[str, object]:
     by = request.inspections
     return {
         "set_ups": list(folders),
-        "program": request.executable or request.usual,
+        "program": (request.executable or request.usual).rpartition("/")[2],
         "inspectors": None if by is None else inspector.places(by),
         "launch": asdict(request.launch) if request.launch else {"file": ""},
     }

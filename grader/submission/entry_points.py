@@ -53,7 +53,7 @@ class Packages:
         Of several it is the one whose source has most of what the exercise names.
         """
         every, request = self.every, self.submitted.request
-        matching = [choice for choice in every if request.is_wanted(choice[1].name)]
+        matching = [each for each in every if request.is_wanted(each[1].name, each[0].name)]
         if len(matching) == 1:
             return matching[0]
         if matching:
@@ -144,8 +144,8 @@ class Packages:
     def _twice(self, matching: list[Choice]) -> SubmissionError:
         where = listed(self.submitted.called(script.file) for _, script in matching)
         return SubmissionError(
-            "{name} has the program {program} more than once: {where}. Hand in"
-            " only one of these packages.",
+            "{name} has the program {program} more than once: {where}. "
+            "Choose one with --executable PACKAGE/NAME.",
             name=self.submitted.name,
             program=shown(matching[0][1].name),
             where=where,

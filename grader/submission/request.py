@@ -63,8 +63,8 @@ class Request:
         """The name, or its pattern, of what is started where there are several."""
         return self.programs[0] if self.programs else self.name
 
-    def is_wanted(self, name: str) -> bool:
+    def is_wanted(self, name: str, package: str = "") -> bool:
         """Whether a program is called as it is asked for, else as the usual one is."""
         if self.executable:
-            return name == self.executable
+            return self.executable in (name, f"{package}/{name}")
         return fnmatchcase(name, self.usual)

@@ -80,11 +80,12 @@ def test_what_names_no_program_of_the_package_is_refused_with_what_there_is(
 
 
 @pytest.mark.parametrize("script", ["turtle_controller", "draw"])
-def test_the_same_script_in_two_packages_is_refused(tmp_path, script):
+def test_the_same_script_in_two_packages_is_refused_unless_its_package_is_told(tmp_path, script):
     for name in ("a", "b"):
         entry = f"{script} = {name}.turtle_controller:main"
         lay(tmp_path, below(f"src/{name}", package(name, entry)))
     assert f"{script} more than once: src/a/setup.py, src/b/setup.py" in refused(tmp_path)
+    assert found_in(tmp_path, f"b/{script}").entry == EntryPoint("b.turtle_controller", "main")
 
 
 def test_the_package_is_found_in_a_workspace_and_may_be_called_test(tmp_path):
