@@ -73,7 +73,7 @@ def _statements(file: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]
     """Yield the imports in a file, in order, and whether each is run whenever the file is."""
     try:
         data = read_bounded(file)
-        tree = parse(data or b"", file.name)
+        tree = parse(data or b"")
     except (OSError, SyntaxError):
         return
     pending: list[tuple[ast.AST, bool]] = [(tree, True)]

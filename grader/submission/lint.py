@@ -126,7 +126,7 @@ def parsed_of(sources: Mapping[str, str]) -> dict[str, Source]:
     parsed = {}
     for file, text in sources.items():
         with suppress(SyntaxError):
-            parsed[file] = Source(parse(text.encode("utf-8", "replace"), file))
+            parsed[file] = Source(parse(text.encode("utf-8", "replace")))
     return parsed
 
 

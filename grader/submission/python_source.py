@@ -14,6 +14,7 @@ import tokenize
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -46,8 +47,9 @@ class PythonSource:
         return self.parses and not self.open_ended and name not in self.names
 
 
-def parse(data: bytes, file_name: str) -> ast.Module:
-    """Parse Python.
+@cache  # what a file imports, has on the graph and may do wrong is asked of one tree
+def parse(data: bytes) -> ast.Module:
+    """Parse Python; the tree stays as it is.
 
     Raises:
         SyntaxError: it does not parse; also for null bytes, wrong encodings, absurd nesting.
@@ -57,7 +59,7 @@ def parse(data: bytes, file_name: str) -> ast.Module:
             warnings.simplefilter(
                 "ignore"
             )  # "invalid escape sequence" is for the student's own run
-            return ast.parse(data, file_name)
+            return ast.parse(data)
     except (ValueError, RecursionError, MemoryError) as error:
         raise SyntaxError(str(error) or "nested too deeply, or too large") from error
 
@@ -71,7 +73,7 @@ def read_source(path: Path) -> PythonSource:
     if data is None:
         return PythonSource(parses=False, has_guard=False, has_main=False)
     try:
-        tree = parse(data, path.name)
+        tree = parse(data)
     except SyntaxError:
         return PythonSource(
             parses=False,

@@ -37,7 +37,7 @@ def roles_in(files: Iterable[Path]) -> set[Role]:
     found = set[Role]()
     for file in files:
         try:
-            tree = parse(read_bounded(file) or b"", file.name)
+            tree = parse(read_bounded(file) or b"")
         except (OSError, SyntaxError):
             continue
         texts = _texts(tree)
