@@ -70,7 +70,8 @@ test-lowest:
 test-kilted:
 	@$(MAKE) --no-print-directory ROS=kilted test
 
-test-all: test test-more test-lowest test-kilted
+# docs: some of the rest are about the site
+test-all: docs test test-more test-lowest test-kilted
 
 # in a clone, build/mutants
 mutate: tools
