@@ -171,8 +171,8 @@ class Exercise:
     def opening(self) -> Opening:
         """The arguments for opening a submission to it."""
         found: Opening = {}
-        if self.starter is not None and self.starter.suffix == ".py":
-            found["name"] = self.starter.stem
+        if self.starter is not None:
+            found["name"] = self.starter.stem if self.starter.suffix == ".py" else ""
         return {
             **found,
             "roles": tuple(sorted(self.roles)),

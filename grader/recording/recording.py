@@ -24,7 +24,7 @@ Clock = Literal["virtual", "real"]
 LONGEST_OUTPUT: Final = 4_000
 #: A flag of a run whose launch file names a program that is not there.
 NOT_THERE: Final = msg(
-    "{file} starts {program}, which setup.py does not install; it installs {names}"
+    "{file} starts {program}, which {set_up} does not install; it installs {names}"
 )
 #: So many programs a run may have at once: they share its limits.
 MOST_PROGRAMS: Final = 8

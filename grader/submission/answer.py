@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from grader.submission import trace
 from grader.submission.program import Program
-from grader.submission.trace import Obstacle, PackageTrace
+from grader.submission.trace import LaunchFile, Obstacle, PackageTrace
 
 
 @dataclass(frozen=True)
@@ -68,12 +68,14 @@ class LaunchOrder:
     """What a launch file starts, and when.
 
     Attributes:
+        path: of the file, in what was handed in.
         programs: in the order in which it starts them; a script that a command runs is a path in
             what was handed in.
         included: the submission's own launch files that it includes.
         ignored: actions and options that are not followed, by their names.
     """
 
+    path: str = ""
     programs: tuple[Program, ...] = ()
     included: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
@@ -87,12 +89,14 @@ class Inspection:
         set_ups: in the order in which they were asked for.
         package: the folder of the package that is likely to be started; '' for none.
         trace: what was found of that package; its launch files at least.
-        orders: of launch files that came to their end, by their names in the trace.
+        launches: of this package, and of those beside it.
+        orders: of those that came to their end, by their names.
     """
 
     set_ups: tuple[SetUp, ...] = ()
     package: str = ""
     trace: PackageTrace = field(default_factory=PackageTrace)
+    launches: tuple[LaunchFile, ...] = ()
     orders: Mapping[str, LaunchOrder] = field(default_factory=dict)
 
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from grader.errors import SubmissionError
 from grader.message import Message, msg, msg_many
-from grader.submission.folder import SubmissionFolder, files_below
+from grader.submission.folder import SubmissionFolder, files_below, is_passed_by
 from grader.submission.imports import read_imports
+from grader.submission.interfaces import TWICE
 from grader.submission.program import Program, Script
 from grader.submission.python_source import read_source
 from grader.submission.request import USUAL_NAME
@@ -105,7 +106,7 @@ class Packages:
         return [
             each.roots(each.name)[0]
             for each in self.readable
-            if each.has_setup_py or (each.folder / each.name / "__init__.py").is_file()
+            if each.has_setup_py or each.is_module
         ]
 
     def roles(self, program: Program) -> set[Role]:
@@ -143,6 +144,9 @@ class Packages:
 
     def _twice(self, matching: list[Choice]) -> SubmissionError:
         where = listed(self.submitted.called(script.file) for _, script in matching)
+        packages = {package.name for package, _ in matching}
+        if len(packages) < len(matching):
+            return SubmissionError(TWICE.given(name=shown(min(packages)), places=where))
         return SubmissionError(
             "{name} has the program {program} more than once: {where}. "
             "Choose one with --executable PACKAGE/NAME.",
@@ -153,11 +157,10 @@ class Packages:
 
     def _several(self, names: list[str]) -> SubmissionError:
         return SubmissionError(
-            "{name} has several programs: {names}. Expected one called "
-            "{usual}; choose another with --executable NAME.",
+            "{name} has several programs: {names}. {advice}",
             name=self.submitted.name,
             names=listed(names),
-            usual=self.submitted.request.usual,
+            advice=self.submitted.request.advice(),
         )
 
 
@@ -166,8 +169,10 @@ def find_packages(submitted: SubmissionFolder, set_ups: Sequence[SetUp]) -> Pack
     readable: list[PackageFolder] = []
     faults: list[SubmissionError] = []
     have_script: set[Path] = set()
-    for each in set_ups:
-        folder = submitted.base / each.folder
+    base = submitted.base
+    seen = [each for each in set_ups if not is_passed_by(base / each.folder, base)]
+    for each in seen or set_ups:  # else all of it would be nothing
+        folder = base / each.folder
         if not have_script.isdisjoint((folder, *folder.parents)):
             continue
         try:

@@ -199,7 +199,14 @@ def _set_ups(submitted: SubmissionFolder, files: list[Path]) -> list[str]:
         is_of_package = not found.keys().isdisjoint(file.parents)
         if is_of_package and (file.name in of_set_ups or is_launch_file(file)):
             submitted.must_hold(file)
-    return [str(folder.relative_to(submitted.base)) for folder in found][:MOST]
+    if len(found) > MOST:
+        raise SubmissionError(
+            "{name} has {number} packages; {most} at most are looked at. Hand in yours alone.",
+            name=submitted.name,
+            number=len(found),
+            most=MOST,
+        )
+    return [str(folder.relative_to(submitted.base)) for folder in found]
 
 
 def _from_programs(
@@ -332,12 +339,10 @@ def _only(submitted: SubmissionFolder, candidates: list[Path]) -> Path:
         chosen = _usual(submitted, candidates)
     if len(chosen) > 1:
         raise SubmissionError(
-            "{name} has several Python files to start: {names}. Expected one, "
-            "called {usual}.py; choose another with --executable NAME, or hand in "
-            "only that file.",
+            "{name} has several Python files to start: {names}. {advice}",
             name=submitted.name,
             names=listed(map(submitted.called, chosen)),
-            usual=submitted.request.usual,
+            advice=submitted.request.advice(".py"),
         )
     return chosen[0]
 

@@ -37,6 +37,8 @@ HAND_IN: Final = msg("Hand in a .py file, the folder of your package, or a .zip 
 
 _JUNK: Final = {"__pycache__", "__MACOSX", "Thumbs.db", "desktop.ini"}
 _COLCON: Final = {"build", "install", "log"}
+#: colcon passes by a folder with one of these files.
+_PASSED_BY: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 #: Names of folders that are not searched, but for a package.
 NO_SOURCES: Final = {"venv", "env", "test", "tests"} | _COLCON
 
@@ -161,6 +163,12 @@ def is_searched(entry: Path) -> bool:
     # students do call a package "test": what holds a package is one, whatever its name
     is_package = (entry / "package.xml").exists() or (entry / "setup.py").exists()
     return is_package or entry.name not in NO_SOURCES
+
+
+def is_passed_by(folder: Path, base: Path) -> bool:
+    """Whether colcon looks into no folder of a hand-in from this one up."""
+    above = (each for each in (folder, *folder.parents) if each.is_relative_to(base))
+    return any(safe_files.is_file(each / mark) for each in above for mark in _PASSED_BY)
 
 
 def read_bounded(path: Path) -> bytes | None:

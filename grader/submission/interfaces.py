@@ -16,7 +16,7 @@ from grader.rosidl.bag_types import description
 from grader.rosidl.fields import field_lines, readable
 from grader.submission.examining import cmake
 from grader.submission.examining.known import DESKTOP
-from grader.submission.folder import SubmissionFolder, read_bounded
+from grader.submission.folder import SubmissionFolder, is_passed_by, read_bounded
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.text import nearest, shown
 
@@ -36,9 +36,7 @@ _OPTIONS: Final = (
 )
 #: In a word of CMake's with a variable that nobody knows here: it may be any.
 _UNKNOWN: Final = "${"
-#: colcon passes by a folder with this file.
-_IGNORE: Final = "COLCON_IGNORE"
-_TWICE: Final = msg(
+TWICE: Final = msg(
     "two packages are called {name}: {places}, and colcon builds neither. Remove one of them."
 )
 _LACKS: Final = msg("{file} lacks {line}: without it {what} is not generated. Add it.")
@@ -135,7 +133,7 @@ class _Package(NamedTuple):
 def _twice(submitted: SubmissionFolder, packages: Mapping[Path, _Package], name: str) -> Message:
     """Say that several packages have a name; NOTHING where one has it."""
     same = [submitted.called(folder) for folder in packages if packages[folder].name == name]
-    return _TWICE.given(name=name, places=", ".join(same)) if len(same) > 1 else NOTHING
+    return TWICE.given(name=name, places=", ".join(same)) if len(same) > 1 else NOTHING
 
 
 def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
@@ -180,7 +178,7 @@ def _read(submitted: SubmissionFolder, folder: Path) -> _Package:
 def _hides(submitted: SubmissionFolder, folder: Path, words: Mapping[str, str]) -> Message:
     """Say that colcon does not look for a package in its folder; NOTHING where it does."""
     above = next((each for each in folder.parents if _is_hidden(each, submitted.base)), None)
-    if above is None and not (folder / _IGNORE).exists():
+    if above is None and not is_passed_by(folder, submitted.base):
         return NOTHING
     return msg(
         "colcon does not look into {place}. Move the package {name} beside the others, below src/.",
@@ -261,8 +259,8 @@ def _wrong_order_or_files(
 
 def _is_hidden(folder: Path, base: Path) -> bool:
     """Whether colcon looks for no package below a folder of a hand-in: it is one itself."""
-    marks = (FILE, _IGNORE)
-    return folder.is_relative_to(base) and any((folder / mark).is_file() for mark in marks)
+    is_package = folder.is_relative_to(base) and (folder / FILE).is_file()
+    return is_package or is_passed_by(folder, base)
 
 
 def _lack(package: _Package, path: PurePath, called: str, text: str) -> Message:

@@ -172,22 +172,23 @@ def not_read(trace: PackageTrace, entry: EntryPoint | Script | None) -> list[Mes
 def not_installed(trace: PackageTrace) -> list[Message]:
     """A sentence on what `ros2 launch` would not find: a file, or a program of the package."""
     setup, found = trace.setup, list[Message]()
-    if setup is None or not setup.scripts:
+    if setup is None or not setup.programs:
         return found
-    names = sorted(script.name for script in setup.scripts)
+    names = ", ".join(setup.programs)[:200]
     for launch in trace.launches:
         if launch.file in setup.left:
+            words = {"file": launch.file, "set_up": setup.file, "place": setup.place}
             found.append(
                 msg(
-                    "`ros2 launch` would not find {file}: setup.py does not install it; list it in "
-                    "data_files",
-                    file=launch.file,
+                    "`ros2 launch` would not find {file}: {set_up} does not install it; list it in "
+                    "{place}",
+                    **words,
                 )
             )
         for node in launch.nodes:
-            if node.package == setup.name and node.executable not in names:
-                program, installed = node.executable, ", ".join(names)[:200]
-                found.append(NOT_THERE.given(file=launch.file, program=program, names=installed))
+            if node.package == setup.name and node.executable not in setup.programs:
+                words = {"file": launch.file, "program": node.executable, "set_up": setup.file}
+                found.append(NOT_THERE.given(**words, names=names))
     return found
 
 

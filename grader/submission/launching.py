@@ -70,32 +70,27 @@ def find_launched(
     starts more than an exercise names which is about one. One that starts nothing is returned where
     there is none, with notes.
     """
-    launches, asked = inspection.trace.launches, submitted.request.launch
+    launches, asked = inspection.launches, submitted.request.launch
 
     def launched(launch: LaunchFile) -> Launched:
         made = _Launching(submitted, packages, inspection)
         return made.launched(launch, inspection.orders[launch.file])
 
     if asked:
-        found = launched(_asked(submitted, launches, asked))
+        found = launched(_asked(submitted, inspection, asked))
         if not (found.programs or found.compiled):
             raise SubmissionError(
                 "{file} starts no program of {name}", file=shown(found.file), name=submitted.name
             )
     else:
-        faulty = [_faulty(each) for each in launches if each.problem is not None]
         included = {file for order in inspection.orders.values() for file in order.included}
-        every = [
-            launched(each)
-            for each in launches
-            if each.problem is None and each.file not in included
-        ]
-        least = 1 if len(submitted.request.programs) > 1 else 2
-        several = {
-            each.programs: each
-            for each in reversed(every)
-            if len(each.programs) + len(each.compiled) >= least and _is_needed(each, packages)
-        }
+        alone = [each for each in launches if each.file not in included]
+        faulty = [_faulty(each) for each in alone if each.problem is not None]
+        every = [launched(each) for each in alone if each.problem is None]
+        needed = [each for each in every if _is_needed(each, packages)]
+        several = _starting(needed, 2)
+        if not several and len(submitted.request.programs) > 1:
+            several = _starting(needed, 1)
         if len(several) > 1:
             files = tuple(each.file for each in reversed(several.values()))
             return Launched("", (), (*faulty, SEVERAL.given(names=listed(files))), (), files)
@@ -119,6 +114,15 @@ def find_launched(
     return found
 
 
+def _starting(every: Sequence[Launched], least: int) -> dict[tuple[Program, ...], Launched]:
+    """Return those that start so many programs, of equal ones the first."""
+    return {
+        each.programs: each
+        for each in reversed(every)
+        if len(each.programs) + len(each.compiled) >= least
+    }
+
+
 def one_of(launched: Launched, submitted: SubmissionFolder) -> SubmissionError:
     """Return the error that nothing else tells which of several launch files is meant."""
     return SubmissionError(
@@ -139,7 +143,7 @@ def _is_needed(launched: Launched, packages: Packages) -> bool:
 
 def undeclared(inspection: Inspection, asked: LaunchAsked) -> Iterator[Message]:
     """Yield a note on each argument that the launch file asked for does not declare."""
-    for each in inspection.trace.launches:
+    for each in inspection.launches:
         names = sorted(asked.given.keys() - {*each.declared})
         for name in names if asked.is_called(each.file) else ():
             yield msg(
@@ -150,14 +154,17 @@ def undeclared(inspection: Inspection, asked: LaunchAsked) -> Iterator[Message]:
             )
 
 
-def _asked(
-    submitted: SubmissionFolder, launches: Sequence[LaunchFile], asked: LaunchAsked
-) -> LaunchFile:
+def _asked(submitted: SubmissionFolder, inspection: Inspection, asked: LaunchAsked) -> LaunchFile:
     """Return the launch file of a path or a name."""
-    named = [each for each in launches if asked.is_called(each.file)]
-    if not named:  # by its path in all that was handed in
-        ends = [each for each in launches if f"/{asked.file}".endswith(f"/{each.file}")]
-        named = sorted(ends, key=lambda each: len(each.file))[-1:]
+    launches, orders = inspection.launches, inspection.orders
+    paths = {each.file: each.file for each in launches}
+    paths |= {file: order.path for file, order in orders.items()}
+    named = [each for each in launches if each.file == asked.file]
+    named = named or [each for each in launches if asked.is_called(paths[each.file])]
+    named = named or [each for each in launches if asked.is_called(each.file)]
+    if not named:  # by its path in more than was handed in
+        ends = [each for each in launches if f"/{asked.file}".endswith(f"/{paths[each.file]}")]
+        named = sorted(ends, key=lambda each: len(paths[each.file]))[-1:]
     if len(named) != 1:
         text = msg("{name} has no launch file {file}; it has: {names}")
         if named:
@@ -224,7 +231,8 @@ class _Launching:
         if (start.package, start.executable) == _SIMULATOR and not self._has_simulator:
             self._has_simulator = True
             return [word for word in start.arguments if not word.startswith(("-", "__node:="))]
-        if package is None or (package.folder / CMAKE).is_file():
+        is_python = start.executable.endswith(".py")
+        if package is None or ((package.folder / CMAKE).is_file() and not is_python):
             is_own = start.package in self._names
             (self._compiled if is_own else self._others).append(name)
         return ()  # its set-up does not install it: `not_installed` says so

@@ -14,6 +14,7 @@ from grader.message import Message, msg
 from grader.submission.folder import HAND_IN, MAX_ENTRIES, UNREADABLE, SubmissionFolder
 from grader.text import listed, nearest, shown
 
+PACKAGE: Final = msg("Hand in the folder of your ROS 2 package, or a .zip of it.")
 CPP: Final = {".cpp", ".cc", ".cxx", ".c", ".hpp", ".h"}
 _OTHER_ARCHIVES: Final = {".gz", ".bz2", ".tbz2", ".xz", ".txz", ".zst", ".rar", ".7z"}
 

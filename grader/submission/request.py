@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
+from grader.message import Message, msg
+
 if TYPE_CHECKING:
     from grader.recording.subject import Role
 
@@ -60,8 +62,17 @@ class Request:
 
     @property
     def usual(self) -> str:
-        """The name, or its pattern, of what is started where there are several."""
+        """The name, or its pattern, of what is started where there are several; '' for none."""
         return self.programs[0] if self.programs else self.name
+
+    def advice(self, ending: str = "") -> Message:
+        """Say which of several is expected; `ending`: of a file's name."""
+        if not self.usual:
+            return msg("Choose one with --executable NAME.")
+        usual = f"{self.usual}{ending}"
+        return msg(
+            "Expected one called {usual}; choose another with --executable NAME.", usual=usual
+        )
 
     def is_wanted(self, name: str, package: str = "") -> bool:
         """Whether a program is called as it is asked for, else as the usual one is."""

@@ -103,6 +103,11 @@ class PackageFolder:
         return how_it_ends(file if file in SETUP_FILES else "setup.py", self.set_up.problem)
 
     @property
+    def is_module(self) -> bool:
+        """Whether a package in Python of its name lies in it."""
+        return any((root / self.name / "__init__.py").is_file() for root in self.roots(self.name))
+
+    @property
     def has_setup_py(self) -> bool:
         """Whether `colcon build` would run something."""
         return (self.folder / "setup.py").is_file()

@@ -121,6 +121,24 @@ class Setup:
     sources: tuple[str, ...]
     left: tuple[str, ...]
 
+    @property
+    def file(self) -> str:
+        """What installs its files."""
+        is_python = self.build_type in ("", "ament_python")
+        return "setup.py" if is_python else "CMakeLists.txt"
+
+    @property
+    def place(self) -> str:
+        """Where that file lists them."""
+        return "data_files" if self.file == "setup.py" else "install(DIRECTORY launch …)"
+
+    @property
+    def programs(self) -> list[str]:
+        """The names of the programs that it installs for `ros2 run`, sorted."""
+        below = f"lib/{self.name}/"
+        files = (path.removeprefix(below) for path in self.installed if path.startswith(below))
+        return sorted({*(script.name for script in self.scripts), *files})
+
 
 @dataclass(frozen=True)
 class Parameter:

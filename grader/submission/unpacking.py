@@ -21,7 +21,7 @@ from grader.submission.folder import (
     is_source,
     top_of,
 )
-from grader.submission.refusals import CPP, advice, missing
+from grader.submission.refusals import CPP, PACKAGE, advice, missing
 from grader.submission.request import Request
 from grader.submission.safe_members import Budget
 from grader.text import listed, shown
@@ -67,7 +67,7 @@ def opened(path: Path, request: Request, scratch: Path) -> Opened:
         raise SubmissionError(
             "{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice}",
             name=name,
-            advice=advice(path),
+            advice=advice(path) if request.is_started else PACKAGE,
         )
     budget, inside = Budget(), tuple[str, ...]()
     base = path.resolve() if path.is_dir() else _unpacked(path, scratch, budget)

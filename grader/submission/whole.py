@@ -9,12 +9,12 @@ from grader.errors import SubmissionError
 from grader.message import msg, msg_many
 from grader.submission.folder import CMAKE, SETUP_FILES
 from grader.submission.manifest import FILE, read_manifest
+from grader.submission.refusals import PACKAGE
 from grader.submission.request import Request
 from grader.submission.start import Submission
 from grader.submission.unpacking import opened
 from grader.text import listed, nearest, shown
 
-_HAND_IN: Final = msg("Hand in the folder of your ROS 2 package, or a .zip of it.")
 _MARKS: Final = (FILE, CMAKE, *SETUP_FILES)
 
 
@@ -25,7 +25,7 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
         package: chooses among them, by name.
         scratch: an empty folder, for what has to be unpacked.
     """
-    submitted, files, _ = opened(path, Request(package), scratch)
+    submitted, files, _ = opened(path, Request(package, is_started=False), scratch)
     name = submitted.name
     folders = sorted({file.parent for file in files if file.name in _MARKS})
     if not folders:
@@ -35,7 +35,7 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
             "CMakeLists.txt (it holds: {names}). {hand_in}",
             name=name,
             names=listed(names) or msg("only folders that are not searched"),
-            hand_in=_HAND_IN,
+            hand_in=PACKAGE,
         )
     manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
     names = sorted({shown(each.name) for each in manifests if each is not None and each.name})

@@ -37,6 +37,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     )
     for each in trace.launches:
         started = [node for node in each.nodes if node.package in own]
+        programs = {(it.package, it.executable) for it in started}
         lacking = [f"{it.kind} {it.name}" for it in each.lacking if it.kind != "file"]
         if each.problem is not None:
             why = joined([described(each.problem), placed(each.problem)])
@@ -45,13 +46,15 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
         elif lacking:
             text = msg("{file} starts what is not there: {name}.", file=each.file, name=lacking[0])
             worst = Finding(0, text, msg("Compare the names with those in setup.py."))
-        elif len({node.executable for node in started}) < 2 and not (started and len(nodes) > 1):
+        elif len(programs) < 2 and not (started and len(nodes) > 1):
             text = msg("{file} starts {n} of the package's programs, expected 2.",
                        file=each.file, n=len(started))  # fmt: skip
             worst = Finding(0, text, msg("It needs a Node for each: look at their names."))
         elif setup is None or each.file in setup.left:
-            text = msg("{file} starts both, and setup.py does not install it.", file=each.file)
-            worst = Finding(0.5, text, msg("List it in data_files."))
+            file, place = (setup.file, setup.place) if setup else ("setup.py", "data_files")
+            text = msg("{file} starts both, and {set_up} does not install it.",
+                       file=each.file, set_up=file)  # fmt: skip
+            worst = Finding(0.5, text, msg("List it in {place}.", place=place))
             break
         else:
             return Finding(1, msg("{file} starts both.", file=each.file))

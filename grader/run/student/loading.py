@@ -106,7 +106,7 @@ def call(
 
 def run(root: str, target: str, function: str | None) -> object:
     """Start a submission's program; return what its function returned."""
-    if target.endswith(".py"):
+    if Path(target).is_absolute():  # what is installed for `ros2 run` may end in anything
         must_be_text(target)
         if function is None:
             runpy.run_path(target, run_name="__main__")
@@ -169,7 +169,8 @@ def hide_the_grader(
     Args:
         beside: folders of other packages of the submission, which are installed there, too.
     """
-    name = Path(target).name if target.endswith(".py") else target.partition(":")[0]
+    is_file = Path(target).is_absolute()
+    name = Path(target).name if is_file else target.partition(":")[0]
     sys.argv = [name, *arguments]
     sys.path[:1] = [root, *(folder for folder in beside if folder != root)]
     sys.meta_path.insert(0, OnlyFromSubmission(root))

@@ -92,6 +92,14 @@ def read(folder: Path) -> Read:
     return made._replace(project=variables.get("PROJECT_NAME", ""), calls=calls)
 
 
+def module_folders(made: Read) -> Iterator[str]:
+    """Yield where Python packages lie that are not in a folder of their name, as 'NAME=FOLDER'."""
+    for call, *words in made.calls:
+        given = dict(pairwise(words))
+        if call == "ament_python_install_package" and "PACKAGE_DIR" in given:
+            yield f"{words[0]}={given['PACKAGE_DIR']}"
+
+
 def _follow(
     folder: Path, command: str, words: list[str], variables: dict[str, str], made: Read
 ) -> None:

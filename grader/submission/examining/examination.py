@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -53,6 +54,7 @@ class Examination:
         workspace: where it is laid out.
         texts: long texts, descriptions above all, which a trace names by their numbers.
         evaluated: each launch file that came to its end, and all that was recorded of it.
+        launches: of all that were evaluated.
         orders: of the launch files that came to their end.
         obstacle: why nothing is evaluated any more, if anything.
     """
@@ -63,33 +65,45 @@ class Examination:
         self._asked = asked
         self.texts: list[str] = []
         self.evaluated: list[tuple[LaunchFile, Evaluated]] = []
+        self.launches: tuple[LaunchFile, ...] = ()
         self.orders: dict[str, LaunchOrder] = {}
         self.obstacle = NOTHING
         self._scratch = scratch
         self._files: dict[str, tuple[Installed, str]] = {}
 
-    def trace(self, examine: Sequence[Examine] = (), *, is_whole: bool = True) -> PackageTrace:
+    def trace(
+        self, examine: Sequence[Examine] = (), *, is_whole: bool = True, chooses: bool = False
+    ) -> PackageTrace:
         """Return what was found.
 
         Args:
             examine: what inspectors do besides, each with what the one before has found.
             is_whole: whether more is examined than what launch files would start.
+            chooses: whether launch files of packages beside are evaluated, too, for `launches`.
         """
         workspace = self.workspace
         files = _launch_files(workspace, with_beside=not is_whole)
+        beside = _launch_files(workspace, with_beside=True) if chooses else {}
         names = sorted(files, key=lambda file: not self._asked.is_called(file))
-        self._files = {name: files[name] for name in names[:_MOST_LAUNCHES]}
+        more = [name for name in beside if name not in files]
+        more.sort(key=lambda file: not self._asked.is_called(file))
+        left_out = names[_MOST_LAUNCHES:]
+        names, more = names[:_MOST_LAUNCHES], more[: max(0, _MOST_LAUNCHES - len(names))]
+        self._files = {name: (beside | files)[name] for name in (*names, *more)}
         self._miss("a setup.py")
-        evaluated = [self._launch(file) for file in self._files]
-        setup = self.shown(self._setup())
+        evaluated = [self._launch(file) for file in names]
+        setup = self.shown(self._setup([files[name][0].setup for name in names]))
+        of_package = self.texts[:], self.evaluated[:]
+        self.launches = (*evaluated, *map(self._launch, more))
+        self.texts, self.evaluated = of_package
         if is_whole:
             self._evaluate_elsewhere(evaluated)
-        if left_out := names[_MOST_LAUNCHES:]:
+        if left_out:
             evaluated.append(_left_out(left_out))
-        others = [each.name[:200] for each in workspace.all if each is not workspace.judged]
+        packages = [each.name[:200] for each in workspace.all if each is not workspace.judged]
         found = PackageTrace(
             setup=setup,
-            others=tuple(others[:100]),
+            others=tuple(packages[:100]),
             launches=tuple(evaluated),
             texts=tuple(self.texts),
         )
@@ -133,10 +147,9 @@ class Examination:
             type(made), _cleaned(strict_json.to_json(made), self.workspace)
         )
 
-    def _setup(self) -> Setup:
+    def _setup(self, setups: Sequence[Setup]) -> Setup:
         """The judged package's; with the dependencies of those whose launch files count."""
         judged = self.workspace.judged.setup
-        setups = [of.setup for of, _ in self._files.values()]
         names = [name for each in (judged, *setups) for name in each.depends]
         return replace(judged, depends=tuple(dict.fromkeys(names)))
 
@@ -148,7 +161,9 @@ class Examination:
         self.evaluated.append((launch, found))
         named = {f"{of.name}/{own}": name for name, (of, own) in self._files.items()}
         included = (named[each] for each in found.order.included if each in named)
-        self.orders[file] = replace(found.order, included=tuple(included))
+        of, own = self._files[file]
+        path = os.path.relpath(of.package.folder / own, self.workspace.root)
+        self.orders[file] = replace(found.order, path=path, included=tuple(included))
         return launch
 
     def _evaluate(self, file: str) -> tuple[LaunchFile, Evaluated]:

@@ -30,8 +30,8 @@ if __name__ == "__main__":
 
 from grader import linux  # noqa: E402
 from grader.submission import safe_files, trace  # noqa: E402
-from grader.submission.answer import Inspection, SetUp  # noqa: E402
-from grader.submission.examining import layout, leftovers, packages, setup_call  # noqa: E402
+from grader.submission.answer import Inspection, SetUp, SetUpFacts  # noqa: E402
+from grader.submission.examining import cmake, layout, leftovers, packages, setup_call  # noqa: E402
 from grader.submission.examining.examination import Examination  # noqa: E402
 from grader.submission.examining.layout import Workspace  # noqa: E402
 from grader.submission.examining.steps import Ended, attempt, open_account  # noqa: E402
@@ -96,9 +96,12 @@ def inspect(
 
 
 def _set_up(root: Path, folder: str) -> SetUp:
-    """What the set-up files of a folder say; nothing of one that has CMake's alone."""
+    """What the set-up files of a folder say; of one that has CMake's alone, where modules lie."""
     if any(safe_files.is_file(root / folder / each) for each in SETUP_FILES):
         return SetUp(folder, *setup_call.evaluate(root / folder))
+    with suppress(Ended):
+        read = attempt(partial(cmake.read, root / folder), cmake.FILE)
+        return SetUp(folder, SetUpFacts(package_folders=tuple(cmake.module_folders(read))))
     return SetUp(folder)
 
 
@@ -135,8 +138,9 @@ def _look(
     place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
     examination = Examination(place, scratch, launch)
     examine = [resolve_name(place).examine for place in inspectors or ()]
-    of_package = examination.trace(examine, is_whole=inspectors is not None)
-    return Inspection(set_ups, best, of_package, examination.orders)
+    is_whole, chooses = inspectors is not None, bool(set_ups)
+    of_package = examination.trace(examine, is_whole=is_whole, chooses=chooses)
+    return Inspection(set_ups, best, of_package, examination.launches, examination.orders)
 
 
 def _worth(program: str, set_up: SetUp) -> tuple[bool, bool, bool]:

@@ -220,6 +220,21 @@ def test_programs_that_cmake_installs_run_with_the_files_that_it_installs():
     assert programs == [("tells", "teller"), ("hears", "node.py")]
 
 
+def test_a_program_that_cmake_installs_may_have_any_name_and_import_a_module_from_anywhere(
+    tmp_path,
+):
+    texts = {
+        "CMakeLists.txt": """project(walks)
+ament_python_install_package(walks PACKAGE_DIR python/walks)
+install(PROGRAMS scripts/go DESTINATION lib/${PROJECT_NAME})
+""",
+        "package.xml": "<package><name>walks</name></package>",
+        "python/walks/__init__.py": "SAID = 'walked'\n",
+        "scripts/go": "#!/usr/bin/env python3\nimport walks\n\nprint(walks.SAID)\n",
+    }
+    assert "walked" in recorded(lay(tmp_path, texts)).output
+
+
 @pytest.mark.more("a run in each time")
 def test_where_one_cannot_be_followed_all_run_in_real_time_and_it_is_named(tmp_path):
     folder = package(tmp_path, "drives", "starts")

@@ -308,3 +308,36 @@ def test_a_script_that_setup_py_installs_is_a_program(tmp_path):
     assert listed in text
     submission = opened(lay(tmp_path, TWO | files | {"setup.py": text}), "draw")
     assert submission.entry == Script(submission.root / "draw")
+
+
+def test_of_several_launch_files_the_one_that_starts_all_programs_is_followed(tmp_path):
+    files = {"launch/a.launch.py": LIST.format(DRIVE), "launch/b.launch.py": LIST.format(PENS)}
+    files |= {"launch/both.launch.py": BOTH}
+    submission = opened(lay(tmp_path, TWO | files), programs=("turtle_controller", "pen_node"))
+    assert str(submission.found).startswith("launch/both.launch.py, which starts")
+
+
+def test_launch_files_of_one_name_in_two_packages_are_two(tmp_path):
+    other = {name: text.replace("spiral", "zigzag") for name, text in TWO.items()}
+    files = {f"a/{name}": text for name, text in (TWO | {"launch/all.launch.py": BOTH}).items()}
+    second = other | {"launch/all.launch.py": BOTH.replace("spiral", "zigzag")}
+    files |= {f"b/{name.replace('spiral', 'zigzag')}": text for name, text in second.items()}
+    lay(tmp_path, files)
+    with pytest.raises(SubmissionError, match=r"--launch zigzag/launch/all.launch.py"):
+        opened(tmp_path)
+    for place, package in (("", "spiral"), ("a/", "spiral"), ("b/", "zigzag"), ("x/b/", "zigzag")):
+        submission = opened(tmp_path, launch=LaunchAsked(f"{place}launch/all.launch.py"))
+        assert {program.package for program in submission.programs} == {package}
+
+
+@pytest.mark.parametrize("mark", ["COLCON_IGNORE", "AMENT_IGNORE"])
+def test_a_package_that_colcon_passes_by_has_no_programs(tmp_path, mark):
+    files = {f"{place}/{name}": text for place in ("a", "old") for name, text in PACKAGE.items()}
+    submission = opened(lay(tmp_path, files | {f"old/{mark}": ""}))
+    assert submission.root == submission.folder / "a"
+
+
+def test_more_packages_than_are_looked_at_are_refused(tmp_path):
+    files = {f"p{n}/{name}": text for n in range(51) for name, text in PACKAGE.items()}
+    with pytest.raises(SubmissionError, match=r"has 51 packages; 50 at most are looked at"):
+        opened(lay(tmp_path, files))

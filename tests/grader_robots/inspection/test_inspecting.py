@@ -70,7 +70,9 @@ def test_what_holds_no_package_is_refused(tmp_path):
     file.write_text("<robot name='a'/>")
     with pytest.raises(SubmissionError, match="holds no ROS 2 package"):
         grader.grade(tmp_path, EXERCISE)
-    with pytest.raises(SubmissionError, match=r"neither a folder nor a \.zip"):
+    with pytest.raises(
+        SubmissionError, match=r"nor a folder, nor a \.zip .* Hand in the folder of your"
+    ):
         grader.grade(file, EXERCISE)
 
 
