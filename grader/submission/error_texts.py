@@ -81,6 +81,8 @@ _ADVICE: Final = {
     ("it is one of ROS 1",): msg(
         "In ROS 2 <param> stands within its <node>, and a node has pkg=, exec= and no type=."
     ),
+    ("did not come to an end",): msg("Look for a loop without end, and for what it waits for."),
+    ("it ended the process",): msg("Take out what ends it: os._exit, sys.exit, a signal."),
     ("xacro",): msg("Run xacro by hand on the same file: it says the same, with file and line."),
     ("as yaml",): msg("Wrap it: ParameterValue(Command([...]), value_type=str)."),
 }

@@ -27,6 +27,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     trace = PackageTrace.of(recordings.nominal.package)
     setup = trace.setup
     own = {*trace.others, *((setup.name, setup.told) if setup else ())}
+    by, place = (setup.file, setup.place) if setup else ("setup.py", "data_files")
     cast = recordings.nominal.trace
     assert isinstance(cast, CastTrace)
     nodes = {event["node"] for event in cast.of_kind("endpoint")} - {"/"}
@@ -45,15 +46,14 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
             worst = Finding(0, text, advice(str(each.problem.text)))
         elif lacking:
             text = msg("{file} starts what is not there: {name}.", file=each.file, name=lacking[0])
-            worst = Finding(0, text, msg("Compare the names with those in setup.py."))
+            worst = Finding(0, text, msg("Compare the names with those in {file}.", file=by))
         elif len(programs) < 2 and not (started and len(nodes) > 1):
             text = msg("{file} starts {n} of the package's programs, expected 2.",
                        file=each.file, n=len(started))  # fmt: skip
             worst = Finding(0, text, msg("It needs a Node for each: look at their names."))
         elif setup is None or each.file in setup.left:
-            file, place = (setup.file, setup.place) if setup else ("setup.py", "data_files")
             text = msg("{file} starts both, and {set_up} does not install it.",
-                       file=each.file, set_up=file)  # fmt: skip
+                       file=each.file, set_up=by)  # fmt: skip
             worst = Finding(0.5, text, msg("List it in {place}.", place=place))
             break
         else:

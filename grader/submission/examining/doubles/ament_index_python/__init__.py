@@ -22,7 +22,10 @@ class PackageNotFoundError(KeyError):
 
 
 def get_search_paths() -> list[str]:
-    return [each for each in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if each]
+    paths = os.environ.get("AMENT_PREFIX_PATH", "")
+    if not paths:
+        raise OSError("Environment variable 'AMENT_PREFIX_PATH' is not set or empty")
+    return [each for each in paths.split(os.pathsep) if each]
 
 
 def _tell(sign: str, name: str) -> None:
