@@ -135,7 +135,13 @@ class Packages:
     def others(self, started: Sequence[Program]) -> list[str]:
         """The names of the programs that are something else than those that are started."""
         entries = [each.entry for each in started]
-        return [each.name for _, each in self.every if each.entry not in entries]
+        others = [choice for choice in self.every if choice[1].entry not in entries]
+        return [self.called(package.name, each.name) for package, each in others]
+
+    def called(self, package: str, name: str) -> str:
+        """Name a program, with its package where another has one of that name."""
+        same = [each for _, each in self.every if each.name == name]
+        return f"{package}/{name}" if package and len(same) > 1 else name
 
     def holding(self, file: Path) -> PackageFolder | None:
         """The package with a setup.py in whose folder a file lies."""

@@ -235,7 +235,8 @@ def _from_programs(
     package, first = next(within, (None, started[0]))
     if package is not None:
         short += shortcomings(submitted, package, first)
-    found = msg("the programs {names}", names=listed(each.executable for each in started))
+    names = listed(packages.called(each.package, each.executable) for each in started)
+    found = msg("the programs {names}", names=names)
     if len(started) == 1 and package is not None:
         found = _one_program(submitted, package, first)
     if len(started) == 1 and added:

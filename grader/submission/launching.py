@@ -84,15 +84,15 @@ def find_launched(
             )
     else:
         included = {file for order in inspection.orders.values() for file in order.included}
-        alone = [each for each in launches if each.file not in included]
-        faulty = [_faulty(each) for each in alone if each.problem is not None]
-        every = [launched(each) for each in alone if each.problem is None]
-        needed = [each for each in every if _is_needed(each, packages)]
-        several = _starting(needed, 2)
-        if not several and len(submitted.request.programs) > 1:
-            several = _starting(needed, 1)
+        outer = [each for each in launches if each.file not in included]
+        faulty = [_faulty(each) for each in outer if each.problem is not None]
+        every = [launched(each) for each in launches if each.problem is None]
+        alone = [e for e in every if e.file not in included and _is_needed(e, packages)]
+        several, among = _starting(alone, 2), _starting(every, 2)
+        if len(submitted.request.programs) > 1 and len(among) != 1:
+            several = _starting(alone, 1)
         if len(several) > 1:
-            files = tuple(each.file for each in reversed(several.values()))
+            files = tuple(each.file for each in reversed((among or several).values()))
             return Launched("", (), (*faulty, SEVERAL.given(names=listed(files))), (), files)
         if not several:
             return Launched("", (), tuple(faulty), ())
