@@ -25,6 +25,8 @@ fi
 # what is installed, and what builds it, is compiled once
 unset PYTHONDONTWRITEBYTECODE
 
+trap 'echo "Interrupted: call it again, and it goes on." >&2; exit 130' INT
+
 # one at a time: two `make` in one folder wait for each other
 exec 9<Makefile
 flock 9

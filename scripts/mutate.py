@@ -51,6 +51,9 @@ def clone() -> str:
         _run("git", "clone", "-q", str(ROOT), str(TREE), cwd=ROOT)
     _run("git", "fetch", "-q", str(ROOT), "HEAD")
     _run("git", "checkout", "-q", "-f", "--detach", "FETCH_HEAD")
+    print(
+        f"== preparing {TREE.relative_to(ROOT)}, a clone with an environment of its own", flush=True
+    )
     _run("make", "tools")
     return _run("git", "rev-parse", "--short=10", "HEAD").strip()
 

@@ -25,6 +25,7 @@ from grader.recording.recording import Recordings
 from grader.result.result import Result
 from grader.testing.solutions import Solution, read_solutions
 from tests import once
+from tests.files import untar
 
 Side = Literal["right", "wrong"]
 SIDES: tuple[Side, ...] = ("right", "wrong")
@@ -80,8 +81,7 @@ def result(exercise: str, side: Side) -> Result:
 @cache
 def _unpacked() -> Path:
     def unpack(folder: Path) -> None:
-        with tarfile.open(FILE) as packed:
-            packed.extractall(folder, filter="data")
+        untar(FILE, folder)
 
     return once.folder(unpack, "archive", made_by=(str(FILE.relative_to(once.ROOT)),))
 

@@ -2,9 +2,11 @@
 
 import io
 import os
+import tarfile
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 
 def lay(root: Path, files: Mapping[str, str | bytes]) -> Path:
@@ -41,3 +43,10 @@ def lay_too_deep(top: Path) -> None:
         at = below
     os.close(os.open("deep.py", os.O_CREAT | os.O_WRONLY, dir_fd=at))
     os.close(at)
+
+
+def untar(archive: Path, folder: Path) -> None:
+    """Unpack an archive of ours; Python before 3.11.4 has no filters, later ones want one."""
+    filters: Any = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
+    with tarfile.open(archive) as packed:
+        packed.extractall(folder, **filters)

@@ -161,4 +161,8 @@ SUBMISSIONS = once.folder(
 REFERENCE = Path(turtlesim_challenge.__file__).with_name("turtle_controller.py")
 
 if __name__ == "__main__":
-    lay_out(Path(sys.argv[1]))
+    folder = Path(sys.argv[-1])
+    if len(sys.argv) != 2 or folder.exists() or folder.name.startswith("-"):
+        sys.exit("python -m tests.hand_ins FOLDER: lays out all hand-ins in a new folder")
+    folder.mkdir(parents=True)
+    lay_out(folder)

@@ -6,7 +6,6 @@ What is promised stands in docs/reports.md, "What the versions promise".
 import csv
 import json
 import shutil
-import tarfile
 from pathlib import Path
 
 import jsonschema
@@ -15,6 +14,7 @@ import pytest
 from grader.cli import main
 from grader.reports import read as read_report
 from grader.reports import render
+from tests.files import untar
 from tests.grader.reports.readers import READERS
 from tests.grader.reports.samples import CLASSROOM50, FORMATS
 from tests.once import ROOT
@@ -44,8 +44,7 @@ def unpacked(tmp_path_factory):
     for rubric in KEPT.glob("*.yaml"):
         shutil.copy(rubric, folder)
     for archive in KEPT.glob("*.tar.xz"):
-        with tarfile.open(archive) as packed:
-            packed.extractall(folder, filter="data")
+        untar(archive, folder)
     return folder
 
 
