@@ -171,8 +171,10 @@ class Exercise:
     def opening(self) -> Opening:
         """The arguments for opening a submission to it."""
         found: Opening = {}
-        if self.starter is not None:
-            found["name"] = self.starter.stem if self.starter.suffix == ".py" else ""
+        if self.starter is not None and self.starter.suffix == ".py":
+            found["name"] = self.starter.stem
+        elif self.roles:  # it is about any node, not about the challenge's
+            found["name"] = ""
         return {
             **found,
             "roles": tuple(sorted(self.roles)),

@@ -57,7 +57,12 @@ ONE_POSE = replace(POSES, used=1)
 NOT_A_POSE = end("subscription", "/pose", "geometry_msgs/msg/Pose", used=0)
 FLAG = plain_text("the node used 6 s of processor time without waiting for ROS")
 
-MISSPELT = {"file": "launch/a.launch.py", "program": "drvie", "names": "drive"}
+MISSPELT = {
+    "set_up": "setup.py",
+    "file": "launch/a.launch.py",
+    "program": "drvie",
+    "names": "drive",
+}
 ADD = "example_interfaces/srv/AddTwoInts"
 #: What only a program with peers gets wrong: the service comes at 2 s.
 ADDS = (Endpoint("service", "/add", ADD, "/adder", 2.0),)
