@@ -90,10 +90,12 @@ class Packages:
             __init__.py.
 
         Raises:
-            SubmissionError: its module is not there, or lacks its function.
+            SubmissionError: its module is not there, or lacks its function; its file is a link to
+                somewhere else.
         """
         package = self.package(program)
         if isinstance(program.entry, Script):
+            self.submitted.must_hold(program.entry.path)
             return replace(program, root=program.entry.path.parent), ()
         assert package is not None
         executable = package.executable(program.executable)

@@ -4,6 +4,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.submission.answer import SetUp, SetUpFacts
+from grader.submission.entry_points import find_packages
 from grader.submission.folder import SubmissionFolder
 from grader.submission.set_ups import read_package
 from tests.files import lay
@@ -71,3 +72,13 @@ def test_a_script_whose_name_no_file_has_is_of_setup_py(tmp_path):
 def test_the_folders_to_import_from_lie_in_the_package(tmp_path, folders, roots):
     package = read(tmp_path, package_folders=folders)
     assert package.roots("pkg.node") == [tmp_path / root for root in roots]
+
+
+def test_a_file_that_a_set_up_claims_to_install_is_not_read_through_a_link(tmp_path):
+    lay(tmp_path, {"mine/setup.py": "", "theirs/solution.py": "import rclpy\n"})
+    (tmp_path / "mine/go.py").symlink_to("../theirs/solution.py")
+    submitted = SubmissionFolder("mine", tmp_path / "mine")
+    packages = find_packages(submitted, [SetUp(".", installed={"lib/mine/go": "go.py"})])
+    (choice,) = packages.every
+    with pytest.raises(SubmissionError, match=r"go\.py is a link to a place outside of mine"):
+        packages.found(packages.program(*choice))
