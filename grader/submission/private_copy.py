@@ -166,7 +166,8 @@ def install(copy: PrivateCopy, set_ups: Iterable[SetUp]) -> PrivateCopy:
                 _link(link, to)
         for name in {*re.findall(_SHARE_OF, "\n".join(each.installed))}:
             _mark(prefix / _MARKS / name)
-    _close(copy.folder)
+    _close(prefix, within=copy.folder)
+    copy.folder.chmod(0o555)
     return replace(copy, installed=prefix)
 
 
@@ -229,9 +230,9 @@ def _lying(folder: Path, module: str) -> str:
     return ""
 
 
-def _close(folder: Path) -> None:
-    """Make all of a folder read-only, and remove links that lead out of it."""
-    base = os.path.realpath(folder)
+def _close(folder: Path, within: Path | None = None) -> None:
+    """Make all of a folder read-only, and remove links that lead out of it, or of another."""
+    base = os.path.realpath(within or folder)
     for at, folders, files in os.walk(folder, topdown=False):
         for name in (*folders, *files):
             path = Path(at, name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from difflib import get_close_matches
@@ -84,9 +84,8 @@ class Examination:
         workspace = self.workspace
         files = _launch_files(workspace, with_beside=not is_whole)
         beside = _launch_files(workspace, with_beside=True) if chooses else {}
-        names = sorted(files, key=lambda file: not self._asked.is_called(file))
-        more = [name for name in beside if name not in files]
-        more.sort(key=lambda file: not self._asked.is_called(file))
+        names = self._asked_first(files)
+        more = self._asked_first(each for each in beside if each not in files)
         left_out = names[_MOST_LAUNCHES:]
         names, more = names[:_MOST_LAUNCHES], more[: max(0, _MOST_LAUNCHES - len(names))]
         self._files = {name: (beside | files)[name] for name in (*names, *more)}
@@ -110,6 +109,9 @@ class Examination:
         for each in examine:
             found = replace(each(self, found), texts=tuple(self.texts))
         return found
+
+    def _asked_first(self, files: Iterable[str]) -> list[str]:
+        return sorted(files, key=lambda file: not self._asked.is_called(file))
 
     def number(self, text: str, *, is_file: bool = False) -> int:
         """Return the number of a text; Ended: it is more than is taken."""

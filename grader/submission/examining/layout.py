@@ -49,12 +49,14 @@ class Installed:
         name: what it is called below the prefix.
         setup: what it installs; what is told of it.
         files: path below the prefix -> file of the package, plain scripts as well.
+        told: what its set-up says.
     """
 
     package: SourcePackage
     name: str
     setup: Setup
     files: dict[str, str] = field(default_factory=dict)
+    told: SetUpFacts = field(default_factory=SetUpFacts)
 
     def own(self, path: str, prefix: Path) -> str:
         """A file of the package by a path below the prefix or in its folder; '' for others."""
@@ -118,7 +120,7 @@ def _laid_out(package: SourcePackage, root: Path, prefix: Path, known: Known) ->
         sources=tuple(found[each] for each in sorted(found)),
         left=_left(package, set(found.values())),
     )
-    return Installed(package, name, setup, {**plain, **found})
+    return Installed(package, name, setup, {**plain, **found}, facts)
 
 
 def _set_up_facts(package: SourcePackage, known: Known) -> tuple[SetUpFacts, cmake.Read]:
@@ -139,7 +141,7 @@ def _set_up_facts(package: SourcePackage, known: Known) -> tuple[SetUpFacts, cma
         read = attempt(lambda: cmake.read(package.folder), cmake.FILE)
     except Ended as ended:
         return SetUpFacts(), cmake.Read("", [], [], [], [ended.problem])
-    return SetUpFacts(read.project), read
+    return SetUpFacts(read.project, package_folders=tuple(cmake.module_folders(read))), read
 
 
 def _copy(path: Path, prefix: Path, to: str) -> bool:

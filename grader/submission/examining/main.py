@@ -31,9 +31,9 @@ if __name__ == "__main__":
 from grader import linux  # noqa: E402
 from grader.submission import safe_files, trace  # noqa: E402
 from grader.submission.answer import Inspection, SetUp, SetUpFacts  # noqa: E402
-from grader.submission.examining import cmake, layout, leftovers, packages, setup_call  # noqa: E402
+from grader.submission.examining import layout, leftovers, packages, setup_call  # noqa: E402
 from grader.submission.examining.examination import Examination  # noqa: E402
-from grader.submission.examining.layout import Workspace  # noqa: E402
+from grader.submission.examining.layout import Installed, Workspace  # noqa: E402
 from grader.submission.examining.steps import Ended, attempt, open_account  # noqa: E402
 from grader.submission.folder import SETUP_FILES  # noqa: E402
 from grader.submission.request import LaunchAsked  # noqa: E402
@@ -96,12 +96,9 @@ def inspect(
 
 
 def _set_up(root: Path, folder: str) -> SetUp:
-    """What the set-up files of a folder say; of one that has CMake's alone, where modules lie."""
+    """What the set-up files of a folder say; nothing of one that has CMake's alone."""
     if any(safe_files.is_file(root / folder / each) for each in SETUP_FILES):
         return SetUp(folder, *setup_call.evaluate(root / folder))
-    with suppress(Ended):
-        read = attempt(partial(cmake.read, root / folder), cmake.FILE)
-        return SetUp(folder, SetUpFacts(package_folders=tuple(cmake.module_folders(read))))
     return SetUp(folder)
 
 
@@ -127,8 +124,7 @@ def _look(
     (empty / "home").mkdir(parents=True)
     known = {root / each.folder: (each.told, each.problem) for each in set_ups}
     laid = {each.folder: layout.lay_out(each, root, prefix, known) for each in found}
-    files = {folder: each.files for folder, each in laid.items()}
-    set_ups = tuple(replace(s, installed=files.get(root / s.folder, {})) for s in set_ups)
+    set_ups = tuple(_with_installed(each, laid.get(root / each.folder)) for each in set_ups)
     likely = max(set_ups, key=partial(_worth, program)).folder if set_ups else folder
     one = packages.judged(found, package, (root / likely).resolve() if likely else None)
     best = likely if set_ups else ""
@@ -141,6 +137,14 @@ def _look(
     is_whole, chooses = inspectors is not None, bool(set_ups)
     of_package = examination.trace(examine, is_whole=is_whole, chooses=chooses)
     return Inspection(set_ups, best, of_package, examination.launches, examination.orders)
+
+
+def _with_installed(set_up: SetUp, laid: Installed | None) -> SetUp:
+    """What a set-up says, with what it installs; CMake's own words where no other file has any."""
+    if laid is None:
+        return set_up
+    told = laid.told if set_up.told == SetUpFacts() else set_up.told
+    return replace(set_up, told=told, installed=laid.files)
 
 
 def _worth(program: str, set_up: SetUp) -> tuple[bool, bool, bool]:
