@@ -30,7 +30,7 @@ help:
 	@echo "make mutate    do the tests notice a change?  (ARGS=\"grader/exercise --count 100\": in these modules)"
 	@echo "make size      lines and modules of each room, class names that stand twice"
 	@echo "make needs     install what tests need of the machine: a browser, ..."
-	@echo "make lint      ruff, mypy, and the schemas of others"
+	@echo "make lint      ruff, mypy, who imports whom, and the schemas of others"
 	@echo "make docs      the site, in build/site/html: pages, exercises, API, gallery; its links checked"
 	@echo "make catalogues   drop the translations of sentences that are gone"
 	@echo "make bench     what the simulator, a grading and a class cost: in build/bench.json, ten minutes"
@@ -95,6 +95,8 @@ lint: tools
 	@$(BIN)/ruff format --check
 	@echo "== mypy"
 	@$(BIN)/mypy
+	@echo "== who imports whom"
+	@$(BIN)/lint-imports --no-logo --no-cache
 	@echo "== CITATION.cff and workflows"
 	@$(BIN)/check-jsonschema --builtin-schema vendor.citation-file-format --default-filetype yaml CITATION.cff
 	@$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml examples/batch/github/*.yml

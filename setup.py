@@ -1,4 +1,4 @@
-"""Installs the five packages, and what `ros2 run` and the ament index need to find them.
+"""Installs the packages, and what `ros2 run` and the ament index need to find them.
 
 What is required stands in pyproject.toml, and is the same everywhere. ROS from PyPI, and what has
 to be compiled for it, are distributions of their own: interfaces/jazzy and interfaces/kilted.
@@ -19,10 +19,13 @@ from interfaces.ament import PACKAGES, PROJECT, ROOT, AmentDistribution, BuildPy
 ROS_PACKAGES: dict[str, list[str]] = {
     "grader": [],
     "grader_robots": [],
-    "robot_py": [],
     "turtlesim_challenge": ["launch/turtlesim_challenge.launch.py"],
     "turtlesim_py": ["launch/multisim.launch.py"],
 }
+
+
+#: Extensions of the grader without a program of their own.
+PACKAGES_BESIDE = ("grader_class", "grader_diagnosis")
 
 
 def data_files() -> list[tuple[str, list[str]]]:
@@ -60,12 +63,17 @@ setup(
     license="BSD-3-Clause",
     python_requires=">=3.11",
     packages=find_packages(
-        str(ROOT), include=[name for package in ROS_PACKAGES for name in (package, f"{package}.*")]
+        str(ROOT),
+        include=[
+            name
+            for package in (*ROS_PACKAGES, *PACKAGES_BESIDE)
+            for name in (package, f"{package}.*")
+        ],
     ),
     # Everything in the packages. Not by MANIFEST.in (include_package_data): setuptools then
     # warns about the starter, a package that is not to be imported
-    package_data={package: ["**/*", "**/.*"] for package in ROS_PACKAGES},
-    exclude_package_data={package: ["*.py[cod]"] for package in ROS_PACKAGES},
+    package_data={package: ["**/*", "**/.*"] for package in (*ROS_PACKAGES, *PACKAGES_BESIDE)},
+    exclude_package_data={package: ["*.py[cod]"] for package in (*ROS_PACKAGES, *PACKAGES_BESIDE)},
     include_package_data=False,
     data_files=data_files(),
     distclass=AmentDistribution,

@@ -22,6 +22,8 @@ if TYPE_CHECKING:  # where type checkers find what `__getattr__` loads
     from grader.exercise.driven_path import DrivenPath as DrivenPath
     from grader.exercise.exercise import Exercise as Exercise
     from grader.exercise.loading import load_exercise as load_exercise
+    from grader.exercise.result.result import Result as Result
+    from grader.exercise.result.visible import student_view as student_view
     from grader.exercise.verdict import Evidence as Evidence
     from grader.exercise.verdict import Expected as Expected
     from grader.exercise.verdict import Finding as Finding
@@ -33,8 +35,6 @@ if TYPE_CHECKING:  # where type checkers find what `__getattr__` loads
     from grader.judging import save_recordings as save_recordings
     from grader.recording.recording import Recording as Recording
     from grader.recording.recording import Recordings as Recordings
-    from grader.result.result import Result as Result
-    from grader.result.visible import student_view as student_view
     from grader.run.opening import open_submission as open_submission
 
 #: module -> its public names
@@ -48,8 +48,8 @@ _PUBLIC = {
     "grader.exercise.driven_path": ("DrivenPath",),
     "grader.exercise.verdict": ("Evidence", "Expected", "Finding", "Verdict"),
     "grader.recording.recording": ("Recording", "Recordings"),
-    "grader.result.result": ("Result",),
-    "grader.result.visible": ("student_view",),
+    "grader.exercise.result.result": ("Result",),
+    "grader.exercise.result.visible": ("student_view",),
     "grader.errors": (
         *("GraderError", "UsageError", "SubmissionError"),
         *("ExerciseError", "RecordingError", "GraderFailure"),

@@ -14,8 +14,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, ClassVar, Literal
 
-from grader.message import Message, as_message, msg
-from grader.text import without_controls
+from grader.text.message import Message, as_message, msg
+from grader.text.strings import without_controls
 
 #: Who has to act: the student, the exercise's author, the caller, the grader's maintainers.
 Whose = Literal["submission", "exercise", "call", "grader"]

@@ -17,16 +17,14 @@ from functools import partial
 from itertools import product
 from pathlib import Path
 
-from grader import content, system
 from grader.errors import ExerciseError, GraderFailure, UsageError
 from grader.exercise import DEFAULT, places
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.exercise.result.result import Result
 from grader.judging import AnyPath, judge, loaded
-from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Clock, Provenance, Recording, Recordings, now
 from grader.recording.subject import PACKAGE_SCENE, Role, Trace, load_subject
-from grader.result.result import Result
 from grader.run import inspecting, real_time, virtual_time
 from grader.run.finish import SimulatorLost, not_run, recording_of_nothing
 from grader.run.handover import Plan
@@ -39,7 +37,10 @@ from grader.submission.private_copy import missing_neighbours
 from grader.submission.reader import Marks
 from grader.submission.roles import is_among
 from grader.submission.start import Submission
-from grader.text import listed, shown
+from grader.system import content
+from grader.system import versions as system
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import listed, shown
 
 Progress = Callable[[float], None]
 REPEATED = msg("repeated, because the first try failed in the grader")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from grader.diagnosis.diagnose import diagnose
 from grader.exercise import DEFAULT, check
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.exercise.result.diagnosis import diagnose
+from grader.exercise.result.result import Result, build
 from grader.recording import reading, saving
 from grader.recording.recording import Recording, Recordings
-from grader.result.result import Result, build
 
 AnyPath = str | os.PathLike[str]
 
@@ -29,7 +29,7 @@ def judge(
     """
     asked = loaded(exercise)
     verdicts = check.judge(recordings, asked.checks, asked.points, asked.tolerances)
-    cause = diagnose(recordings, verdicts, asked.peers_have, is_to_end=asked.is_to_end)
+    cause = diagnose(asked, recordings, verdicts)
     return build(submission, asked, recordings, verdicts, cause)
 
 
@@ -55,7 +55,7 @@ def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "
     """Judge the nominal run alone; return a result without the other verdicts."""
     verdicts = check.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
     alone = Recordings(nominal)
-    cause = diagnose(alone, verdicts, exercise.peers_have, is_to_end=exercise.is_to_end)
+    cause = diagnose(exercise, alone, verdicts)
     return build(submission, exercise, alone, verdicts, cause)
 
 

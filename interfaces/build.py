@@ -1,8 +1,8 @@
 """Builds turtlesim-py-jazzy and turtlesim-py-kilted: what of ROS PyPI lacks, for its ROS.
 
 The interface packages below `packages/`, one self-contained extension module each: generated,
-compiled and linked against the ROS wheels of PyPI, by `grader.rosidl.building`. Where there is no
-compiler, or the variable COMPILE is empty, their definitions alone (`grader.rosidl.uncompiled`).
+compiled and linked against the ROS wheels of PyPI, by `grader.ros.building`. Where there is no
+compiler, or the variable COMPILE is empty, their definitions alone (`grader.ros.uncompiled`).
 And ../tf2, and what `ros2 run turtlesim ...` looks for. `<release>/pyproject.toml` says what is
 required.
 
@@ -23,7 +23,7 @@ from setuptools import Extension
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError
 
-from grader.rosidl import building, compiler
+from grader.ros import building, compiler
 from interfaces import ament
 
 HERE = Path(__file__).resolve().parent
@@ -87,7 +87,7 @@ def setup() -> None:
 
 def data_files(release: str) -> list[tuple[str, list[str]]]:
     """What `ros2 run` and `ros2 launch` look for in ROS's own packages, as tutorials have it."""
-    nodes = [(Path(path).name, path) for path in ament.programs("robot_py")]
+    nodes = [(Path(path).name, path) for path in ament.programs("grader_robots")]
     return [
         (BROUGHT, [f"ament_marker/{release}"]),
         # the second is that of example_interfaces and action_tutorials_interfaces

@@ -4,12 +4,12 @@
     make catalogues               drops the translations of sentences that are no longer in the code
     scripts/catalogues.py holes   prints the sentences without a translation, as lines to fill in
 
-Translators edit `grader/languages/*.json`; the sentences of the simulator's page are in
-`turtlesim_py/live/page/*.json`, those of a cast's in `grader/cast/page/live/*.json`. A translation
-has the values of its sentence in any order, with the same formats; a sentence about a number has a
-list of forms: for one, for more. French says "vous", and has a no-break space before `: ; ! ?`;
-Chinese has its own punctuation, and a space around Latin words. Exercises have their translations
-beside them, in `exercise.fr.yaml`.
+Translators edit `grader/text/languages/*.json`; the sentences of the simulator's page are in
+`turtlesim_py/live/page/*.json`, those of a cast's in `grader/scenes/cast/page/live/*.json`. A
+translation has the values of its sentence in any order, with the same formats; a sentence about a
+number has a list of forms: for one, for more. French says "vous", and has a no-break space before
+`: ; ! ?`; Chinese has its own punctuation, and a space around Latin words. Exercises have their
+translations beside them, in `exercise.fr.yaml`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 #: The live page of a cast.
-HOPS = ROOT / "grader" / "cast" / "page" / "live"
+HOPS = ROOT / "grader" / "scenes" / "cast" / "page" / "live"
 #: The functions whose argument is a sentence, or a pair of singular and plural.
 ONE = ("msg", "tr", "Rejected", "_misfit", "Mistake", "expect")
 PAIR, IN_CONTEXT = ("msg_many", "tr_many"), "in_context"
@@ -52,7 +52,12 @@ Sentence = str | tuple[str, str]
 
 
 def of_code(path: Path) -> Iterator[Sentence]:
-    """Yield the sentences of Python code, and titles of checks: the first lines of docstrings."""
+    """Yield the sentences of Python code.
+
+    The first lines of docstrings are the titles of checks, and the help of verbs.
+    """
+    if path.parent.name == "cli":
+        yield (ast.get_docstring(ast.parse(path.read_bytes())) or "").partition("\n")[0]
     for node in ast.walk(ast.parse(path.read_bytes())):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             texts = [a.value for a in node.args if isinstance(a, ast.Constant)]
@@ -99,7 +104,8 @@ def of_grader() -> Iterator[Sentence]:
     for player in players:
         yield from (each for each in of_page(player) if each not in shared)
     readers = {".py": of_code, ".html": of_template}
-    for path in sorted(p for name in ("grader", "grader_robots") for p in (ROOT / name).rglob("*")):
+    rooms = ("grader", "grader_class", "grader_diagnosis", "grader_robots")
+    for path in sorted(path for name in rooms for path in (ROOT / name).rglob("*")):
         is_ours = not set(path.relative_to(ROOT).parts) & set(NOT_OURS)
         if is_ours and path.suffix in readers and path.parent not in players:
             yield from readers[path.suffix](path)
@@ -129,7 +135,7 @@ def of_page(folder: Path) -> Iterator[Sentence]:
 
 #: The folders of catalogues, and what finds their sentences.
 CATALOGUES: dict[Path, Callable[[], Iterable[Sentence]]] = {
-    ROOT / "grader" / "languages": of_grader,
+    ROOT / "grader" / "text" / "languages": of_grader,
     ROOT / "turtlesim_py" / "live" / "page": of_simulator,
     HOPS: of_hops,
 }

@@ -140,20 +140,20 @@ project() {
 
 packaging="LICENSE launch pyproject.toml interfaces/ament.py"
 # shellcheck disable=SC2086  # several words
-project . "installed-project $(sources $packaging turtlesim_py turtlesim_challenge robot_py grader \
-    grader_robots MANIFEST.in README.md package.xml setup.py)"
+project . "installed-project $(sources $packaging turtlesim_py turtlesim_challenge grader \
+    grader_class grader_diagnosis grader_robots MANIFEST.in README.md package.xml setup.py)"
 missing= # what a compilation lacks that was asked for
 if [ -z "${ROS_DISTRO:-}" ]; then
     ros=interfaces/${ROS:-jazzy}
     # shellcheck disable=SC2086
-    hash=$(sources $packaging tf2 grader/rosidl interfaces/{build.py,LICENSE-Apache-2.0,packages} \
+    hash=$(sources $packaging tf2 grader/ros interfaces/{build.py,LICENSE-Apache-2.0,packages} \
         "$ros"/{setup.py,pyproject.toml})
     if ! stamped installed-interfaces "compiled $hash"; then
         # what is compiled stays so
         ! grep -qsv '^definitions ' "$venv/installed-interfaces" || COMPILE=yes
         how=definitions
         if [ -n "${COMPILE-yes}" ]; then
-            ! missing=$("$venv/bin/python" grader/rosidl/compiler.py) || how=compiled
+            ! missing=$("$venv/bin/python" grader/ros/compiler.py) || how=compiled
         fi
         project "./$ros" "installed-interfaces $how $hash"
         export COMPILE=

@@ -1,6 +1,6 @@
 """Do the tests notice a change? Mutation testing with cosmic-ray, in a clone of the last commit.
 
-    make mutate ARGS="grader/exercise grader/result --count 100"
+    make mutate ARGS="grader/exercise grader/exercise/result --count 100"
 
 It changes random places: a comparison, a number, a condition, an exception. For each change the
 tests of the same folder run, those of its module first, until one fails: those of `make test`, then

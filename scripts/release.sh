@@ -66,7 +66,7 @@ python_of() {
     while read -r candidate; do
         "$candidate" -c '' 2>/dev/null || continue # pyenv's command for a version not chosen
         PYTHON=$candidate scripts/check_setup.sh >"$work/python" 2>"$work/why" || continue
-        "$candidate" grader/rosidl/compiler.py >"$work/why" && cat "$work/python" && return
+        "$candidate" grader/ros/compiler.py >"$work/why" && cat "$work/python" && return
     done < <(candidates "$1")
     return 1
 }
@@ -74,7 +74,7 @@ python_of() {
 pythons=()
 if [ -n "${PYTHON:-}" ]; then
     python=$(scripts/check_setup.sh)
-    why=$("$python" grader/rosidl/compiler.py) || fail "its wheels are compiled; $why"
+    why=$("$python" grader/ros/compiler.py) || fail "its wheels are compiled; $why"
     pythons+=("$python")
 else
     for each in 3.11 3.12 3.13; do

@@ -38,8 +38,8 @@ def is_worker(config: pytest.Config) -> bool:
 def pytest_configure(config: pytest.Config) -> None:
     """Take what is this process's own, before anything asks where temporary files lie."""
     # here: the checked message fields have to be asked for before anything of ROS is imported
-    from grader import scratch
     from grader.run.processes import network
+    from grader.system import scratch
 
     if not is_worker(config):
         config.pluginmanager.register(Leftovers(), "leftovers")
@@ -88,7 +88,7 @@ class Leftovers:
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Fail for what is left."""
-        from grader import scratch
+        from grader.system import scratch
 
         with scratch.make_folder():  # as the next grader: it removes what a killed one has left
             pass

@@ -20,9 +20,9 @@ from typing import Literal
 import grader
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.exercise.result.result import Result
 from grader.recording import reading, saving
 from grader.recording.recording import Recordings
-from grader.result.result import Result
 from grader.testing.solutions import Solution, read_solutions
 from tests import once
 from tests.files import untar

@@ -13,10 +13,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from grader import scratch
 from grader.run.processes import levels, network
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
+from grader.system import scratch
 
 
 def main(wanted: str, folder: str, *words: str) -> None:

@@ -20,14 +20,15 @@ ROOT = Path(__file__).resolve().parents[1]
 PLACE = ROOT / ".pytest_cache" / "d" / "once"  # where pytest has its plugins keep theirs
 #: What decides how a submission is run; its own files are in the key.
 RUNS = (
-    *(f"grader/{room}" for room in ("cast", "inspection", "recording", "rosidl")),
+    *(f"grader/{room}" for room in ("recording", "ros")),
     *(f"grader/{room}" for room in ("run", "scenes", "submission")),
     *("grader_robots/inspection", "grader_robots/scene"),
-    *("interfaces", "robot_py", "tf2", "turtlesim_py"),
+    *("grader/system", "grader_diagnosis/lint", "interfaces", "tf2", "turtlesim_py"),
 )
 #: What decides how it is judged, as well.
 TREE = (
-    *("grader", "grader_robots", "interfaces", "robot_py", "tests/hand_ins.py"),
+    *("grader", "grader_class", "grader_diagnosis", "grader_robots", "interfaces"),
+    *("tests/hand_ins.py",),
     *("tests/submissions", "tf2", "turtlesim_challenge", "turtlesim_py"),
 )
 OLD_S = 24 * 3600.0  # of another tree: not under the feet of a suite that still runs

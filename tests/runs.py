@@ -11,9 +11,9 @@ import grader
 from grader import grading
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.exercise.result.result import Result
 from grader.recording import reading, saving
 from grader.recording.recording import Clock, Recording, Recordings
-from grader.result.result import Result
 from grader.run import real_time, virtual_time
 from grader.run.handover import Plan
 from grader.run.limits import Patience

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.translations import ENGLISH, LANGUAGES
+from grader.text.translations import ENGLISH, LANGUAGES
 
 ROOT = Path(__file__).parents[1]
 SCRIPT = runpy.run_path(str(ROOT / "scripts" / "catalogues.py"))

@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import pytest
 
-from grader.batch.page import html as class_page
 from grader.exercise.loading import load_exercise
+from grader.exercise.result.error import ErrorResult
 from grader.reports import ErrorReport
 from grader.reports import read as read_report
 from grader.reports.page import html
-from grader.result.error import ErrorResult
+from grader_class.page import html as class_page
 from tests.barriers import barriers
 from tests.browser import needs_browser
-from tests.grader.batch.page.classes import entry, result
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
+from tests.grader_class.page.classes import entry, result
 from tests.grader_robots.reports.test_parts import package_trace, page_of
 
 pytestmark = needs_browser

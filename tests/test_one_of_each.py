@@ -8,16 +8,16 @@ import pytest
 ROOT = Path(__file__).parents[1]
 #: What -> the text by which it is known, and the only file below grader/ that may have it.
 ONE = {
-    "a file that cannot be written is told": (r'"cannot write', "files.py"),
+    "a file that cannot be written is told": (r'"cannot write', "system/files.py"),
     "a trace is serialised between processes": (r"np\.savez|np\.load\(", ""),
-    "work is done in a limited copy": (r"setitimer\(signal\.ITIMER_PROF", "limited.py"),
-    "data of others becomes a dataclass": (r"get_type_hints\(", "strict_json.py"),
-    "what a process uses is looked up": (r"/proc/[^ ]*/stat\"", "linux.py"),
-    "a process is controlled": (r"\.prctl|\"prctl\"", "linux.py"),
-    "an expression is evaluated": (r"operator\.truediv", "expressions.py"),
+    "work is done in a limited copy": (r"setitimer\(signal\.ITIMER_PROF", "system/limited.py"),
+    "data of others becomes a dataclass": (r"get_type_hints\(", "system/strict_json.py"),
+    "what a process uses is looked up": (r"/proc/[^ ]*/stat\"", "system/linux.py"),
+    "a process is controlled": (r"\.prctl|\"prctl\"", "system/linux.py"),
+    "an expression is evaluated": (r"operator\.truediv", "system/expressions.py"),
     "a traceback is parsed": (r"Traceback \(most recent", "recording/printed.py"),
-    "a resource is limited": (r"\.setrlimit\(", "linux.py"),
-    "the C library is called": (r"CDLL\(None", "linux.py"),
+    "a resource is limited": (r"\.setrlimit\(", "system/linux.py"),
+    "the C library is called": (r"CDLL\(None", "system/linux.py"),
     "a process of a run is begun": (r"os\.execvpe?\(", "run/processes/fork_server_main.py"),
     "a page between processes is sealed": (r"F_ADD_SEALS", "run/observe/account.py"),
     "a simulator and the grader speak": (r"\{\"say\": what", "run/simulator/process.py"),
@@ -25,7 +25,7 @@ ONE = {
     "endpoints are paired": (r"def compatible\(", "run/lockstep/registry.py"),
     "a page's templates are found": (r"jinja2\.Environment\(", "reports/page/templating.py"),
     "a table is written": (r"csv\.writer\(", "reports/csv.py"),
-    "a zip is written": (r"ZipFile\([^)]*\"w\"", "files.py"),
+    "a zip is written": (r"ZipFile\([^)]*\"w\"", "system/files.py"),
     "a run's limits are set": (r"class (RunLimits|Patience|CpuBudget)\b", "run/limits.py"),
 }
 #: The same below grader/run/ and in grader/submission/, but for what is confined there.

@@ -1,4 +1,4 @@
-"""The command line `grader`, one file a verb.
+"""The command line `grader`: one file a verb, each an entry point of `grader.verbs`.
 
 Exit codes: 0 judged, whatever the score (1 below --fail-under); 2 the call or the submission
 cannot be used; 3 the grader itself failed; 130 interrupted by the caller.
@@ -19,19 +19,18 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from grader.message import Text, msg
+from grader.text.message import Text, msg
 
 # numpy's worker threads would spin a while after its import, and have nothing to do here
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 try:  # Ctrl-C may come as early as this
-    import importlib
-
-    from grader import requirements, system
     from grader.cli import options
     from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
-    from grader.text import for_terminal
-    from grader.translations import tr, translate
+    from grader.system import extensions, requirements
+    from grader.system import versions as system
+    from grader.text.strings import for_terminal
+    from grader.text.translations import tr, translate
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
     sys.exit(130)
@@ -39,29 +38,6 @@ except KeyboardInterrupt:
 if TYPE_CHECKING:
     from rich.console import Console
 
-#: Each verb with the first line of its module, which is imported only when the verb is called.
-VERBS = {
-    "run": msg("Run a submission and judge it."),
-    "check": msg("Judge a saved recording again."),
-    "view": msg(
-        "Play a graded run: the window at every moment, what came in, what the checks say."
-    ),
-    "report": msg("Show a result in another format."),
-    "new": msg(
-        "Write the exercise sheet and the starter package of the challenge, or of another exercise."
-    ),
-    "course": msg(
-        "Write the repository of a course that is graded on GitHub, Gradescope or another system."
-    ),
-    "batch": msg("Grade a class: find the submissions, and grade them in parallel."),
-    "forget": msg("Forget a student: remove what is kept of one from the folder of a class."),
-    "check-exercise": msg(
-        "Try an exercise on its right solutions and mutants: what each check catches, and what "
-        "to fix."
-    ),
-}
-#: The verbs that run submissions; the others work anywhere.
-NEED_LINUX = ("run", "batch", "forget", "check-exercise")
 ELSEWHERE = msg(
     "submissions are run on Linux with /proc, which this is not. Take WSL 2, a devcontainer or "
     "Codespaces (docs/your-machine.md); grader check, view, report and new work here."
@@ -98,13 +74,14 @@ def leave(code: int) -> NoReturn:
 
 def load(verb: str) -> Any:
     """Import and return the module of a verb."""
-    return importlib.import_module(f"{__name__}.{verb.replace('-', '_')}")
+    return extensions.load(extensions.VERBS, verb)
 
 
 def _main(words: Sequence[str]) -> int:
     options.choose_language(words)  # for help and errors of the call, too
-    if _asked(words) in NEED_LINUX and not system.runs_submissions():
-        _print_error(_who(_asked(words)), ELSEWHERE)
+    asked = _asked(words)
+    if asked and not system.runs_submissions() and getattr(load(asked), "NEEDS_LINUX", False):
+        _print_error(_who(asked), ELSEWHERE)
         return UNUSABLE
     try:
         args = _parser(words).parse_args(words)
@@ -187,7 +164,8 @@ def _print_error(heading: Text, message: Text = "") -> None:
 
 def _asked(words: Sequence[str]) -> str:
     """Return the verb of a call; '' where there is none."""
-    return next((word for word in words if not word.startswith("-")), "")
+    word = next((word for word in words if not word.startswith("-")), "")
+    return word if extensions.is_there(extensions.VERBS, word) else ""
 
 
 def _parser(words: Sequence[str]) -> options.Parser:
@@ -198,9 +176,11 @@ def _parser(words: Sequence[str]) -> options.Parser:
     shows = tr("show program's version number and exit")
     parser.add_argument("--version", action="version", version=known, help=shows)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for name, summary in VERBS.items():
-        verb = verbs.add_parser(name, help=translate(summary), description=translate(summary))
-        if name == asked:
+    listed = () if known else extensions.points(extensions.VERBS)
+    for name in (asked,) if asked else listed:
+        summary = translate(msg((load(name).__doc__ or "").partition("\n")[0]))
+        verb = verbs.add_parser(name, help=summary, description=summary)
+        if asked:
             load(name).add_arguments(verb)
             options.add_arguments(verb)
     return parser

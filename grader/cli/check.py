@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grader import files, judging
+from grader import judging
 from grader.cli import options
 from grader.cli.run import points
 from grader.errors import UsageError
@@ -16,14 +16,15 @@ from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
-from grader.message import Message, msg
+from grader.exercise.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.saving import WINDOW_PICTURE
 from grader.reports import Report
-from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
-from grader.text import for_terminal
-from grader.translations import tr
+from grader.system import files
+from grader.text.message import Message, msg
+from grader.text.strings import for_terminal
+from grader.text.translations import tr
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

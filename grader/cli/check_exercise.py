@@ -7,18 +7,22 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
 
-from grader import files
-from grader.cli import say
-from grader.cli.batch import processes
+from grader.cli import options, say
 from grader.exercise.loading import load_exercise
-from grader.requirements import require_ros
-from grader.testing.checking import Progress, check_exercise
-from grader.testing.examination import Examination
-from grader.translations import tr, translate
+from grader.system import files
+from grader.system.requirements import require_ros
+from grader.text.translations import tr, translate
+
+if TYPE_CHECKING:
+    from grader.testing.checking import Progress
+    from grader.testing.examination import Examination
+
+NEEDS_LINUX = True
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=tr("the solutions (mutants.yaml in its folder)"),
     )
     parser.add_argument(
-        "--jobs", type=processes, metavar="N", help=tr("so many at once (one a core)")
+        "--jobs", type=options.processes, metavar="N", help=tr("so many at once (one a core)")
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help=tr("write all of it here"))
     parser.add_argument("--markdown", type=Path, metavar="FILE", help=tr("write the table here"))
@@ -42,6 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Try an exercise; 1 if there is something to fix. See `grader.cli` for other exit codes."""
+    from grader.testing.checking import check_exercise  # here: only Linux has what it needs
+
     exercise = load_exercise(args.exercise)
     require_ros()
     with _shown(Console(stderr=True, highlight=False), exercise.name) as show:

@@ -17,15 +17,11 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from grader import files, grading, judging
+from grader import grading, judging
 from grader.cli import options, say
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.grading import Finished
-from grader.message import msg
-from grader.recording import saving
-from grader.recording.recording import Recording, Recordings
-from grader.result.result import (
+from grader.exercise.result.result import (
     ARTIFACTS,
     FAMILY,
     PAGE,
@@ -34,10 +30,15 @@ from grader.result.result import (
     artifacts,
     put_artifacts,
 )
+from grader.grading import Finished
+from grader.recording import saving
+from grader.recording.recording import Recording, Recordings
 from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
 from grader.submission.start import Submission
-from grader.translations import tr
+from grader.system import files
+from grader.text.message import msg
+from grader.text.translations import tr
 
 if TYPE_CHECKING:
     from grader.cli.live import Live

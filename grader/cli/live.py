@@ -15,19 +15,19 @@ from typing import Any, Final, Self
 from rich.console import Console
 from rich.text import Text
 
-from grader import text as texts
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
-from grader.message import Message, msg
+from grader.exercise.result.visible import is_hidden
 from grader.recording.playback import JudgedCheck
 from grader.recording.recording import Clock
 from grader.reports import Report, playback
-from grader.result.visible import is_hidden
 from grader.run.handover import Plan
 from grader.scenes.live import Grading, LivePage
 from grader.scenes.scene import Scene
-from grader.text import for_terminal
-from grader.translations import tr, translate
+from grader.text import strings as texts
+from grader.text.message import Message, msg
+from grader.text.strings import for_terminal
+from grader.text.translations import tr, translate
 from turtlesim_py import browser
 
 #: A value of --speed -> how many times as fast as in real time, and that in words.

@@ -6,12 +6,12 @@ import argparse
 import os
 from pathlib import Path
 
-from grader import files
-from grader.course import starter
+from grader.cli import starters as starter
 from grader.exercise import DEFAULT
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
-from grader.translations import tr
+from grader.system import files
+from grader.text.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")

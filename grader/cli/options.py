@@ -7,20 +7,21 @@ written whole or not at all.
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable, Iterator, Sequence
 from datetime import date
 from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-from grader import files
 from grader.errors import GraderError, UsageError
-from grader.message import msg, msg_many
 from grader.submission.request import LaunchAsked
-from grader.translations import LANGUAGES, of_environment, tr, tr_many, use
+from grader.system import files
+from grader.text.message import msg, msg_many
+from grader.text.translations import LANGUAGES, of_environment, tr, tr_many, use
 
 if TYPE_CHECKING:
-    from grader.result.visible import View
+    from grader.exercise.result.visible import View
 
 LANG = "--lang"
 #: Of a --seed-file [characters].
@@ -206,7 +207,7 @@ def hides_seed(args: argparse.Namespace) -> bool:
 def prepare(args: argparse.Namespace) -> None:
     """Remove an old file of --error-json."""
     if args.error_json is not None:
-        from grader.result.error import FAMILY
+        from grader.exercise.result.error import FAMILY
 
         files.check_writable(args.error_json, FAMILY, inputs(args))
         files.withdraw(args.error_json)
@@ -215,7 +216,7 @@ def prepare(args: argparse.Namespace) -> None:
 def write(error: GraderError, args: argparse.Namespace) -> None:
     """Write an error to the file of --error-json, if there is one."""
     if args.error_json is not None:
-        from grader.result.error import ErrorResult
+        from grader.exercise.result.error import ErrorResult
 
         ErrorResult.of(error, _max_score(args)).write(args.error_json)
 
@@ -258,3 +259,12 @@ def launch_asked(words: Sequence[str] | None) -> LaunchAsked | None:
                 found=each,
             )
     return LaunchAsked(file, dict(each.split(":=", 1) for each in given))
+
+
+def processes(text: str) -> int:
+    """Parse a number of processes of the command line."""
+    if not re.fullmatch(r"[1-9]\d{0,3}", text):
+        raise argparse.ArgumentTypeError(
+            tr("expected a number of processes, found {text}", text=text)
+        )
+    return int(text)

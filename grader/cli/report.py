@@ -8,15 +8,16 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from grader import files, reports
+from grader import reports
 from grader.cli import options
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
-from grader.message import msg
+from grader.exercise.result.result import ARTIFACTS, RESULT
+from grader.exercise.result.visible import is_hidden
 from grader.reports import Report
-from grader.result.result import ARTIFACTS, RESULT
-from grader.result.visible import is_hidden
-from grader.translations import tr, translate
+from grader.system import files
+from grader.text.message import msg
+from grader.text.translations import tr, translate
 
 
 def add_arguments(parser: options.Parser) -> None:

@@ -10,9 +10,9 @@ from pathlib import Path
 from grader.cli import options
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.message import msg
-from grader.requirements import require, require_ros
-from grader.translations import tr
+from grader.system.requirements import require, require_ros
+from grader.text.message import msg
+from grader.text.translations import tr
 
 #: Those of `grader.run.processes.levels.LEVELS`, which takes long to import.
 LEVELS = ("namespaces", "landlock", "limits")
@@ -20,6 +20,8 @@ LEVELS = ("namespaces", "landlock", "limits")
 CLOCKS = ("real", "virtual")
 #: The keys of `grader.cli.live.SPEEDS`.
 SPEEDS = ("1", "5", "free")
+
+NEEDS_LINUX = True
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -5,21 +5,21 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from grader import files
 from grader.cli import options
 from grader.cli.check import RecordingPlace, find_recording
 from grader.errors import RecordingError, UsageError
-from grader.message import Message, msg
+from grader.exercise.result.result import ARTIFACTS, PAGE, RESULT
+from grader.exercise.result.visible import View
 from grader.recording.playback import Playback
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import load_subject
 from grader.reports import Report, playback
-from grader.result.result import ARTIFACTS, PAGE, RESULT
-from grader.result.visible import View
-from grader.text import for_terminal
-from grader.translations import tr
+from grader.system import files
+from grader.text.message import Message, msg
+from grader.text.strings import for_terminal
+from grader.text.translations import tr
 from turtlesim_py import browser
 
 #: The name of the page beside a result.

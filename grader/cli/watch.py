@@ -15,10 +15,10 @@ from rich.console import Console
 
 from grader.cli import grade_one, options, say
 from grader.errors import GraderError, UsageError
+from grader.exercise.result.result import Result
+from grader.exercise.result.visible import student_view
 from grader.reports.wording import points as shown
-from grader.result.result import Result
-from grader.result.visible import student_view
-from grader.translations import tr
+from grader.text.translations import tr
 
 if TYPE_CHECKING:
     from grader.cli.live import Live

@@ -13,11 +13,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader import limited, strict_json
 from grader.exercise.verdict import Finding, wrong_with
-from grader.limited import LimitHit, WorkLimits
-from grader.message import NOTHING, Message
 from grader.recording.recording import NominalAlone, NotOver, Recordings
+from grader.system import limited, strict_json
+from grader.system.limited import LimitHit, WorkLimits
+from grader.text.message import NOTHING, Message
 
 CheckFunction = Callable[[Recordings, Mapping[str, Any]], Finding]
 #: Describes the exception that a check raised.

@@ -15,7 +15,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from grader import content, extensions
 from grader.errors import ExerciseError
 from grader.exercise import places, policies
 from grader.exercise.cases import RunCase, read_cases
@@ -30,12 +29,13 @@ from grader.exercise.exercise import (
     VariedRuns,
 )
 from grader.exercise.places import DESCRIPTION, Place
-from grader.extensions import SCENES
-from grader.message import authored, msg
 from grader.recording.recording import MOST_PROGRAMS
 from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
-from grader.yaml_file import Mistake, check_known, expect, is_amount
+from grader.system import content, extensions
+from grader.system.extensions import SCENES
+from grader.system.yaml_file import Mistake, check_known, expect, is_amount
+from grader.text.message import authored, msg
 
 #: Where nothing is started, no time passes that could be limited.
 NO_LIMITS = Limits(0.0, 0.0, 0.0)
@@ -205,7 +205,7 @@ def _interfaces(where: Any, place: Place) -> dict[str, str]:
         most=LONGEST_INTERFACES,
     )
     try:
-        from grader.rosidl.definitions import Definitions  # here: most exercises have none
+        from grader.ros.definitions import Definitions  # here: most exercises have none
     except ImportError:  # without ROS recordings are judged, whose runs had these
         return texts
     for wrong in Definitions(texts).errors.values():

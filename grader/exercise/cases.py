@@ -17,9 +17,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from grader.message import msg
 from grader.recording.subject import Endpoint, Role
-from grader.yaml_file import Mistake, expect
+from grader.system.yaml_file import Mistake, expect
+from grader.text.message import msg
 
 #: Scripted peers, topics that are recorded besides, arguments of the program; the cases.
 CAST, HEARS, ARGUMENTS, CASES = "cast", "hears", "arguments", "cases"
@@ -37,8 +37,8 @@ class RunCase:
 
     Attributes:
         name: '' for the usual one.
-        cast: its scripted peers, as `grader.cast.script` reads them; None where there are none and
-            nothing is recorded.
+        cast: its scripted peers, as `grader.scenes.cast.script` reads them; None where there are
+            none and nothing is recorded.
         hears: topics that are recorded besides.
         arguments: those that the program is started with.
     """
@@ -51,7 +51,7 @@ class RunCase:
     @property
     def endpoints(self) -> tuple[Endpoint, ...]:
         """What of the peers a program may meet."""
-        from grader.cast import script  # here: most exercises have none
+        from grader.scenes.cast import script  # here: most exercises have none
 
         return tuple(script.endpoints(script.parse(self.cast))) if self.cast else ()
 
@@ -60,7 +60,7 @@ class RunCase:
         """What a program has on the graph, for its peers and for the checks."""
         if self.cast is None:
             return set()
-        from grader.cast import script  # here: most exercises have none
+        from grader.scenes.cast import script  # here: most exercises have none
 
         heard = (Role("publisher", script.absolute(each)) for each in self.hears)
         return {*script.roles(script.parse(self.cast)), *heard}
@@ -131,8 +131,8 @@ def _cast(
     """Check the scripted peers; None for none."""
     if CAST not in data:
         return None
-    from grader.cast import script  # here: most exercises have none
     from grader.exercise.known_types import KnownTypes, check_cast
+    from grader.scenes.cast import script  # here: most exercises have none
 
     peers = data[CAST] or {}
     keys = (*at, CAST)

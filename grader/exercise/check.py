@@ -17,8 +17,8 @@ from grader.errors import CheckFailed
 from grader.exercise import asking
 from grader.exercise.asking import Answers, CheckFunction, NoFinding, NotReached
 from grader.exercise.verdict import Finding, Verdict
-from grader.message import NOTHING, Message, authored, chained, msg, reason
 from grader.recording.recording import NominalAlone, NotOver, Recording, Recordings
+from grader.text.message import NOTHING, Message, authored, chained, msg, reason
 
 Tolerances = Mapping[str, Any]
 #: Raises a ValueError where a tolerance cannot be used.

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from grader.message import Message, msg
-from grader.text import without_controls
+from grader.text.message import Message, msg
+from grader.text.strings import without_controls
 
 #: How far a number may be off where nothing else is said: so much of itself, and so much.
 RELATIVE, ABSOLUTE = 1e-3, 1e-6

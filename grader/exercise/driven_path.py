@@ -17,9 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from grader.exercise.verdict import Evidence
-from grader.message import Message, msg
 from grader.recording.recording import Recording
 from grader.recording.subject import Start
+from grader.text.message import Message, msg
 from turtlesim_py.world.trajectory import Floats, Trajectory
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 

@@ -20,9 +20,9 @@ from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
-from grader.message import NOTHING, Message
 from grader.recording.subject import Endpoint, Role, Start, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
+from grader.text.message import NOTHING, Message
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
 INSPECTS = "looks_at_package"

@@ -13,13 +13,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from grader.cast import script
 from grader.exercise.comparing import is_number, is_range
-from grader.expressions import is_pattern
-from grader.message import msg
-from grader.rosidl.fields import Field, parse
-from grader.text import nearest
-from grader.yaml_file import Mistake
+from grader.ros.fields import Field, parse
+from grader.scenes.cast import script
+from grader.system.expressions import is_pattern
+from grader.system.yaml_file import Mistake
+from grader.text.message import msg
+from grader.text.strings import nearest
 
 #: The parts of a definition, which lines of --- separate.
 _PARTS: Final = {"request": 0, "response": 1, "goal": 0, "result": 1, "feedback": 2}

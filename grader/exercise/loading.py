@@ -17,8 +17,7 @@ from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, RUNS, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.translated import read_translations, translate
-from grader.message import reason
-from grader.yaml_file import (
+from grader.system.yaml_file import (
     Mistake,
     YamlFile,
     check_known,
@@ -27,6 +26,7 @@ from grader.yaml_file import (
     is_amount,
     read_yaml,
 )
+from grader.text.message import reason
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (

@@ -24,11 +24,11 @@ from itertools import count
 from pathlib import Path
 from types import ModuleType
 
-from grader import extensions
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
-from grader.extensions import EXERCISES, described
-from grader.message import NOTHING, Message, joined, msg, plain_text
+from grader.system import extensions
+from grader.system.extensions import EXERCISES, described
+from grader.text.message import NOTHING, Message, joined, msg, plain_text
 
 DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
 

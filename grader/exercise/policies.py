@@ -9,8 +9,8 @@ from typing import Any, get_args
 
 from grader.exercise.check import Checks
 from grader.exercise.verdict import Visible
-from grader.message import msg
-from grader.yaml_file import Mistake, check_known, expect, is_amount
+from grader.system.yaml_file import Mistake, check_known, expect, is_amount
+from grader.text.message import msg
 
 _DAY = timedelta(days=1)
 

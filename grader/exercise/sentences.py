@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from grader.exercise.verdict import Finding
-from grader.message import NOTHING, Message, joined, msg, plain_text
 from grader.recording.observations import Raised
 from grader.recording.printed import last_exception
 from grader.recording.recording import Provenance, Recording, Recordings
 from grader.recording.subject import load_subject
-from grader.text import shown
+from grader.text.message import NOTHING, Message, joined, msg, plain_text
+from grader.text.strings import shown
 
 #: Conditions that are left out while they are off, with that value.
 _OFF: Mapping[str, float] = {"varied_runs.per_student": 0}

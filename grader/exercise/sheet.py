@@ -19,11 +19,11 @@ from grader.exercise.check import Check
 from grader.exercise.exercise import Exercise
 from grader.exercise.places import DESCRIPTION
 from grader.exercise.policies import LatePolicy
-from grader.message import chained, joined, msg
 from grader.recording.subject import Subject
 from grader.scenes.scene import Scene
-from grader.text import points
-from grader.translations import current, tr, tr_many, translate
+from grader.text.message import chained, joined, msg
+from grader.text.strings import points
+from grader.text.translations import current, tr, tr_many, translate
 
 _TOLERANCE = re.compile(r"\{(?P<name>\w+)(?P<percent>%?)\}")
 #: A line of exercise.yaml in a part: blanks, key, value, perhaps a comment.

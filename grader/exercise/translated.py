@@ -21,8 +21,8 @@ from typing import Any
 
 from grader.errors import ExerciseError
 from grader.exercise.exercise import Exercise
-from grader.translations import ENGLISH, LANGUAGES
-from grader.yaml_file import Keys, Mistake, YamlFile, check_known, expect, read_yaml
+from grader.system.yaml_file import Keys, Mistake, YamlFile, check_known, expect, read_yaml
+from grader.text.translations import ENGLISH, LANGUAGES
 
 OF_ALL = ("title", "task")
 KEYS = (*OF_ALL, "checks", "tolerances")

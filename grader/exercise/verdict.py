@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from numbers import Real
 from typing import Any, Literal
 
-from grader.message import NOTHING, Message, plain_text
-from grader.strict_json import SPARSE
+from grader.system.strict_json import SPARSE
+from grader.text.message import NOTHING, Message, plain_text
 
 Status = Literal["passed", "failed", "not_judged"]
 #: What students see of a check: all of it; all of it, when the exercise is over, and until then

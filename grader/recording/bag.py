@@ -21,7 +21,7 @@ from grader.errors import RecordingError
 from grader.recording.channel import Channel
 from grader.recording.mcap import McapWriter, read_mcap
 from grader.recording.subject import Subject, Trace
-from grader.rosidl.bag_types import BagTypes
+from grader.ros.bag_types import BagTypes
 
 #: Under whichever ROS a run was made: the bag's definitions are those of Jazzy.
 DISTRO = "jazzy"

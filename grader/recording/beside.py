@@ -9,7 +9,7 @@ from typing import Final
 
 from grader.recording.channel import Channel
 from grader.recording.subject import CAST_SCENE, BagMessage, Start, Subject, Trace, load_subject
-from grader.rosidl.bag_types import OF_ROS
+from grader.ros.bag_types import OF_ROS
 
 #: Before the topics of a cast: a scene may have some of the same names.
 PREFIX: Final = "/cast"

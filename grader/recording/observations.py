@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Literal, Self
 
-from grader.strict_json import Bounds, from_json, not_negative
-from grader.text import one_line, without_controls
+from grader.system.strict_json import Bounds, from_json, not_negative
+from grader.text.strings import one_line, without_controls
 
 
 def _in_one_line(text: str) -> str:
@@ -274,9 +274,9 @@ class LintFinding:
             for ever; `waits` - the callback NAME calls NEAR, which waits for another; `same_colour`
             - the colour NAME stands elsewhere, too; `argument` - the field NAME gets the number
             NEAR from this line; `imports` - NAME comes from NEAR; `step` - see
-            `grader.submission.paths`; `unreached` - NEAR's first word was not reached, since NAME
-            was not `true`, `false`, `called` or left behind (`past`), its second; the rest is what
-            the condition's names stood for; `raises` - the exception NAME came to this line;
+            `grader_diagnosis.lint.paths`; `unreached` - NEAR's first word was not reached, since
+            NAME was not `true`, `false`, `called` or left behind (`past`), its second; the rest is
+            what the condition's names stood for; `raises` - the exception NAME came to this line;
             `unspun` - nothing uses the node NAME, a NEAR; `late` - a lambda in a loop uses its
             variable NAME; `cancels` - NAME is a call that cancels something; `overrules` - the else
             of this `if` sets NAME again; `default` - NAME is an argument whose default is a time;

@@ -9,10 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from grader import content, limited, strict_json
 from grader.errors import RecordingError
-from grader.limited import WorkLimits
-from grader.message import Message, msg
 from grader.recording import bag
 from grader.recording.beside import CastKeeper, apart
 from grader.recording.observations import Observations
@@ -47,6 +44,9 @@ from grader.recording.subject import (
     Trace,
     load_subject,
 )
+from grader.system import content, limited, strict_json
+from grader.system.limited import WorkLimits
+from grader.text.message import Message, msg
 
 #: The files that are read, and their most bytes. A minute's usual run is 0.2 MB.
 SIZES = {

@@ -12,11 +12,11 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Final, Literal
 
-from grader.message import Message, msg
 from grader.recording.observations import Observations
 from grader.recording.subject import Start, Trace, load_subject
 from grader.recording.view import Pictures, Pixels
-from grader.strict_json import SPARSE
+from grader.system.strict_json import SPARSE
+from grader.text.message import Message, msg
 
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed", "not_run"]
 Clock = Literal["virtual", "real"]
@@ -128,7 +128,7 @@ class Provenance:
         grader, python, rclpy: versions.
         ros_distro: the ROS 2 release that was sourced; '' where none was.
         submission: its name.
-        submission_sha256: of all its files; see `grader.content`.
+        submission_sha256: of all its files; see `grader.system.content`.
         exercise: its name.
         exercise_sha256: of all that it judges by.
         seed: chose where the varied runs start; None where there are none.

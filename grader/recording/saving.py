@@ -28,13 +28,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from grader import content
 from grader.recording import bag
 from grader.recording.beside import together
 from grader.recording.recording import Recording, Recordings
 from grader.recording.subject import DEFAULT_SCENE, PACKAGE_SCENE, load_subject
-from grader.removal import remove
-from grader.strict_json import OURS, to_json
+from grader.system import content
+from grader.system.removal import remove
+from grader.system.strict_json import OURS, to_json
 
 SCHEMA = "turtlesim-grader/recording/v2"
 NAME = "recording"

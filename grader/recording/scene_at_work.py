@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.errors import SceneFailure
-from grader.message import msg
-from grader.text import shown
+from grader.text.message import msg
+from grader.text.strings import shown
 
 #: What stands in for rclpy's middleware in virtual time.
 STAND_IN: Final = Path(__file__).parents[1] / "run" / "lockstep"

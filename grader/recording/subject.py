@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol
 
-from grader import extensions
 from grader.errors import SubmissionError, UsageError
-from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
 from grader.recording.scene_at_work import at_work
 from grader.recording.view import Pictures, Plane, View
-from grader.strict_json import SPARSE
-from grader.text import place
+from grader.system import extensions
+from grader.system.strict_json import SPARSE
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import place
 
 #: The scene of an exercise that names none.
 DEFAULT_SCENE: Final = "turtlesim"
@@ -164,7 +164,7 @@ class Subject(ABC):
     def definitions_of(self, trace: Trace) -> Mapping[str, str]:
         """The definitions of the ROS types in its bag, and of the types of their fields.
 
-        Those of `grader.rosidl.bag_types` need none.
+        Those of `grader.ros.bag_types` need none.
         """
         return {}
 

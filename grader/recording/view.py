@@ -17,7 +17,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grader.message import NOTHING, Message, Text
+from grader.text.message import NOTHING, Message, Text
 
 Pixels = npt.NDArray[np.uint8]
 Floats = npt.NDArray[np.float64]

@@ -12,7 +12,7 @@ from contextlib import suppress
 from functools import cache
 from typing import Any, Final
 
-from grader.requirements import require
+from grader.system.requirements import require
 
 _LIBRARY: Final = "libzstd.so.1"
 #: zstd's own default, as Python's is.

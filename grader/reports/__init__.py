@@ -9,16 +9,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader import extensions
 from grader.errors import UsageError
-from grader.message import Message
+from grader.exercise.result import error, json_file
+from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.result import Result
+from grader.exercise.result.visible import View
 from grader.reports.beside import Beside
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.result import error, json_file
-from grader.result.error import ErrorResult
-from grader.result.result import Result
-from grader.result.visible import View
+from grader.system import extensions
+from grader.text.message import Message
 
 __all__ = ["ErrorReport", "Format", "Report", "load", "names", "read", "render"]
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 from typing import Any, Final
 
-from grader import text
 from grader.errors import UsageError
-from grader.message import msg
 from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import word
-from grader.translations import tr
+from grader.text import strings as text
+from grader.text.message import msg
+from grader.text.translations import tr
 
 _STAGE = "Checks"
 

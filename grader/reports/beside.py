@@ -7,12 +7,12 @@ from functools import cached_property
 from pathlib import Path
 
 from grader.errors import RecordingError
-from grader.message import Message
+from grader.exercise.result.result import Result
 from grader.recording import reading
 from grader.recording.recording import Recording, Recordings
 from grader.recording.subject import DEFAULT_SCENE
-from grader.result.result import Result
-from grader.text import plain_all
+from grader.text.message import Message
+from grader.text.strings import plain_all
 
 
 class Beside:

@@ -8,12 +8,12 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
-from grader import text
-from grader.message import msg
 from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import WORDS
+from grader.text import strings as text
+from grader.text.message import msg
 
 _BEFORE = ("submission", "exercise", "score", "max_score")
 #: Also the full-width characters of Chinese, Japanese and Korean.

@@ -7,11 +7,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from grader import text
-from grader.message import joined, msg
+from grader.exercise.result.error import ErrorResult
 from grader.reports.wording import points
-from grader.result.error import ErrorResult
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.message import joined, msg
+from grader.text.translations import tr, translate
 
 _TEXT_LIMIT: Final = 4000
 _NOT_YOURS: Final = msg(

@@ -6,12 +6,12 @@ import base64
 import json
 from typing import Any, Final
 
-from grader import text
-from grader.message import msg
 from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.translations import translate
+from grader.text import strings as text
+from grader.text.message import msg
+from grader.text.translations import translate
 
 
 def render(report: Report) -> str:

@@ -10,15 +10,15 @@ import html
 import json
 from typing import Any, Final
 
-from grader import text
+from grader.exercise.result.visible import is_hidden
 from grader.exercise.verdict import Verdict
-from grader.message import msg
 from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
 from grader.reports.report import Report
-from grader.result.visible import is_hidden
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.message import msg
+from grader.text.translations import tr, translate
 
 _OUTPUT_LIMIT = 20_000
 _HIDDEN = {"after_due": "after_due_date", "never": "hidden"}

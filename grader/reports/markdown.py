@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from grader import text
 from grader.exercise.verdict import Verdict
-from grader.message import msg
 from grader.reports import Format, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.message import msg
+from grader.text.translations import tr, translate
 
 _SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
 #: Characters with a meaning in Markdown, anywhere or at the start of a line; a backslash escapes.

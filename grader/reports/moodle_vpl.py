@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Final
 
-from grader import text
 from grader.exercise.verdict import Verdict
-from grader.message import msg
 from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.message import msg
+from grader.text.translations import tr, translate
 
 
 def render(report: Report) -> str:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from grader import text
 from grader.exercise.verdict import Verdict
 from grader.recording.observations import SourceLine
 from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun, Sent
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
 from grader.reports.report import Report
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.translations import tr, translate
 
 
 def of(

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 
-from grader import text
-from grader.diagnosis.diagnosis import Diagnosis
+from grader.exercise.result.diagnosis import Diagnosis
+from grader.exercise.result.result import Result, RunSummary
 from grader.exercise.verdict import Verdict
-from grader.message import Text, msg, plain_text
-from grader.result.result import Result, RunSummary
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.message import Text, msg, plain_text
+from grader.text.translations import tr, translate
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
 _TEXT_LIMIT = 2000

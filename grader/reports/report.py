@@ -8,17 +8,17 @@ from functools import cached_property
 from pathlib import Path
 from typing import Self
 
-from grader import text
+from grader.exercise.result.result import Result
+from grader.exercise.result.visible import View, student_view
 from grader.exercise.verdict import Evidence, Verdict
-from grader.message import NOTHING, Message
 from grader.recording.recording import Recording, Recordings
 from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
 from grader.reports import readable, wording
 from grader.reports.beside import Beside
 from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, points, title_of, where, word
-from grader.result.result import Result
-from grader.result.visible import View, student_view
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.message import NOTHING, Message
+from grader.text.translations import tr, translate
 
 
 @dataclass(frozen=True)

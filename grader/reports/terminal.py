@@ -18,13 +18,13 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.exercise.verdict import Verdict
-from grader.message import msg
 from grader.reports import Format, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
-from grader.text import for_terminal
-from grader.translations import tr, tr_many, translate
+from grader.text.message import msg
+from grader.text.strings import for_terminal
+from grader.text.translations import tr, tr_many, translate
 
 _MARKS = {
     "passed": ("✓", "green"),

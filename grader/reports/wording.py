@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from grader import text
+from grader.exercise.result.result import NotShown, Result, ResultProvenance
 from grader.exercise.verdict import Evidence, Verdict
-from grader.message import in_context, msg
 from grader.recording.recording import Run
-from grader.result.result import NotShown, Result, ResultProvenance
-from grader.translations import number, tr, tr_many, translate
+from grader.text import strings as text
+from grader.text.message import in_context, msg
+from grader.text.translations import number, tr, tr_many, translate
 
 WORDS: Final = {
     "passed": msg("passed"),

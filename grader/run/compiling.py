@@ -23,17 +23,17 @@ from importlib import metadata
 from pathlib import Path
 from typing import Final
 
-from grader import scratch, strict_json
 from grader.errors import GraderFailure
-from grader.message import NOTHING, msg
 from grader.recording.recording import OwnInterfaces
-from grader.removal import remove
-from grader.rosidl import compiler
+from grader.ros import compiler
 from grader.run import handover, run_context
 from grader.run.limits import CpuBudget
 from grader.run.run_context import RunContext
 from grader.run.sandbox.confinement import LANDLOCK, NAMESPACES
 from grader.submission.start import Submission
+from grader.system import scratch, strict_json
+from grader.system.removal import remove
+from grader.text.message import NOTHING, msg
 
 #: The program that compiles.
 PROGRAM: Final = Path(compiler.__file__).with_name("building.py")

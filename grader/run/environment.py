@@ -12,7 +12,7 @@ import site
 from collections.abc import Mapping
 from pathlib import Path
 
-from grader import system
+from grader.system import versions as system
 
 #: Where programs, libraries and packages are found.
 PLACES = (

@@ -15,10 +15,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
-from itertools import islice
 from typing import Any
 
-from grader import linux, strict_json
 from grader.recording.observations import (
     STRANGERS,
     Caught,
@@ -30,8 +28,8 @@ from grader.recording.observations import (
 )
 from grader.run.observe import account, stuck
 from grader.run.observe.files import Frame, SubmissionFiles
-from grader.submission import paths
 from grader.submission.start import Submission
+from grader.system import extensions, linux, strict_json
 
 #: How long a process may take to dump where it is [s]; it has nothing else to do.
 PATIENCE_S = 1.0
@@ -48,8 +46,6 @@ SIGNALS = {
     "Floating point exception": "SIGFPE",
     "Illegal instruction": "SIGILL",
 }
-#: So many calls that were not reached are kept.
-MOST_UNREACHED = 20
 _FATAL = re.compile(r"Fatal Python error: ([\w\- ]{1,40})")
 _THREAD = re.compile(
     r"(?:Current thread|Thread) 0x[0-9a-f]{1,16}.{0,40}\(most recent call first\):"
@@ -152,15 +148,14 @@ def _observations(
     if all(summary[key] is None for key in ("stop", "raised", "returned_s")):
         summary |= _ending(signal, threads, files, ended_s, computes=computes)
     ran = [strict_json.from_json(RanFile, each, STRANGERS) for each in summary.pop("ran")]
-    found = [each for each in submission.lint_findings if each.kind != "step"]
+    found = list(submission.lint_findings)
     for file in ran:
         for at in file.raised:
             text = files.row(str(submission.root / file.file), at.line)["text"]
             place = SourceLine(file.file, at.line, "", text)
             found.append(LintFinding("raises", at.text, "", place))
-    if is_last:  # else more may have run
-        steps = (each for each in submission.lint_findings if each.kind == "step")
-        found += islice(paths.unreached(steps, ran), MOST_UNREACHED)
+    for diagnoser in extensions.load_all(extensions.DIAGNOSES):
+        found = list(diagnoser.in_run(found, ran, is_last))
     observations = Observations.from_json(
         summary | {"is_known": True, "lint_findings": list(map(strict_json.to_json, found))}
     )

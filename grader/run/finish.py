@@ -14,7 +14,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from grader.errors import GraderFailure
-from grader.message import Message, msg
 from grader.recording.beside import apart
 from grader.recording.observations import Observations
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
@@ -25,7 +24,8 @@ from grader.run.limits import LIMITS, size
 from grader.run.processes.started_process import SubmissionProcess
 from grader.scenes.scene import Reason
 from grader.submission.start import Submission
-from grader.text import shown
+from grader.text.message import Message, msg
+from grader.text.strings import shown
 
 NO_OBSERVATIONS = Observations()
 #: Reasons of a scene's after which nothing more will come.

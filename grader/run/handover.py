@@ -14,9 +14,7 @@ from pathlib import Path
 from struct import Struct
 from typing import Any, Self
 
-from grader import strict_json
 from grader.errors import GraderFailure, SceneFailure
-from grader.message import Message, msg
 from grader.recording import bag
 from grader.recording.beside import CastKeeper, together
 from grader.recording.mcap import read_mcap
@@ -24,6 +22,8 @@ from grader.recording.recording import PublishedTopic
 from grader.recording.subject import Start, Subject, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
 from grader.scenes.scene import Limits
+from grader.system import strict_json
+from grader.text.message import Message, msg
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Plan:
         looks_at_package: whether the package around the submission's program is inspected as well.
         inspections: the names of the inspectors that examine a package.
         definitions: the exercise's interfaces: a type -> its definition.
-        cast: its scripted peers, as `grader.cast.script` reads them; None for none.
+        cast: its scripted peers, as `grader.scenes.cast.script` reads them; None for none.
         hears: topics that are recorded besides those that the peers hear.
         own_definitions: a hand-in's interfaces, for a cast alone: nothing imports them.
         arguments: those that the program is started with.
@@ -118,7 +118,7 @@ def leave(
 
     Args:
         published: the topics on which the submission has published: topic -> type.
-        cast: that of the run (`grader.cast.playing`); None for none.
+        cast: that of the run (`grader.scenes.cast.playing`); None for none.
     """
     is_beside = cast is not None and not scene.has_cast
     kept, by = together(trace, cast.trace(trace.ticks) if is_beside else None, scene)

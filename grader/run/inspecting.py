@@ -20,9 +20,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Final
 
-from grader import linux
 from grader.errors import GraderFailure
-from grader.message import Message, msg
 from grader.recording.recording import Outcome, Recording
 from grader.recording.subject import Trace, load_subject
 from grader.run import handover, run_context
@@ -37,6 +35,8 @@ from grader.submission.launched import unlike_launched
 from grader.submission.request import Request
 from grader.submission.start import Submission
 from grader.submission.trace import FAILED, PackageTrace
+from grader.system import linux
+from grader.text.message import Message, msg
 
 #: Called with the simulated time [s], of which none passes here.
 Progress = Callable[[float], None]

@@ -21,7 +21,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Final, NamedTuple
 
-from grader.message import Message, msg
+from grader.text.message import Message, msg
 
 MIB, GIB = 1 << 20, 1 << 30
 

@@ -15,15 +15,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader.message import NOTHING, Message
 from grader.run.limits import CpuBudget
-from grader.scratch import make_folder
 from grader.submission import reader
 from grader.submission.private_copy import PrivateCopy, copy_privately, install
 from grader.submission.reader import Marks
 from grader.submission.request import LaunchAsked, Request
 from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Submission
+from grader.system.scratch import make_folder
+from grader.text.message import NOTHING, Message
 
 if TYPE_CHECKING:
     from grader.submission.trace import PackageTrace

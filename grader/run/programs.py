@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from grader.message import Message
 from grader.recording.observations import Observations
 from grader.recording.recording import LONGEST_OUTPUT, Clock, Outcome, ProgramRun
 from grader.run.evidence import EvidencePage
@@ -14,7 +13,8 @@ from grader.run.finish import Ending, ended
 from grader.run.processes.started_process import SubmissionProcess
 from grader.submission.program import Program
 from grader.submission.start import Submission
-from grader.text import plain
+from grader.text.message import Message
+from grader.text.strings import plain
 
 
 class RunningProgram(NamedTuple):

@@ -11,13 +11,9 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from grader import linux
-from grader.cast import script
 from grader.errors import GraderFailure, NotNow, SceneFailure
-from grader.message import Message
 from grader.recording.observations import Observations
 from grader.recording.recording import Recording
-from grader.requirements import missing_ros
 from grader.run import compiling, fork_servers, handover, run_context
 from grader.run.environment import student_environment
 from grader.run.evidence import EvidencePage
@@ -34,9 +30,13 @@ from grader.run.simulator_process import (
     start_simulator,
 )
 from grader.scenes import load_scene
+from grader.scenes.cast import script
 from grader.scenes.scene import Introduction, Reason
 from grader.submission.program import Program
 from grader.submission.start import Submission
+from grader.system import linux
+from grader.system.requirements import missing_ros
+from grader.text.message import Message
 
 #: Called with the simulated time [s] now and then.
 Progress = Callable[[float], None]

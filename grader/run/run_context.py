@@ -9,7 +9,6 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader import scratch
 from grader.recording.recording import MOST_PROGRAMS
 from grader.run.environment import environment
 from grader.run.limits import CpuBudget
@@ -19,6 +18,7 @@ from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
 from grader.submission.program import Script
 from grader.submission.start import Submission
+from grader.system import scratch
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any, Final, Protocol
 
 from grader.errors import GraderFailure, SceneFailure
-from grader.message import Message, msg
 from grader.recording.recording import Clock
 from grader.run.environment import simulator_environment
 from grader.run.handover import Plan
@@ -29,6 +28,7 @@ from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import StartedProcess
 from grader.run.run_context import RunContext
 from grader.run.simulator.process import send_message
+from grader.text.message import Message, msg
 
 SimulatorMessage = dict[str, Any]
 #: News of this time is passed on together [s]: 31 times a second.

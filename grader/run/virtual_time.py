@@ -16,9 +16,7 @@ from dataclasses import asdict, replace
 from itertools import chain
 from typing import Any
 
-from grader import linux
 from grader.errors import GraderFailure, SceneFailure
-from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Outcome, Recording
 from grader.run import fork_servers, handover, real_time, run_context
 from grader.run.environment import virtual_environment
@@ -49,6 +47,8 @@ from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
 from grader.submission.program import Program
 from grader.submission.start import Submission
+from grader.system import linux
+from grader.text.message import NOTHING, Message, msg
 
 WAITS_FOR_EVER = msg("every thread of the node waits for something that will not come")
 STUCK = msg("the node waits for something that can no longer happen")

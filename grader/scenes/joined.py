@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import turtlesim_py
 from grader.recording.playback import JudgedCheck, Moment, Playback
-from grader.translations import catalogue, current, tr
+from grader.text.translations import catalogue, current, tr
 
 #: Modules that several pages share: of the page that plays runs, and of the live page.
 PLAYER: Final = Path(__file__).parent / "turtlesim" / "player" / "page"

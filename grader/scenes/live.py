@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from grader.recording.playback import JudgedCheck
-from grader.translations import current
+from grader.text.translations import current
 
 if TYPE_CHECKING:  # few want a page
     from turtlesim_py.live.feed import Deliver

@@ -16,10 +16,10 @@ from pathlib import PurePath
 from typing import Any, ClassVar, Final, Literal, get_args
 
 from grader.errors import SceneFailure
-from grader.message import Message, msg
 from grader.recording.scene_at_work import LONGEST_WORDS
 from grader.recording.subject import Start, Subject, Trace
 from grader.scenes.live import LivePage
+from grader.text.message import Message, msg
 
 #: Why a run is over: it came to rest, it was seen to its end, nothing ever moved, the submission
 #: is gone, time is up.
@@ -74,7 +74,7 @@ class Hooks:
         has_unread: whether anything has arrived; while nothing has, a node need not be served.
         send_news: receives after each tick what viewers see, as plain data for the live page of
             the scene (`grader.scenes.live`); None where there is no audience.
-        cast: the exercise's, at work (`grader.cast.playing.Playing`); None where it has none.
+        cast: the exercise's, at work (`grader.scenes.cast.playing.Playing`), or None.
     """
 
     has_unread: Callable[[], bool] = lambda: True

@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import IO, Final
 
 from grader.errors import SubmissionError
-from grader.message import NOTHING, Message, as_message, msg, plain_text
 from grader.submission.safe_members import (
     DAMAGED,
     LINK,
@@ -35,7 +34,8 @@ from grader.submission.safe_members import (
     refuse,
     write,
 )
-from grader.text import shown
+from grader.text.message import NOTHING, Message, as_message, msg, plain_text
+from grader.text.strings import shown
 
 # damage as an OSError: bz2's and gzip's have no number, EINVAL is a position before the file's
 # start; the others are members in each other's way

@@ -13,14 +13,14 @@ from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import Final
 
-from grader.message import Message, msg
 from grader.submission import safe_files
 from grader.submission.folder import SubmissionFolder
 from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.program import EntryPoint, Program
 from grader.submission.set_ups import PackageFolder
-from grader.text import listed, shown
+from grader.text.message import Message, msg
+from grader.text.strings import listed, shown
 
 _NOT_BUILT: Final = msg("colcon would not build this: {why}")
 _NOT_FOUND: Final = msg("ros2 run would not find this: {why}")

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import SubmissionError
-from grader.message import Message, msg, msg_many
 from grader.submission.folder import SubmissionFolder, files_below, is_passed_by
 from grader.submission.imports import read_imports
 from grader.submission.interfaces import TWICE
@@ -18,7 +17,8 @@ from grader.submission.python_source import read_source
 from grader.submission.request import USUAL_NAME
 from grader.submission.roles import is_among, roles_in
 from grader.submission.set_ups import Executable, PackageFolder, read_package
-from grader.text import listed, nearest, shown
+from grader.text.message import Message, msg, msg_many
+from grader.text.strings import listed, nearest, shown
 
 if TYPE_CHECKING:
     from grader.recording.subject import Role

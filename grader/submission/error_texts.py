@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from grader import text
-from grader.message import Message, msg
 from grader.submission.trace import Obstacle
+from grader.text import strings as text
+from grader.text.message import Message, msg
 
 
 def how_it_ends(file: str, problem: Obstacle) -> Message:

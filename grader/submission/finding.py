@@ -21,7 +21,6 @@ from sys import stdlib_module_names
 from typing import TYPE_CHECKING
 
 from grader.errors import SubmissionError, UsageError
-from grader.message import Message, joined, msg
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
     Packages,
@@ -60,7 +59,8 @@ from grader.submission.set_ups import (
 )
 from grader.submission.start import Submission
 from grader.submission.unpacking import opened
-from grader.text import listed, nearest, shown
+from grader.text.message import Message, joined, msg
+from grader.text.strings import listed, nearest, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection

@@ -11,10 +11,10 @@ from pathlib import Path, PurePath
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.message import msg
 from grader.submission import safe_files
 from grader.submission.request import Request
-from grader.text import shown
+from grader.text.message import msg
+from grader.text.strings import shown
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
 #: Errors of one file, and not of the machine.

@@ -14,7 +14,7 @@ from grader.submission.folder import read_bounded
 from grader.submission.program import Program, Script
 from grader.submission.python_source import parse
 from grader.submission.start import Imports
-from grader.text import shown
+from grader.text.strings import shown
 
 #: What runs together with the statement that it stands in, once and in any case.
 _ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)

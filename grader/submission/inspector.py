@@ -10,8 +10,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from grader.message import Message
 from grader.submission.trace import PackageTrace
+from grader.text.message import Message
 
 if TYPE_CHECKING:  # a confined process has none of the recording
     from grader.recording.subject import Trace
@@ -46,7 +46,7 @@ class Inspector(ABC):
 
 def installed() -> Iterator[Inspector]:
     """Yield all inspectors that are installed."""
-    from grader import extensions
+    from grader.system import extensions
 
     for name in extensions.points(extensions.INSPECTIONS):
         yield extensions.load(extensions.INSPECTIONS, name)
@@ -58,6 +58,6 @@ def places(names: Sequence[str]) -> list[str]:
     Raises:
         KeyError: one is not installed.
     """
-    from grader import extensions
+    from grader.system import extensions
 
     return [extensions.find(extensions.INSPECTIONS, name).value for name in names]

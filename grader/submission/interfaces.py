@@ -10,15 +10,15 @@ from itertools import takewhile, zip_longest
 from pathlib import Path, PurePath
 from typing import Any, Final, NamedTuple
 
-from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
-from grader.rosidl.bag_types import description
-from grader.rosidl.fields import field_lines, readable
+from grader.ros.bag_types import description
+from grader.ros.fields import field_lines, readable
 from grader.submission.examining import cmake
 from grader.submission.examining.known import DESKTOP
 from grader.submission.folder import SubmissionFolder, is_passed_by, read_bounded
 from grader.submission.manifest import FILE, Manifest, read_manifest
-from grader.text import nearest, shown
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import nearest, shown
 
 KINDS: Final = ("msg", "srv", "action")
 #: So many definitions are read, and so much of them as JSON: an argument of a process holds it.
@@ -87,7 +87,7 @@ def completed(found: OwnInterfaces, theirs: Mapping[str, str]) -> OwnInterfaces:
     texts = {**others, **found.texts}
     if not found.texts:
         return replace(found, texts=texts)
-    from grader.rosidl.definitions import Definitions  # here: most submissions have none
+    from grader.ros.definitions import Definitions  # here: most submissions have none
 
     own = Definitions(texts)
     faults = {**found.faults, **{name: error.message for name, error in own.errors.items()}}

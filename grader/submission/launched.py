@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from grader import text
-from grader.message import NOTHING, Message, Text, joined, msg, msg_many, plain_text
 from grader.recording.recording import NOT_THERE
 from grader.recording.view import Cell, Table
 from grader.submission.error_texts import described, placed
 from grader.submission.program import EntryPoint, Script
 from grader.submission.trace import PREFIX, Lacking, LaunchedNode, LaunchFile, PackageTrace, Skipped
+from grader.text import strings as text
+from grader.text.message import NOTHING, Message, Text, joined, msg, msg_many, plain_text
 
 HEADINGS = (
     *(msg("Package"), msg("Program"), msg("Name")),

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.message import Message, joined, msg
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import CMAKE, SubmissionFolder
 from grader.submission.program import WITH_THE_LAUNCH, Program, Script
 from grader.submission.request import LaunchAsked
 from grader.submission.roles import is_among
-from grader.text import listed, shown
+from grader.text.message import Message, joined, msg
+from grader.text.strings import listed, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection, LaunchOrder

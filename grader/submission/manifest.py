@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from grader.message import NOTHING, Message, msg
 from grader.submission.folder import read_bounded
-from grader.text import shown
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import shown
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

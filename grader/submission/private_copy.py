@@ -26,7 +26,6 @@ from sys import stdlib_module_names
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.message import Message, msg
 from grader.submission import safe_files
 from grader.submission.folder import (
     MAX_BYTES,
@@ -36,7 +35,8 @@ from grader.submission.folder import (
     is_junk,
     too_many,
 )
-from grader.text import listed, shown
+from grader.text.message import Message, msg
+from grader.text.strings import listed, shown
 
 if TYPE_CHECKING:
     from grader.submission.answer import SetUp

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final
 
-from grader.strict_json import STRANGERS
+from grader.system.strict_json import STRANGERS
 
 #: In place of the number of a program that is waited for: with the launch; nobody knows when.
 WITH_THE_LAUNCH: Final = -1

@@ -12,17 +12,17 @@ import io
 import re
 import tokenize
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Final
 
-from grader.message import NOTHING, Message, joined, msg
 from grader.submission.folder import read_bounded
-from grader.submission.scopes import scope_nodes
-from grader.text import shown
+from grader.text.message import NOTHING, Message, joined, msg
+from grader.text.strings import shown
 
+Function = ast.FunctionDef | ast.AsyncFunctionDef
 _NAMES_UNSEEN: Final = {"exec", "globals", "locals", "setattr", "vars"}  # may define any name
 _UNPARSED_MAIN: Final = re.compile(rb"^(async\s+)?def\s+main\b", re.MULTILINE)
 _SAVE: Final = msg("save it as UTF-8")
@@ -45,6 +45,24 @@ class PythonSource:
     def surely_lacks(self, name: str) -> bool:
         """Whether an import of the file could not define this name."""
         return self.parses and not self.open_ended and name not in self.names
+
+
+def last(called: ast.AST) -> str:
+    """'drive' of bot.drive; '' for what has no name."""
+    match called:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
+def scope_nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a scope itself, without those in its functions and classes."""
+    waiting = list(ast.iter_child_nodes(node))
+    while waiting:
+        each = waiting.pop()
+        yield each
+        if not isinstance(each, Function | ast.ClassDef | ast.Lambda):
+            waiting += ast.iter_child_nodes(each)
 
 
 @cache  # what a file imports, has on the graph and may do wrong is asked of one tree

@@ -1,8 +1,8 @@
 """Reads a submission in a copy of this process with limits of time and memory.
 
 A file can be made so that its parser uses all memory, or crashes. So no submission is read in this
-process: each is read by a copy (`grader.limited`), which gives one answer, a line of strict JSON,
-and reaches nothing else.
+process: each is read by a copy (`grader.system.limited`), which gives one answer, a line of strict
+JSON, and reaches nothing else.
 """
 
 from __future__ import annotations
@@ -16,16 +16,13 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Self
 
-from grader import limited, strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
-from grader.message import NOTHING, Message, msg
 from grader.recording.recording import OwnInterfaces
 from grader.recording.subject import Role
 from grader.submission import folder, python_source, whole
 from grader.submission.finding import find, find_evaluated, may_be_node
 from grader.submission.imports import read_imports
 from grader.submission.interfaces import completed, undeclared
-from grader.submission.lint import lint
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
 from grader.submission.refusals import readable
@@ -34,7 +31,9 @@ from grader.submission.roles import roles_in
 from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Imports, Submission
 from grader.submission.unpacking import opened
-from grader.text import clip, shown
+from grader.system import extensions, limited, strict_json
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import clip, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection
@@ -175,6 +174,7 @@ def read_evaluated(
 
 
 def _in_copy(found: Callable[[], Submission | Unevaluated], name: str) -> Submission | Unevaluated:
+    extensions.load_all(extensions.DIAGNOSES)  # the copy could not
     try:
         answer = decoded(limited.call(lambda: _answered(found, name), LIMITS))
     except limited.LimitHit as hit:
@@ -238,7 +238,7 @@ def _answered(found: Callable[[], Submission | Unevaluated], name: str) -> bytes
 def _be_confined() -> None:
     import resource  # here: Windows has none
 
-    from grader import linux
+    from grader.system import linux
 
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in range(3):
@@ -296,7 +296,9 @@ def _with_its_source(found: Submission, only: Path | None, request: Request) -> 
     imports = read_imports(found.root, found.programs, only, found.beside)
     files = [each for each in imports.files if each.is_relative_to(found.root)]
     refused = python_source.byte_faults(files, found.root)
-    notes, shows = [*refused, *found.notes], lint(found.root, files)
+    notes = [*refused, *found.notes]
+    diagnosers = extensions.load_all(extensions.DIAGNOSES)
+    shows = tuple(finding for each in diagnosers for finding in each.lint(found.root, files))
     defined = completed(found.interfaces, request.interfaces)
     known = {*imports.surely, *imports.perhaps} & defined.packages
     interfaces = defined if known else OwnInterfaces()

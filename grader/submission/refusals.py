@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import SubmissionError, UsageError
-from grader.message import Message, msg
 from grader.submission.folder import HAND_IN, MAX_ENTRIES, UNREADABLE, SubmissionFolder
-from grader.text import listed, nearest, shown
+from grader.text.message import Message, msg
+from grader.text.strings import listed, nearest, shown
 
 PACKAGE: Final = msg("Hand in the folder of your ROS 2 package, or a .zip of it.")
 CPP: Final = {".cpp", ".cc", ".cxx", ".c", ".hpp", ".h"}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
-from grader.message import Message, msg
+from grader.text.message import Message, msg
 
 if TYPE_CHECKING:
     from grader.recording.subject import Role

@@ -10,8 +10,7 @@ from typing import Final
 
 from grader.recording.subject import Role, RoleKind
 from grader.submission.folder import read_bounded
-from grader.submission.python_source import parse
-from grader.submission.scopes import last
+from grader.submission.python_source import last, parse
 
 #: What makes an end: which one, and where it gets its name, the place and the keyword.
 _MADE_BY: Final[Mapping[str, tuple[RoleKind, int, str]]] = {

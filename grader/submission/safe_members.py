@@ -17,7 +17,6 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from grader.errors import SubmissionError
-from grader.message import Message, msg
 from grader.submission.folder import (
     BEGINNING_BYTES,
     MAX_BYTES,
@@ -27,7 +26,8 @@ from grader.submission.folder import (
     is_source,
     marks_generated,
 )
-from grader.text import shown
+from grader.text.message import Message, msg
+from grader.text.strings import shown
 
 MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
 MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.message import NOTHING, Message, msg
 from grader.submission.folder import SETUP_FILES, SubmissionFolder, read_bounded
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import read_manifest
 from grader.submission.program import EntryPoint, Script
-from grader.text import shown
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import SetUp, SetUpFacts

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from grader.message import Message
 from grader.recording.observations import LintFinding
 from grader.recording.recording import OwnInterfaces
-from grader.strict_json import UNSTORED
 from grader.submission.private_copy import PrivateCopy
 from grader.submission.program import BASE, OF_THE_RUN, PREFIX, EntryPoint, Program, Script
+from grader.system.strict_json import UNSTORED
+from grader.text.message import Message
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar, Final
 
-from grader.message import Message, msg
 from grader.recording.channel import Channel
 from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
 from grader.recording.view import Part, View
-from grader.rosidl.cdr import string, string_of
+from grader.ros.cdr import string, string_of
 from grader.submission import inspector, launched
 from grader.submission.trace import PackageTrace, decode, encode
-from grader.translations import tr
+from grader.text.message import Message, msg
+from grader.text.translations import tr
 
 _TOPIC: Final = "/package"
 _TYPE: Final = "std_msgs/msg/String"

@@ -12,8 +12,8 @@ import json
 from dataclasses import dataclass
 from typing import Annotated, Self
 
-from grader.message import Message
-from grader.strict_json import STRANGERS, Made, from_json, to_json
+from grader.system.strict_json import STRANGERS, Made, from_json, to_json
+from grader.text.message import Message
 
 #: A description may have so many characters; all of a trace so many bytes.
 LONGEST_TEXT = 2_000_000

@@ -24,7 +24,7 @@ from grader.submission.folder import (
 from grader.submission.refusals import CPP, PACKAGE, advice, missing
 from grader.submission.request import Request
 from grader.submission.safe_members import Budget
-from grader.text import listed, shown
+from grader.text.strings import listed, shown
 
 #: A zip of a course's server, in it the student's own, in that a zip once more by mistake.
 MAX_LEVELS: Final = 3

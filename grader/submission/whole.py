@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.message import msg, msg_many
 from grader.submission.folder import CMAKE, SETUP_FILES
 from grader.submission.manifest import FILE, read_manifest
 from grader.submission.refusals import PACKAGE
 from grader.submission.request import Request
 from grader.submission.start import Submission
 from grader.submission.unpacking import opened
-from grader.text import listed, nearest, shown
+from grader.text.message import msg, msg_many
+from grader.text.strings import listed, nearest, shown
 
 _MARKS: Final = (FILE, CMAKE, *SETUP_FILES)
 

@@ -7,23 +7,23 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 
-from grader.diagnosis.diagnose import diagnose
 from grader.exercise.asking import Answers, NoFinding, NotReached
 from grader.exercise.check import answers, judge_by
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import describe
+from grader.exercise.result.diagnosis import diagnose
 from grader.exercise.verdict import Evidence, Finding, Verdict
 from grader.grading import gather, run_all, runner
 from grader.judging import AnyPath
-from grader.message import Message, msg, plain_text
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.subject import CAST_SCENE, Start, Trace, load_subject
 from grader.run.opening import open_submission
-from grader.scratch import make_folder
+from grader.system.scratch import make_folder
 from grader.testing.examination import Examination, Fault, Problem, Trial
 from grader.testing.extensions import changed_in_a_bag
 from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
+from grader.text.message import Message, msg, plain_text
 
 #: Called after each run with the number of finished runs, that of all, and the solution's name.
 Progress = Callable[[int, int, str], None]
@@ -174,7 +174,7 @@ def _wrong_first_line(trial: Trial, recordings: Recordings, exercise: Exercise) 
     expected = trial.solution.first_line
     if not expected:
         return
-    found = diagnose(recordings, trial.verdicts, exercise.peers_have)
+    found = diagnose(exercise, recordings, trial.verdicts)
     line = "" if found is None else str(found.cause)
     if found is not None and found.place is not None:
         line += f" ({found.place.file}, line {found.place.line})"

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from grader.exercise.verdict import Verdict
-from grader.message import Message, joined, msg
 from grader.testing.solutions import Solution
-from grader.text import listed
+from grader.text.message import Message, joined, msg
+from grader.text.strings import listed
 
 SCHEMA = "turtlesim-grader/examination/v1"
 

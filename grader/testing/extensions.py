@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grader.errors import UsageError
+from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.result import Result, RunSummary
 from grader.exercise.verdict import Verdict
-from grader.message import NOTHING, Message, msg, plain_text
 from grader.recording import bag
 from grader.recording.mcap import read_mcap
 from grader.recording.subject import Subject, Trace, load_subject
 from grader.reports import ErrorReport, Report, load
 from grader.reports.beside import Beside
-from grader.result.error import ErrorResult
-from grader.result.result import Result, RunSummary
+from grader.text.message import NOTHING, Message, msg, plain_text
 
 
 def check_scene(name: str, setting: str = "") -> list[Message]:

@@ -41,8 +41,8 @@ from typing import Any, Literal
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
-from grader.message import reason
-from grader.yaml_file import Keys, Mistake, read_yaml
+from grader.system.yaml_file import Keys, Mistake, read_yaml
+from grader.text.message import reason
 
 FILE_NAME = "mutants.yaml"
 #: What is left of a check's points: a share from 0 to 1, or some of them.

@@ -12,7 +12,6 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from grader.message import Message, msg, plain_text
 from grader.submission import trace
 from grader.submission.examining.examination import Examination
 from grader.submission.examining.steps import Ended, attempt, open_account, step
@@ -25,6 +24,7 @@ from grader.submission.trace import (
     PackageTrace,
     Varied,
 )
+from grader.text.message import Message, msg, plain_text
 from grader_robots.inspection import files, meshes
 
 if TYPE_CHECKING:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from grader.message import NOTHING, plain_text
 from grader.recording.subject import Trace
 from grader.submission.trace import (
     Description,
@@ -22,6 +21,7 @@ from grader.submission.trace import (
     Setup,
     Varied,
 )
+from grader.text.message import NOTHING, plain_text
 
 _SETUP: Final = Setup("", "", "", "", NOTHING, (), None, (), (), (), "", (), (), ())
 _LAUNCH: Final = LaunchFile("", None, (), (), (), (), (), (), (), "")

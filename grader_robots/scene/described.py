@@ -8,14 +8,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from grader.message import NOTHING, Message, joined, msg
 from grader.recording.view import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
 from grader.submission.trace import Description, PackageTrace
+from grader.text.message import NOTHING, Message, joined, msg
+from grader_robots.robot_py.kinematics import forward, joint_transform, tree
+from grader_robots.robot_py.model import Model
+from grader_robots.robot_py.urdf import parse
 from grader_robots.scene import shapes
 from grader_robots.scene.shapes import MOST_NODES, descend, is_finite, name_of, named, placing
-from robot_py.kinematics import forward, joint_transform, tree
-from robot_py.model import Model
-from robot_py.urdf import parse
 
 _MOST_LINKS = 400
 _LARGEST = 1e9

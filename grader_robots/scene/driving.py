@@ -10,8 +10,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from grader.recording.subject import Trace
-from grader.rosidl.cdr import string
-from grader.rosidl.messages import serialise
+from grader.ros.cdr import string
+from grader.ros.messages import serialise
+from grader_robots.robot_py.model import Vector
+from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene.trace import (
     DESCRIPTION,
     JOINT_STATES,
@@ -21,8 +23,6 @@ from grader_robots.scene.trace import (
     RobotRecorder,
     RobotTrace,
 )
-from robot_py.model import Vector
-from robot_py.robot_state import Placed
 
 #: When a run begins, on its clock.
 EPOCH_NS = 1_750_000_000_000_000_000
@@ -63,7 +63,7 @@ def joint_state(stamp_ns: int, names: Sequence[str], positions: Sequence[float])
 
 def tf(*placed: Placed, topic: str = TF) -> Said:
     """A message on /tf, or another topic."""
-    from robot_py.robot_state_publisher import tf_message
+    from grader_robots.robot_py.robot_state_publisher import tf_message
 
     return topic, serialise(tf_message(placed))
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
-from grader.message import NOTHING, Message, Text, joined, listed, msg
 from grader.recording.view import Tree, TreeNode
+from grader.text.message import NOTHING, Message, Text, joined, listed, msg
 from grader_robots.scene.decoding import Transform
 from grader_robots.scene.motion import ODOM, bare
 from grader_robots.scene.shapes import MOST_NODES, descend, name_of, named

@@ -9,7 +9,6 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from grader.message import NOTHING, Message, msg
 from grader.recording.channel import Channel
 from grader.recording.subject import (
     BagMessage,
@@ -19,10 +18,11 @@ from grader.recording.subject import (
 )
 from grader.recording.view import Pictures, View
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
-from grader.translations import tr
+from grader.text.message import NOTHING, Message, msg
+from grader.text.translations import tr
+from grader_robots.robot_py.robot_state import RefusedDescription, Robot
 from grader_robots.scene import driving, trace, view
 from grader_robots.scene.trace import DESCRIPTION, JOINT_STATES, TF, TF_STATIC, TOPICS, RobotTrace
-from robot_py.robot_state import RefusedDescription, Robot
 
 #: What the scene's node publishes and listens to, by name and type.
 ENDPOINTS: Final = (

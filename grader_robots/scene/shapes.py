@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from grader import text
-from grader.message import Message, joined, msg, msg_many
 from grader.recording.view import Floats, Placing, Shape, Solid, SolidFrame
-from robot_py.kinematics import matrix, quaternion, translation
-from robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual
+from grader.text import strings as text
+from grader.text.message import Message, joined, msg, msg_many
+from grader_robots.robot_py.kinematics import matrix, quaternion, translation
+from grader_robots.robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual
 
 #: A page has no more shapes, and no more triangles of meshes.
 MOST_SHAPES, MOST_TRIANGLES = 400, 8000

@@ -10,9 +10,10 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from grader.message import Message
-from grader.rosidl.messages import serialise
+from grader.ros.messages import serialise
 from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Simulation, arrived
+from grader.text.message import Message
+from grader_robots.robot_py.robot_state_publisher import LATCHED, tf_message
 from grader_robots.scene.trace import (
     DESCRIPTION,
     JOINT_STATES,
@@ -21,7 +22,6 @@ from grader_robots.scene.trace import (
     RobotRecorder,
     RobotTrace,
 )
-from robot_py.robot_state_publisher import LATCHED, tf_message
 
 NAME = "robot_state_publisher"
 #: As many as a submission may send between two ticks; the original keeps 5, and is never late.

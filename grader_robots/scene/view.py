@@ -12,8 +12,6 @@ from collections.abc import Iterator
 import numpy as np
 from PIL import Image, ImageDraw
 
-from grader import text
-from grader.message import Message, msg
 from grader.recording.view import (
     Curve,
     Floats,
@@ -26,13 +24,15 @@ from grader.recording.view import (
     Track,
     View,
 )
+from grader.text import strings as text
+from grader.text.message import Message, msg
+from grader_robots.robot_py.model import Model
 from grader_robots.scene import shapes
 from grader_robots.scene.decoding import Transform
 from grader_robots.scene.frames import Hung, below, hung, tree
 from grader_robots.scene.motion import ODOM, JointMotion, Odometry, fitted, joints, odometry
 from grader_robots.scene.shapes import is_finite, name_of, named, transform
 from grader_robots.scene.trace import TICK_NS, RobotTrace
-from robot_py.model import Model
 
 #: Ten metres square, the origin of `odom` in the middle.
 PLANE = Plane(size_px=500, metre_px=50.0, size_m=10.0, origin_m=-5.0)

@@ -26,7 +26,7 @@ from markdown_it import MarkdownIt
 import grader
 from grader import cli, testing
 from grader.exercise.loading import load_exercise
-from grader.text import points
+from grader.text.strings import points
 from tests.browser import BROWSER, open_browser
 from tests.hand_ins import SUBMISSIONS
 from turtlesim_py import scenario

@@ -23,7 +23,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
-from grader import linux
+from grader.system import linux
 from tests.attacks import bystander, handed_in, levels, runners
 from tests.attacks.attacks import ATTACKS, EXERCISES, MOVES
 

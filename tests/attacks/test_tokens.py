@@ -5,7 +5,7 @@ import pytest
 from tests.attacks.attacks import ATTACKS, MOVES
 from tests.attacks.handed_in import folder
 from tests.attacks.test_one_of_each_kind import SECRET, TOKENS
-from tests.grader.course.machine import Machine, scripts
+from tests.grader_class.course.machine import Machine, scripts
 
 
 @pytest.mark.more("`grader run` alone, in test_one_of_each_kind")

@@ -12,7 +12,7 @@ BATCH = ROOT / "examples" / "batch"
 
 def test_the_workflow_has_its_actions_pinned():
     used = re.findall(r"uses: (\S+)", (BATCH / "github" / "grade-class.yml").read_text())
-    (template,) = (ROOT / "grader" / "course" / "templates" / "github").rglob("grade.yml")
+    (template,) = (ROOT / "grader_class" / "course" / "templates" / "github").rglob("grade.yml")
     known = template.read_text()
     assert used
     assert [action for action in used if f"uses: {action} " not in known] == []

@@ -13,7 +13,7 @@ from grader.errors import (
     SubmissionError,
     Whose,
 )
-from grader.message import msg, plain_text
+from grader.text.message import msg, plain_text
 
 
 def kinds():

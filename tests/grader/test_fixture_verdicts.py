@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from grader.diagnosis.diagnosis import CHECK
+from grader.exercise.result.diagnosis import CHECK
 from grader.scenes.turtlesim.interfaces import adapted
 from tests import archive, runs
 from tests.runs import CHALLENGE, MUTANTS, REFERENCE

@@ -13,9 +13,9 @@ import psutil
 import pytest
 
 import grader
-from grader import content
 from grader.errors import ExerciseError, GraderFailure, UsageError
 from grader.run import fork_servers
+from grader.system import content
 from tests.tiers import others_are_more
 
 ROOT = Path(__file__).parents[2]

@@ -8,19 +8,19 @@ from pathlib import Path
 import pytest
 
 from grader import grading
-from grader.diagnosis.diagnose import diagnose
+from grader.exercise.result.result import Result
 from grader.exercise.verdict import Verdict
-from grader.message import msg, plain_text
 from grader.recording.recording import OwnInterfaces, Recordings
-from grader.result.result import Result
 from grader.run import virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
+from grader.text.message import msg, plain_text
+from grader_diagnosis.diagnose import diagnose
 from tests import hand_ins, runs
 from tests.docs.test_examples import environment_with
-from tests.grader.diagnosis.cases import expect_said
 from tests.grader.testing import exercises
+from tests.grader_diagnosis.cases import expect_said
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 

@@ -13,9 +13,9 @@ from unittest.mock import patch
 
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.exercise.result.result import Result
 from grader.judging import judge
 from grader.recording.recording import Recording, Recordings, Run
-from grader.result.result import Result
 from grader.submission import inspector
 from grader.submission.answer import Inspection, decode
 from grader.submission.examining import steps

@@ -12,7 +12,7 @@ from setuptools import Distribution
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError
 
-from grader.rosidl import building
+from grader.ros import building
 from interfaces import build
 
 #: The build forks; a worker of pytest-xdist has a thread.

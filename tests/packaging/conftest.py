@@ -17,9 +17,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # Everything that an installation is made of.
 SOURCES = (
-    *("LICENSE", "MANIFEST.in", "README.md", "grader", "grader_robots", "interfaces", "launch"),
-    *("package.xml", "pyproject.toml", "robot_py", "setup.py", "tf2", "turtlesim_challenge"),
-    "turtlesim_py",
+    *("LICENSE", "MANIFEST.in", "README.md", "grader", "grader_class", "grader_diagnosis"),
+    *("grader_robots", "interfaces", "launch", "package.xml", "pyproject.toml", "setup.py", "tf2"),
+    *("turtlesim_challenge", "turtlesim_py"),
 )
 
 STARTED = "Starting turtlesim with node name /turtlesim"

@@ -52,7 +52,7 @@ def test_programs_run_from_the_workspace(workspace, ros2_run, run_until_started,
     for package, program in (
         ("turtlesim_challenge", "turtle_controller"),
         ("grader", "grader"),
-        ("robot_py", "robot_state_publisher"),
+        ("grader_robots", "robot_state_publisher"),
         ("turtlesim_py", "turtlesim_node"),
     ):
         assert ros2_run(package, program, env).is_relative_to(workspace.install)

@@ -19,8 +19,8 @@ PROGRAMS = [
     ("turtlesim_py", "turtlesim_node"),
     ("turtlesim_challenge", "turtle_controller"),
     ("grader", "grader"),
-    ("robot_py", "robot_state_publisher"),
-    ("robot_py", "joint_state_publisher"),
+    ("grader_robots", "robot_state_publisher"),
+    ("grader_robots", "joint_state_publisher"),
 ]
 without_ros = pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="ROS has its own")
 #: The tutorials' `ros2 run turtlesim ...`.
@@ -80,7 +80,7 @@ def test_programs_get_their_arguments(ros2_run, shell):
 
 
 @pytest.mark.parametrize(
-    "package", ["turtlesim_py", "turtlesim_challenge", "grader", "grader_robots", "robot_py"]
+    "package", ["turtlesim_py", "turtlesim_challenge", "grader", "grader_robots"]
 )
 def test_each_package_has_a_manifest_with_its_name_and_version(package):
     manifest = Path(sys.prefix, "share", package, "package.xml").read_text()

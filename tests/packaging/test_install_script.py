@@ -16,7 +16,7 @@ PYTHON = str(Path(sys.executable).resolve())
 JAZZY = "pip ./interfaces/jazzy"
 ALL = "pip . ./interfaces/jazzy"
 #: Asks what is missing.
-COMPILER = "grader/rosidl/compiler.py"
+COMPILER = "grader/ros/compiler.py"
 #: Answers as the Python of .venv does, and notes what it was asked.
 VENV_PYTHON = f"""\
 [ "$*" = "-c " ] || echo "$*" >>calls

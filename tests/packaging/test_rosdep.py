@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from grader.reports import names
-from grader.requirements import OPTIONAL
+from grader.system.requirements import OPTIONAL
 from tests.programs import ran
 
 from .conftest import ROOT
@@ -66,8 +66,8 @@ def test_package_xml_asks_for_what_pip_is_asked_for():
 
 
 MANIFESTS = {
-    "package.xml": ["turtlesim_py", "turtlesim_challenge", "grader", "grader_robots", "robot_py"],
-    **{f"{name}/package.xml": [name] for name in ("grader", "grader_robots", "robot_py")},
+    "package.xml": ["turtlesim_py", "turtlesim_challenge", "grader", "grader_robots"],
+    **{f"{name}/package.xml": [name] for name in ("grader", "grader_robots")},
     "turtlesim_challenge/package.xml": ["turtlesim_challenge"],
 }
 #: What comes with the generators of interfaces.

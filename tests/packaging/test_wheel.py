@@ -106,7 +106,8 @@ def test_where_ros_is_sourced_a_second_one_is_refused_in_one_line(checkout, ros_
 def test_every_file_of_the_packages_is_in_the_wheel_and_nothing_that_ros_has(
     checkout, none_sourced
 ):
-    packages = ("turtlesim_py", "turtlesim_challenge", "robot_py", "grader", "grader_robots")
+    packages = ("grader", "grader_class", "grader_diagnosis", "grader_robots")
+    packages += ("turtlesim_py", "turtlesim_challenge")
     files = {
         path.relative_to(checkout).as_posix()
         for package in packages
@@ -135,8 +136,8 @@ FIND = """
 import sys
 from importlib.util import find_spec
 sys.path.insert(0, sys.argv[1])
-from grader.rosidl import uncompiled
-from grader.rosidl.definitions import UncompiledPackages
+from grader.ros import uncompiled
+from grader.ros.definitions import UncompiledPackages
 assert uncompiled.__file__.startswith(sys.argv[1])
 sys.meta_path.insert(0, UncompiledPackages())
 print([name for name in sys.argv[2:] if find_spec(name)], uncompiled.packages())

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from grader import expressions
-from grader.cast import script
 from grader.exercise.cases import USUAL, RunCase
 from grader.exercise.check import Checks
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import Expectation, ExpectedTopic, parse
 from grader.exercise.known_types import KnownTypes, check_time
 from grader.exercise.verdict import Finding
-from grader.message import msg
 from grader.recording.recording import Recordings
-from grader.text import listed
-from grader.yaml_file import Mistake, expect
+from grader.scenes.cast import script
+from grader.system import expressions
+from grader.system.yaml_file import Mistake, expect
+from grader.text.message import msg
+from grader.text.strings import listed
 
 #: What an expectation is about: its key -> the part of the peers, and whether that is known by an
 #: id; what is expected of it -> the part of the definition that it is, and the one whose fields its

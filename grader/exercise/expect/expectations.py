@@ -7,12 +7,12 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from grader import strict_json
-from grader.cast import script
 from grader.exercise.comparing import is_number, is_range
-from grader.message import msg
-from grader.strict_json import OURS, not_negative
-from grader.yaml_file import Mistake, expect
+from grader.scenes.cast import script
+from grader.system import strict_json
+from grader.system.strict_json import OURS, not_negative
+from grader.system.yaml_file import Mistake, expect
+from grader.text.message import msg
 
 #: The names that a template may use; None for any: fields that are only known in the run.
 Names = Mapping[str, Set[str] | None]

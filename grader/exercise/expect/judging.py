@@ -15,18 +15,18 @@ from dataclasses import replace
 from itertools import pairwise, zip_longest
 from typing import Any, Final
 
-from grader.cast.script import absolute
-from grader.cast.trace import ROSOUT, CastTrace, Event, SentMessage
 from grader.exercise.cases import USUAL
 from grader.exercise.comparing import LONGEST_MATCHED, differences, shown
 from grader.exercise.expect import expectations as e
 from grader.exercise.verdict import Evidence, Finding
-from grader.expressions import MOST_STEPS, ExpressionError, filled
-from grader.message import Message, msg
 from grader.recording.recording import Recording, Recordings
-from grader.rosidl.fields import field_lines
+from grader.ros.fields import field_lines
+from grader.scenes.cast.script import absolute
+from grader.scenes.cast.trace import ROSOUT, CastTrace, Event, SentMessage
 from grader.scenes.scene import STEP_NS
-from grader.text import listed, nearest
+from grader.system.expressions import MOST_STEPS, ExpressionError, filled
+from grader.text.message import Message, msg
+from grader.text.strings import listed, nearest
 
 #: What to do where nothing better is known.
 COMPARE: Final = msg("Compare it with what the exercise asks for.")

@@ -10,9 +10,9 @@ import numpy as np
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Evidence, Finding
-from grader.message import Message, msg
 from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.text.message import Message, msg
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import Kill, TeleportAbsolute, TeleportRelative
 

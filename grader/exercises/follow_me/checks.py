@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Evidence, Finding
-from grader.message import msg
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
-from grader.text import without_controls
+from grader.text.message import msg
+from grader.text.strings import without_controls
 from turtlesim_py.world.arena import TICK_NS
 
 checks = Checks()

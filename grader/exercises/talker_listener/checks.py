@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from grader.cast.trace import CastTrace
 from grader.exercise.check import Checks, Tolerances
+from grader.exercise.unknown import unless_unknown
 from grader.exercise.verdict import Finding
-from grader.message import joined, msg
 from grader.recording.recording import Recordings
+from grader.scenes.cast.trace import CastTrace
 from grader.submission.error_texts import advice, described, placed
 from grader.submission.trace import PackageTrace
-from grader.submission.unknown import unless_unknown
+from grader.text.message import joined, msg
 
 checks = Checks()
 

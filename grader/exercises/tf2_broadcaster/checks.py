@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from grader.cast.trace import CastTrace
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.driven_path import DrivenPath
 from grader.exercise.verdict import Finding
-from grader.message import chained, msg
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.cast.trace import CastTrace
 from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.text.message import chained, msg
 
 checks = Checks()
 WORLD = "world"

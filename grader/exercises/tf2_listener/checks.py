@@ -6,9 +6,9 @@ import math
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.message import chained, msg
 from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.text.message import chained, msg
 from turtlesim_py.world.events import Spawn
 
 checks = Checks()

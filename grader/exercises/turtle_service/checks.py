@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from grader.cast.trace import CastTrace
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.driven_path import DrivenPath
 from grader.exercise.expect.judging import no_service
 from grader.exercise.verdict import Finding
-from grader.message import msg
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.cast.trace import CastTrace
 from grader.scenes.turtlesim.trace import USUAL_START, TurtleTrace
+from grader.text.message import msg
 from turtlesim_py.world.events import TeleportAbsolute, TeleportRelative
 
 checks = Checks()

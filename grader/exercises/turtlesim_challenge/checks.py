@@ -16,9 +16,9 @@ from grader.exercises.turtlesim_challenge.pens import check_demanded
 from grader.exercises.turtlesim_challenge.picture import judge_picture
 from grader.exercises.turtlesim_challenge.rate import judge_calls, judge_rate
 from grader.exercises.turtlesim_challenge.spiral import judge_spiral
-from grader.message import Message, joined, msg, msg_many
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.text.message import Message, joined, msg, msg_many
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 

@@ -8,8 +8,8 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from grader.message import Message, in_context, msg
 from grader.scenes.turtlesim import words
+from grader.text.message import Message, in_context, msg
 from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.trajectory import Floats
 

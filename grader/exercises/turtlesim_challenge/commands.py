@@ -10,8 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.message import Message, joined, msg
 from grader.scenes.turtlesim.trace import stands_still
+from grader.text.message import Message, joined, msg
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
 

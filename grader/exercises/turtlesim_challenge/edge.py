@@ -11,8 +11,8 @@ from grader.exercises.turtlesim_challenge.stops import (
     has_stop_command_at,
     judge_stop,
 )
-from grader.message import Message, chained, joined, msg, msg_many
 from grader.recording.recording import Recordings
+from grader.text.message import Message, chained, joined, msg, msg_many
 from turtlesim_py.world.turtle import TICK_S
 
 SOON_S = 5.0

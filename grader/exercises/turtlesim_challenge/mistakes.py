@@ -13,7 +13,7 @@ from grader.exercises.turtlesim_challenge import colours
 from grader.exercises.turtlesim_challenge.commands import Cause
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, QUADRANTS, ROMAN, Path
 from grader.exercises.turtlesim_challenge.pens import Coloring, came_after
-from grader.message import Message, chained, joined, listed, msg
+from grader.text.message import Message, chained, joined, listed, msg
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S

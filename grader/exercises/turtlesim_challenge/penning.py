@@ -7,8 +7,8 @@ from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import colours, mistakes, pens
 from grader.exercises.turtlesim_challenge.edge import in_run
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path, Visit
-from grader.message import Message, joined, msg, msg_many
 from grader.recording.recording import Recordings
+from grader.text.message import Message, joined, msg, msg_many
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.turtle import TICK_S
 

@@ -13,10 +13,10 @@ import numpy as np
 from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge.colours import Color, alike, groups
 from grader.exercises.turtlesim_challenge.path import QUADRANTS, Path, Visit
-from grader.message import msg
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.driving import as_commanded
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.text.message import msg
 from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.events import CmdVel, Kill, Reset, SetPen
 from turtlesim_py.world.turtle import TICK_S

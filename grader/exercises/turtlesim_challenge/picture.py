@@ -13,9 +13,9 @@ from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge import colours, mistakes, pens, shape
 from grader.exercises.turtlesim_challenge.colours import Color, distances
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path
-from grader.message import Message, joined, msg
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.text.message import Message, joined, msg
 from turtlesim_py.world.arena import DEFAULT_BACKGROUND
 from turtlesim_py.world.canvas import Canvas
 from turtlesim_py.world.events import Clear, SetParameter, SetPen

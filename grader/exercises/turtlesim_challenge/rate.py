@@ -13,7 +13,7 @@ from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import WATCHDOG_TICKS
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, Path
-from grader.message import Message, joined, msg, msg_many
+from grader.text.message import Message, joined, msg, msg_many
 from turtlesim_py.world.events import CmdVel, SetPen
 from turtlesim_py.world.turtle import TICK_S
 

@@ -9,7 +9,7 @@ from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import why_no_wider, why_so_few_turns
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.message import NOTHING, Message, chained, joined, msg
+from grader.text.message import NOTHING, Message, chained, joined, msg
 
 
 def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:

@@ -20,9 +20,9 @@ from grader.exercises.turtlesim_challenge.commands import (
     why_so_few_turns,
 )
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.message import NOTHING, Message, in_context, joined, msg
 from grader.scenes.turtlesim.driving import REST_TICKS
 from grader.scenes.turtlesim.trace import stands_still
+from grader.text.message import NOTHING, Message, in_context, joined, msg
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 

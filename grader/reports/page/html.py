@@ -20,10 +20,9 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
-from grader import text
-from grader.diagnosis.diagnosis import Diagnosis
+from grader.exercise.result.diagnosis import Diagnosis
+from grader.exercise.result.result import RunSummary
 from grader.exercise.verdict import Evidence
-from grader.message import msg
 from grader.recording.recording import Recording
 from grader.recording.subject import Subject, load_subject
 from grader.recording.view import Floats, Plane, Solid, Table, Tree
@@ -35,9 +34,10 @@ from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, recor
 from grader.reports.page.plots import HEIGHT, WIDTH, Drawn, Plots, expected, plots
 from grader.reports.page.tracks import Animation, animation
 from grader.reports.report import Report
-from grader.result.result import RunSummary
 from grader.scenes.scene import Scene
-from grader.translations import current, number, tr, translate
+from grader.text import strings as text
+from grader.text.message import msg
+from grader.text.translations import current, number, tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from grader import text
 from grader.recording.view import Placing, Shape, Solid, Tree, TreeNode
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.translations import tr, translate
 
 #: The drawing's width, a row's height, the indent of a level [px], the deepest indented level.
 WIDTH, ROW, STEP, DEEPEST = 360, 38, 18, 8

@@ -16,7 +16,7 @@ from PIL import Image, UnidentifiedImageError
 from grader.recording.subject import load_subject
 from grader.recording.view import Solid
 from grader.reports.report import Point, Report
-from grader.translations import translate
+from grader.text.translations import translate
 
 #: A larger picture is reduced to 256 colours. Only noise is larger: a spiral has some 20 kB.
 _LIMIT_BYTES = 150_000

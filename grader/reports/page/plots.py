@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grader import text
 from grader.recording.view import Call, Curve, Floats, View
 from grader.reports.page.tracks import svg_path
 from grader.reports.report import Report
-from grader.translations import tr, translate
+from grader.text import strings as text
+from grader.text.translations import tr, translate
 
 #: A curve is drawn in a box of this size, which the page stretches. Two points a column.
 WIDTH, HEIGHT = 500, 100

@@ -18,8 +18,9 @@ import jinja2
 from jinja2.bccache import Bucket, FileSystemBytecodeCache
 from markupsafe import Markup
 
-from grader import system, text
-from grader.translations import current, number, tr, tr_many, translate
+from grader.system import versions as system
+from grader.text import strings as text
+from grader.text.translations import current, number, tr, tr_many, translate
 
 #: The style of all pages.
 STYLE = Path(__file__).parent / "templates" / "page.css"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grader.recording.view import Floats, Rest, Times, Track, View
-from grader.translations import translate
+from grader.text.translations import translate
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000

@@ -15,7 +15,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from grader.message import NOTHING, Message, msg
 from grader.run.clock.scheduler import Scheduler
 from grader.run.lockstep import real
 from grader.run.lockstep.faults import guarded
@@ -45,6 +44,7 @@ from grader.run.lockstep.protocol import (
     pieces,
 )
 from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer
+from grader.text.message import NOTHING, Message, msg
 
 #: The costs of sending a message, 20 us, and of counting the endpoints of a channel.
 SEND_UNITS = 4

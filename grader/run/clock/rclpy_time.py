@@ -18,7 +18,6 @@ import rclpy.task
 import rclpy.timer
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader.message import msg
 from grader.run.clock import executor
 from grader.run.clock.link import SimulatorLink
 from grader.run.clock.scheduler import Runner, Scheduler
@@ -26,6 +25,7 @@ from grader.run.lockstep import actions, endpoints, faults, graph, rclpy_clocks,
 from grader.run.lockstep.protocol import NEVER
 from grader.run.lockstep.rclpy_clocks import RclpyClocks
 from grader.run.lockstep.waitsets import Waiter, WaitSet
+from grader.text.message import msg
 
 #: The costs of a wait, and of the work that it finds on top [units].
 WAIT_UNITS = 2

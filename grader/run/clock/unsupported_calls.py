@@ -17,11 +17,11 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
-from grader.message import NOTHING, Message, msg
 from grader.run.clock.scheduler import Runner, Scheduler
 from grader.run.lockstep import real
 from grader.run.lockstep.faults import guarded, pass_on
 from grader.run.lockstep.protocol import NEVER
+from grader.text.message import NOTHING, Message, msg
 
 _STARTS = (msg("starts another program"), msg("starts another program ({program})"))
 #: Python's audit events of another process -> what the program does, and that with a name.

@@ -22,8 +22,8 @@ from functools import partial
 from itertools import chain
 from typing import Any, NamedTuple
 
-from grader import system
-from grader.message import NOTHING, Message, msg
+from grader.system import versions as system
+from grader.text.message import NOTHING, Message, msg
 
 #: Stands for rclpy's extension module, whatever it is called.
 CPP = "_rclpy"

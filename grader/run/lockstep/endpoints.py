@@ -18,12 +18,10 @@ from typing import Any
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 
-from grader import system
-from grader.message import msg
-from grader.rosidl import classes, handles
-from grader.rosidl.definitions import Definitions, UncompiledPackages
-from grader.rosidl.messages import deserialise, is_made, serialise
-from grader.rosidl.uncompiled import KINDS
+from grader.ros import classes, handles
+from grader.ros.definitions import Definitions, UncompiledPackages
+from grader.ros.messages import deserialise, is_made, serialise
+from grader.ros.uncompiled import KINDS
 from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.registry import (
     Arrived,
@@ -33,6 +31,8 @@ from grader.run.lockstep.registry import (
     Reader,
     Writer,
 )
+from grader.system import versions as system
+from grader.text.message import msg
 
 _Node = _rclpy.Node
 _Publisher, _Subscription = _rclpy.Publisher, _rclpy.Subscription

@@ -15,14 +15,14 @@ from pathlib import Path
 from types import CodeType, TracebackType
 from typing import Any, TypeVar
 
-from grader.message import Message, msg
+from grader.text.message import Message, msg
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 #: The folder of all our code that runs in a submission's process.
 OURS = str(Path(__file__).parents[1])
 #: That of the classes of a hand-in's messages, whose exceptions are the program's.
-_MESSAGES = str(Path(__file__).parents[2] / "rosidl")
+_MESSAGES = str(Path(__file__).parents[2] / "ros")
 #: What loads a submission's program, in real time too.
 _LOADER = str(Path(OURS) / "student" / "loading.py")
 #: What depends on how much a program has used up, not on whose line is the last.

@@ -33,7 +33,7 @@ from enum import IntEnum
 from struct import Struct
 from typing import Any, NamedTuple
 
-from grader.message import NOTHING, Message
+from grader.text.message import NOTHING, Message
 
 #: A tick's length [ns]. As in turtlesim_py.world.arena, whose import would cost a student's
 #: process numpy and Pillow.
@@ -251,7 +251,9 @@ def decode(data: bytes) -> Packet:
 def _remarked(text: object) -> str:
     if not isinstance(text, str):
         raise ValueError(f"no part of a remark: {text!r:.100}")
-    from grader.text import without_controls  # here: a submission's process has it not in reach
+    from grader.text.strings import (
+        without_controls,  # here: a submission's process has it not in reach
+    )
 
     return without_controls(text[:_LONGEST_REMARK], "?")
 

@@ -25,8 +25,8 @@ from rclpy.qos import (
     qos_check_compatible,
 )
 
-from grader.message import Message
 from grader.run.lockstep.protocol import SHIFT, EndpointInfo, Table
+from grader.text.message import Message
 
 #: The depth of another process's queue, at most: rclpy's C++ takes no more than an int.
 MOST_DEPTH = 1 << 20

@@ -53,7 +53,7 @@ def reserve_core(run: int) -> Iterator[int]:
         run: any number; spreads the runs over the cores where there are more runs than cores.
     """
     # here: the processes of a run import this module too, and need no locks
-    from grader import scratch
+    from grader.system import scratch
 
     possible = available()
     with ExitStack() as held:

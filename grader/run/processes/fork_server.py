@@ -23,11 +23,11 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from grader import linux
 from grader.errors import GraderFailure
 from grader.run.processes import FORK_SERVER, fork_server_main
 from grader.run.processes.fork_server_main import ForkOrder, ProcessCommand
 from grader.run.processes.refusal import Refusal
+from grader.system import linux
 
 #: How long it may take to import everything, or to fork [s]; only an overloaded machine does.
 PATIENCE_S = 30.0

@@ -42,9 +42,9 @@ if __name__ == "__main__":
     # on the import path, which is empty but for Python's own: where our packages are
     sys.path.append(os.path.realpath(f"{__file__}/../../../.."))
 
-from grader import linux
 from grader.run.processes import supervisor
 from grader.run.processes.refusal import Refusal
+from grader.system import linux
 
 #: An environment variable by which the processes of one run are known among all others.
 MARK = "TURTLESIM_GRADER_PROCESS"

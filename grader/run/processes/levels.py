@@ -27,9 +27,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from grader import scratch
 from grader.errors import GraderError, GraderFailure, NotNow, NotOffered, UsageError
-from grader.message import Text, msg
 from grader.run.limits import rlimits
 from grader.run.processes import network
 from grader.run.processes.fork_server_main import ProcessCommand
@@ -38,6 +36,8 @@ from grader.run.processes.refusal import TRIES, Refusal, insist
 from grader.run.processes.started_process import NotConfined, SubmissionProcess
 from grader.run.sandbox import filesystem, landlock, view
 from grader.run.sandbox.confinement import LANDLOCK, LIMITS, MAPPED, NAMESPACES, SAME, SEPARATE
+from grader.system import scratch
+from grader.text.message import Text, msg
 
 #: The best comes first.
 LEVELS = (NAMESPACES, LANDLOCK, LIMITS)

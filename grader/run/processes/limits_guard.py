@@ -16,10 +16,10 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import NamedTuple
 
-from grader import linux
-from grader.linux import ProcessStat
-from grader.message import NOTHING, msg
 from grader.run.limits import LIMITS, MIB, CpuBudget, RunLimits, size
+from grader.system import linux
+from grader.system.linux import ProcessStat
+from grader.text.message import NOTHING, msg
 
 #: How often usage is measured [s].
 EVERY_S = 0.2

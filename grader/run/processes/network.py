@@ -17,9 +17,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from grader import limited, linux, scratch
 from grader.errors import GraderFailure, NotNow
 from grader.run.processes.refusal import TRIES, Refusal, insist
+from grader.system import limited, linux, scratch
 
 #: Fast DDS would use shared memory for discovery range LOCALHOST, whatever its settings say.
 RANGE = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}

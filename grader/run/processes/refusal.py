@@ -14,7 +14,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, NamedTuple, Self, TypeVar
 
 if TYPE_CHECKING:  # no dataclass, no re: a supervisor starts in milliseconds
-    from grader.message import Message
+    from grader.text.message import Message
 
 #: The numbers of errors that are final.
 FINAL = frozenset(

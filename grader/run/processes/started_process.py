@@ -18,15 +18,15 @@ from types import FrameType
 
 import psutil
 
-from grader import linux
 from grader.errors import GraderFailure, NotNow
-from grader.message import NOTHING, Message, msg
 from grader.run.limits import KEPT_OUTPUT_BYTES, START_S, CpuBudget
 from grader.run.processes.fork_server import ForkServer, ServerLost, cold_server
 from grader.run.processes.fork_server_main import MARK, ProcessCommand
 from grader.run.processes.limits_guard import LimitsGuard
 from grader.run.processes.refusal import Refusal
 from grader.run.sandbox.confinement import SEPARATE
+from grader.system import linux
+from grader.text.message import NOTHING, Message, msg
 
 #: Signals that ask the grader to end: Ctrl-C, `timeout` or `docker stop`, a closed terminal.
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)

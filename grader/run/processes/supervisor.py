@@ -18,8 +18,8 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any, NoReturn
 
-from grader import linux
 from grader.run.sandbox import confinement
+from grader.system import linux
 
 #: Signals for the command, which reach the supervisor only because it is in the same group.
 NOT_OURS = [signal.SIGINT, signal.SIGHUP, signal.SIGQUIT]

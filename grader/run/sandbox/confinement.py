@@ -25,8 +25,8 @@ import signal
 from collections.abc import Mapping
 from typing import Any
 
-from grader import linux
 from grader.run.sandbox import filesystem, landlock, seccomp
+from grader.system import linux
 
 NAMESPACES, LANDLOCK, LIMITS = "namespaces", "landlock", "limits"
 SEPARATE, MAPPED, SAME = "separate", "mapped", "same"

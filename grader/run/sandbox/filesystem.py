@@ -32,7 +32,7 @@ import socket
 import stat
 from collections.abc import Sequence
 
-from grader import linux
+from grader.system import linux
 
 #: Where the new root is built: a folder that every system has, and that is hidden in the new one.
 SITE = "/sys"

@@ -18,7 +18,7 @@ import struct
 import sys
 from typing import Final
 
-from grader import linux
+from grader.system import linux
 
 #: A system call's numbers on x86_64 and on aarch64; None where it has none.
 Numbers = tuple[int | None, int | None]

@@ -28,27 +28,31 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path, PurePosixPath
 
-from grader import system
 from grader.run.limits import MIB, ROOM, SCRATCH
+from grader.system import versions as system
 
 #: Where our packages are, if they are not installed.
 ROOT = Path(__file__).resolve().parents[3]
 #: Packages of ours, which contain the checks, or a solution.
-HIDDEN = ("grader", "grader_robots", "turtlesim_challenge", "turtlesim_py")
+HIDDEN = (
+    *("grader", "grader_class", "grader_diagnosis", "grader_robots", "turtlesim_challenge"),
+    "turtlesim_py",
+)
 #: ... but for what works in the submission's own process.
 HOST = (
-    *("grader/__init__.py", "grader/system.py", "grader/run/__init__.py"),
+    *("grader/__init__.py", "grader/system/__init__.py", "grader/system/versions.py"),
+    "grader/run/__init__.py",
     *("grader/run/student", "grader/run/clock", "grader/run/observe", "grader/run/lockstep"),
     "grader/run/processes/__init__.py",
-    "grader/linux.py",
+    "grader/system/linux.py",
     # what inspects a package
-    *("grader/limited.py", "grader/submission"),
+    *("grader/system/limited.py", "grader/submission"),
     *("grader_robots/__init__.py", "grader_robots/inspection"),
-    "grader/strict_json.py",
+    "grader/system/strict_json.py",
     # ... and the sentences of its remarks
-    "grader/message.py",
+    *("grader/text/__init__.py", "grader/text/message.py"),
     # interfaces of its own
-    *("grader/rosidl", "grader/errors.py", "grader/text.py"),
+    *("grader/ros", "grader/errors.py", "grader/text/strings.py"),
 )
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
 #: Of /etc, where libraries are, and the time zone; users and hosts have files of ours.

@@ -7,7 +7,6 @@ from typing import Any, Final
 
 from rclpy.qos import QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
-from grader.message import Message, msg
 from grader.run.lockstep.endpoints import deserialized
 from grader.run.lockstep.protocol import (
     EPOCH_NS,
@@ -25,6 +24,7 @@ from grader.run.lockstep.registry import (
     Reader,
     Writer,
 )
+from grader.text.message import Message, msg
 
 #: The longest message that a reader accepts [bytes]; DDS has no limit, but no parameter is longer.
 LONGEST_MESSAGE: Final = 2_000_000

@@ -31,7 +31,6 @@ import rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from grader.errors import SceneFailure
-from grader.message import msg
 from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.limits import Patience
@@ -61,6 +60,7 @@ from grader.run.simulator.process import (
 )
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
+from grader.text.message import msg
 
 #: So many new objects are searched for garbage: what a run records stays to its end.
 GARBAGE = 100_000
@@ -248,7 +248,7 @@ class Hub:
             trace = self._simulation.trace()
             handover.leave(file, self._scene, trace, self._registry.published, self._cast)
 
-    # For a cast, see `grader.cast.playing.Wire`
+    # For a cast, see `grader.scenes.cast.playing.Wire`
 
     def tap(self, topic: str, kind: str, message: Any) -> None:
         """Record what the program publishes on a topic with a type."""

@@ -10,8 +10,6 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from typing import Literal
 
-from grader import linux
-from grader.message import Message, msg
 from grader.run.limits import Patience
 from grader.run.lockstep.protocol import (
     MOST_SENT,
@@ -30,6 +28,8 @@ from grader.run.lockstep.protocol import (
     encode,
     pieces,
 )
+from grader.system import linux
+from grader.text.message import Message, msg
 
 #: How often the process is checked while it is silent [ms], and while it is not [s].
 POLL_MS = 250

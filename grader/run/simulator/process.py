@@ -18,13 +18,13 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from grader import linux
 from grader.recording.scene_at_work import overdue, scene_at_work
 from grader.run.handover import Plan
 from grader.run.limits import SCENE_S, SIMULATOR_BYTES
+from grader.system import linux
 
 if TYPE_CHECKING:
-    from grader.cast.playing import Playing
+    from grader.scenes.cast.playing import Playing
 
 #: So much may wait to be received [bytes]; then the run waits so long for that, in all [s].
 MOST_BYTES: Final = 8_000_000
@@ -53,13 +53,13 @@ def make_cast(plan: Plan, wire: Any, *, are_compiled: bool = False) -> Playing |
     """Make the scripted peers of a run; None where it has none.
 
     Args:
-        wire: a `grader.cast.playing.Wire`.
+        wire: a `grader.scenes.cast.playing.Wire`.
         are_compiled: whether interfaces that are not installed were compiled for this run.
     """
     if plan.cast is None:
         return None
-    from grader.cast import script  # here: most runs have none
-    from grader.cast.playing import Playing
+    from grader.scenes.cast import script  # here: most runs have none
+    from grader.scenes.cast.playing import Playing
 
     definitions = {**plan.own_definitions, **plan.definitions}
     peers, end_s = script.parse(plan.cast), plan.limits.total_s

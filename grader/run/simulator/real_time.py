@@ -25,7 +25,6 @@ import rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from grader.errors import SceneFailure
-from grader.message import Message, msg
 from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.simulator.process import (
@@ -38,6 +37,7 @@ from grader.run.simulator.process import (
 from grader.run.simulator.wall import WallWire
 from grader.scenes import load_scene
 from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
+from grader.text.message import Message, msg
 from turtlesim_py.ros import program
 
 #: How often the submission's topics are read from the graph, and progress is reported [ticks].

@@ -25,9 +25,9 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from grader.message import Message, msg
 from grader.run.processes import FORK_SERVER
 from grader.run.simulator.process import send_message
+from grader.text.message import Message, msg
 
 IN_REAL_TIME = "grader.run.simulator.real_time"
 

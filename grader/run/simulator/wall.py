@@ -27,7 +27,7 @@ LATE_NS = 500_000_000
 
 
 class WallWire:
-    """See `grader.cast.playing.Wire`.
+    """See `grader.scenes.cast.playing.Wire`.
 
     Attributes:
         node: that reads the graph, and records.

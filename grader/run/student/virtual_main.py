@@ -33,7 +33,6 @@ from collections.abc import Callable, Sequence  # noqa: E402
 from contextlib import suppress  # noqa: E402
 from typing import TYPE_CHECKING, Any  # noqa: E402
 
-from grader.message import NOTHING, Message, msg  # noqa: E402
 from grader.run.clock import threads, time_and_chance, unsupported_calls  # noqa: E402
 from grader.run.clock.scheduler import Scheduler  # noqa: E402
 from grader.run.lockstep import contract, faults, real  # noqa: E402
@@ -42,6 +41,7 @@ from grader.run.observe import hooks  # noqa: E402
 from grader.run.observe.witness import Witness  # noqa: E402
 from grader.run.processes import FORK_SERVER  # noqa: E402
 from grader.run.student import loading  # noqa: E402
+from grader.text.message import NOTHING, Message, msg  # noqa: E402
 
 if TYPE_CHECKING:  # which imports rclpy
     from grader.run.clock.link import SimulatorLink

@@ -6,7 +6,7 @@ recording small; a turtlesim that grades nobody has no such limits.
 
 from __future__ import annotations
 
-from grader.message import Message, msg
+from grader.text.message import Message, msg
 
 #: Turtles at a time: each publishes in every tick, and has a trajectory in the recording.
 MOST_TURTLES = 32

@@ -18,7 +18,6 @@ from rcl_interfaces.srv import (
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
-from grader.message import msg
 from grader.scenes.scene import Forecast, Hooks
 from grader.scenes.turtlesim.allowance import (
     FIXED,
@@ -29,6 +28,7 @@ from grader.scenes.turtlesim.allowance import (
     Allowance,
 )
 from grader.scenes.turtlesim.trace import SPRITE
+from grader.text.message import msg
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.ros.turtle_endpoints import pose_bytes
 from turtlesim_py.scenario import apply

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from grader.errors import SubmissionError
 from grader.recording.subject import Endpoint
-from grader.rosidl import uncompiled
+from grader.ros import uncompiled
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros.interfaces import NAMES, NEWER, OLDER, installed, of_release, usual
 

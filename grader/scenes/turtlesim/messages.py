@@ -24,8 +24,8 @@ import numpy.typing as npt
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage
 from grader.recording.view import Times
-from grader.rosidl.bag_types import BagTypes
-from grader.rosidl.cdr import MARK, CdrReader, string, string_of
+from grader.ros.bag_types import BagTypes
+from grader.ros.cdr import MARK, CdrReader, string, string_of
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace, check
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import CmdVel, Event, EventError, from_json, to_json

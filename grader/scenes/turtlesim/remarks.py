@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from grader.message import Message, msg, msg_many
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.text.message import Message, msg, msg_many
 from turtlesim_py.ros.interfaces import NEWER, OLDER
 from turtlesim_py.world.events import (
     Clear,

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, ClassVar, Final
 
-from grader.message import Message, msg
 from grader.recording.channel import Channel
 from grader.recording.playback import Playback
 from grader.recording.subject import BagMessage, Endpoint, Start, Trace
@@ -19,7 +18,8 @@ from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, 
 from grader.scenes.turtlesim import interfaces, messages, remarks, view
 from grader.scenes.turtlesim.interfaces import endpoints_of
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace
-from grader.translations import tr
+from grader.text.message import Message, msg
+from grader.text.translations import tr
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import to_json

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from grader.message import NOTHING, Message, msg
+from grader.text.message import NOTHING, Message, msg
 from turtlesim_py.scenario import ScenarioError, events_by_tick, parse, replay
 from turtlesim_py.world.events import Event, Spawn
 

@@ -7,7 +7,6 @@ from copy import copy
 from itertools import count
 from typing import Any
 
-from grader.message import Message
 from grader.recording.subject import Start
 from grader.scenes.scene import GRACE_TICKS, Forecast, Hooks, Limits, Reason, Simulation
 from grader.scenes.turtlesim.allowance import MOST_LOGS
@@ -15,6 +14,7 @@ from grader.scenes.turtlesim.driving import Recorder, place
 from grader.scenes.turtlesim.graded_node import GradedNode
 from grader.scenes.turtlesim.setting import script
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.text.message import Message
 from turtlesim_py.live.feed import Feed, News
 from turtlesim_py.ros.turtle_endpoints import pose_bytes
 from turtlesim_py.world.arena import Arena

@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grader.message import NOTHING, Message, msg
 from grader.recording.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
 from grader.scenes.turtlesim import words
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.text.message import NOTHING, Message, msg
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.events import Clear, CmdVel, Event, Reset, SetPen

@@ -13,9 +13,9 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from grader import text
-from grader.message import NOTHING, Message, as_message, joined, msg, msg_many, plain_text
 from grader.scenes.turtlesim.trace import FIRST_TURTLE
+from grader.text import strings as text
+from grader.text.message import NOTHING, Message, as_message, joined, msg, msg_many, plain_text
 from turtlesim_py.world.events import (
     Event,
     Kill,

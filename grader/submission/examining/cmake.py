@@ -12,10 +12,10 @@ from itertools import islice, pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.message import msg
 from grader.submission import safe_files
 from grader.submission.examining.steps import Ended, attempt, it
 from grader.submission.trace import Obstacle
+from grader.text.message import msg
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
 _KEPT = (

@@ -13,8 +13,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Final
 
-from grader.message import msg
 from grader.submission.examining.steps import NotKnown, it
+from grader.text.message import msg
 
 #: Exit code, and what is printed to either side.
 Ended = tuple[int, str, str]
@@ -84,7 +84,7 @@ def _run(words: list[str]) -> Ended:
     def limit() -> None:
         import resource  # here: Windows has none
 
-        from grader import linux
+        from grader.system import linux
 
         linux.set_limit(resource.RLIMIT_FSIZE, _MOST_BYTES, _MOST_BYTES)
 

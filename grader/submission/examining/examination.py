@@ -11,9 +11,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from grader import strict_json
-from grader.message import NOTHING, Message, msg
-from grader.strict_json import Made
 from grader.submission import safe_files, trace
 from grader.submission.answer import LaunchOrder
 from grader.submission.examining import launches
@@ -29,6 +26,9 @@ from grader.submission.trace import (
     PackageTrace,
     Setup,
 )
+from grader.system import strict_json
+from grader.system.strict_json import Made
+from grader.text.message import NOTHING, Message, msg
 
 _MOST_LAUNCHES, _MOST_TEXTS = 40, 20
 #: Of a launch file so much is read to find a line [bytes].

@@ -12,8 +12,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from grader.message import Message, msg
-from grader.strict_json import STRANGERS
 from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder
 from grader.submission.examining import commands, external, known
@@ -37,6 +35,8 @@ from grader.submission.trace import (
     Parameter,
     Skipped,
 )
+from grader.system.strict_json import STRANGERS
+from grader.text.message import Message, msg
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300

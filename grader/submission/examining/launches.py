@@ -14,13 +14,13 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any, Final
 
-from grader import strict_json
-from grader.message import msg
 from grader.submission.examining import external, known
 from grader.submission.examining.launch_record import SUFFIXES, LaunchRecord
 from grader.submission.examining.layout import DOUBLES, Installed, Workspace
 from grader.submission.examining.packages import is_description
 from grader.submission.examining.steps import NotKnown, in_folder, it, problem_of
+from grader.system import strict_json
+from grader.text.message import msg
 
 #: Packages of ROS that have doubles.
 DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")

@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from grader.message import NOTHING, Message, msg
 from grader.submission import safe_files
 from grader.submission.answer import SetUpFacts
 from grader.submission.examining import cmake, known
@@ -23,6 +22,7 @@ from grader.submission.examining.setup_call import evaluate
 from grader.submission.examining.steps import Ended, attempt, it
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
+from grader.text.message import NOTHING, Message, msg
 
 #: Set-ups that were evaluated already, by their folders.
 Known = Mapping[Path, tuple[SetUpFacts, Obstacle | None]]

@@ -14,7 +14,7 @@ from itertools import count
 from pathlib import Path
 from typing import Final
 
-from grader import linux
+from grader.system import linux
 
 _PROC: Final = Path("/proc")
 #: After so many looks, each of which stops those who were born meanwhile, all are ended at once.

@@ -28,7 +28,6 @@ ROOT = Path(__file__).resolve().parents[3]
 if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
-from grader import linux  # noqa: E402
 from grader.submission import safe_files, trace  # noqa: E402
 from grader.submission.answer import Inspection, SetUp, SetUpFacts  # noqa: E402
 from grader.submission.examining import layout, leftovers, packages, setup_call  # noqa: E402
@@ -38,6 +37,7 @@ from grader.submission.examining.steps import Ended, attempt, open_account  # no
 from grader.submission.folder import SETUP_FILES  # noqa: E402
 from grader.submission.request import LaunchAsked  # noqa: E402
 from grader.submission.trace import FAILED, PackageTrace  # noqa: E402
+from grader.system import linux  # noqa: E402
 
 
 def main() -> None:

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from grader.message import NOTHING, Message, msg
 from grader.submission import safe_files
 from grader.submission.examining.steps import it
 from grader.submission.folder import MAX_SOURCE_BYTES, is_junk, is_searched
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import read_manifest
+from grader.text.message import NOTHING, Message, msg
 
 _DEPENDS = ("depend", "exec_depend", "run_depend", "build_depend", "build_export_depend")
 #: Names that only launch files have, and what makes one of another file that `ros2 launch` takes:

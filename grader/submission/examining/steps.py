@@ -16,10 +16,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final, Self, TypeVar
 
-from grader import limited, strict_json
-from grader.message import NOTHING, Message, msg, plain_text, reason
 from grader.submission.examining import leftovers
 from grader.submission.trace import Obstacle
+from grader.system import limited, strict_json
+from grader.text.message import NOTHING, Message, msg, plain_text, reason
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
 LIMITS: Final = limited.WorkLimits(
@@ -217,7 +217,7 @@ def _read(answer: bytes) -> Obstacle | tuple[Any]:
 def _limit_processes() -> None:
     import resource  # here: Windows has none
 
-    from grader import linux
+    from grader.system import linux
 
     soft, _ = resource.getrlimit(resource.RLIMIT_NPROC)
     if soft != resource.RLIM_INFINITY and soft > _NOT_OF_A_STEP:

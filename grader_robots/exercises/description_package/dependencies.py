@@ -6,10 +6,10 @@ from typing import Final
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.message import Message, joined, msg
 from grader.submission.error_texts import shown
 from grader.submission.examining.known import DESKTOP
 from grader.submission.trace import NamedMesh
+from grader.text.message import Message, joined, msg
 from grader_robots.exercises.description_package import robots
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from grader.exercise.asking import CheckFunction
 from grader.exercise.check import Tolerances
+from grader.exercise.unknown import UNKNOWN, not_judged
 from grader.exercise.verdict import Finding
-from grader.message import Message, msg
 from grader.recording.recording import Recordings
 from grader.submission.examining.known import SIMULATORS
 from grader.submission.trace import (
@@ -20,7 +20,7 @@ from grader.submission.trace import (
     PackageTrace,
     Setup,
 )
-from grader.submission.unknown import UNKNOWN, not_judged
+from grader.text.message import Message, msg
 
 #: Obstacles of a launch file that may be one of several: it wants what its user knows, too.
 NO_FAULT = (UNKNOWN, "argument")

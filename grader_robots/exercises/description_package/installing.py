@@ -7,9 +7,9 @@ from posixpath import dirname
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.message import Message, joined, msg
 from grader.submission.error_texts import how_it_ends, shown
 from grader.submission.trace import EMPTY, Lacking, LaunchFile, Obstacle
+from grader.text.message import Message, joined, msg
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,

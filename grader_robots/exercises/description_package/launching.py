@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
+from grader.exercise.unknown import unless_unknown
 from grader.exercise.verdict import Finding
-from grader.message import joined, msg
 from grader.submission.error_texts import advice, how_it_ends, shown
 from grader.submission.examining.known import FILES, KNOWN
 from grader.submission.trace import EMPTY, Lacking, LaunchedNode, LaunchFile, Obstacle
-from grader.submission.unknown import unless_unknown
+from grader.text.message import joined, msg
 from grader_robots.exercises.description_package import installing
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,
@@ -24,7 +24,7 @@ from grader_robots.exercises.description_package.facts import (
     unjudged,
 )
 from grader_robots.exercises.description_package.robots import of_description, of_text
-from robot_py.urdf import parse
+from grader_robots.robot_py.urdf import parse
 
 checks = Checks()
 PUBLISHER = "robot_state_publisher"

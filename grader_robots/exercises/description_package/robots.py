@@ -9,18 +9,18 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from grader.exercise.check import Checks, Tolerances
+from grader.exercise.unknown import unless_unknown
 from grader.exercise.verdict import Finding
-from grader.message import NOTHING, Message, msg
 from grader.submission.error_texts import shown
 from grader.submission.trace import Description
-from grader.submission.unknown import unless_unknown
+from grader.text.message import NOTHING, Message, msg
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,
     PackageFacts,
     of_package,
 )
-from robot_py.model import Inertial, Joint, JointType, Model, Origin
-from robot_py.urdf import Consequence, ParsedUrdf, parse
+from grader_robots.robot_py.model import Inertial, Joint, JointType, Model, Origin
+from grader_robots.robot_py.urdf import Consequence, ParsedUrdf, parse
 
 checks = Checks()
 #: What is left where a robot is there, and something of it is wrong or dropped.

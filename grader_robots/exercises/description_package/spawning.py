@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from grader.exercise.check import Checks, Tolerances
+from grader.exercise.unknown import unless_unknown
 from grader.exercise.verdict import Finding
-from grader.message import Message, msg
 from grader.submission.error_texts import shown
 from grader.submission.trace import LaunchedNode, LaunchFile
-from grader.submission.unknown import unless_unknown
+from grader.text.message import Message, msg
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,
     PackageFacts,

@@ -11,8 +11,8 @@ import numpy as np
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Evidence, Expected, Finding
-from grader.message import NOTHING, Message, msg, msg_many
 from grader.recording.view import Floats
+from grader.text.message import NOTHING, Message, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import (
     RobotRun,
     finite,
@@ -22,9 +22,9 @@ from grader_robots.exercises.state_publisher.seen import (
     sentence,
 )
 from grader_robots.exercises.state_publisher.timing import too_seldom
+from grader_robots.robot_py.model import JointType
 from grader_robots.scene.motion import JointMotion
 from grader_robots.scene.view import curve_of
-from robot_py.model import JointType
 
 checks = Checks()
 HELP = msg(

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from grader.exercise.check import Checks, Tolerances
+from grader.exercise.unknown import unless_unknown
 from grader.exercise.verdict import Finding
-from grader.message import NOTHING, Message, joined, msg
 from grader.recording.recording import Recordings
 from grader.submission.error_texts import described, shown
 from grader.submission.trace import PREFIX, LaunchedNode, LaunchFile
-from grader.submission.unknown import unless_unknown
+from grader.text.message import NOTHING, Message, joined, msg
 from grader_robots.exercises.description_package import installing, launching
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

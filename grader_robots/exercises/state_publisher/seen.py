@@ -12,13 +12,13 @@ from grader.exercise.asking import CheckFunction
 from grader.exercise.check import Tolerances
 from grader.exercise.sentences import error_first, how_it_ended
 from grader.exercise.verdict import Evidence, Finding
-from grader.message import Message, joined, msg, plain_text
 from grader.recording.recording import Recordings
 from grader.recording.view import Floats
+from grader.text.message import Message, joined, msg, plain_text
+from grader_robots.robot_py.model import Joint
 from grader_robots.scene.motion import joints, odometry
 from grader_robots.scene.trace import TICK_S, RobotTrace
 from grader_robots.scene.view import PLANE
-from robot_py.model import Joint
 
 
 class RobotRun:

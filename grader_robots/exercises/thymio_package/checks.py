@@ -12,8 +12,8 @@ import numpy as np
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.message import NOTHING, Message, msg
 from grader.submission.error_texts import shown
+from grader.text.message import NOTHING, Message, msg
 from grader_robots.exercises.description_package import checks as of_packages
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
@@ -29,9 +29,9 @@ from grader_robots.exercises.description_package.spawning import (
     spawners,
 )
 from grader_robots.exercises.thymio_package import wheels
-from robot_py import kinematics
-from robot_py.model import Box, Model, Origin
-from robot_py.urdf import Consequence, ParsedUrdf, parse
+from grader_robots.robot_py import kinematics
+from grader_robots.robot_py.model import Box, Model, Origin
+from grader_robots.robot_py.urdf import Consequence, ParsedUrdf, parse
 
 _MOVED_M = 1e-6
 #: What hangs on a part so far from its middle, as a share of half of its size, is at its side.

@@ -11,12 +11,22 @@ from numpy.typing import NDArray
 
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
-from grader.message import Message, joined, msg
 from grader.submission.error_texts import shown
+from grader.text.message import Message, joined, msg
 from grader_robots.exercises.description_package.facts import PackageFacts, no_robot, of_package
 from grader_robots.exercises.description_package.robots import best_of
-from robot_py import kinematics
-from robot_py.model import Box, Collision, Cylinder, JointType, Link, Mesh, Model, Sphere, Visual
+from grader_robots.robot_py import kinematics
+from grader_robots.robot_py.model import (
+    Box,
+    Collision,
+    Cylinder,
+    JointType,
+    Link,
+    Mesh,
+    Model,
+    Sphere,
+    Visual,
+)
 
 Point = NDArray[np.float64]
 #: Two wheels are a pair if their axes go along the line between them, give or take 45 degrees ...

@@ -3,7 +3,7 @@ import json
 import pytest
 
 from grader.cli import main
-from grader.strict_json import first_error
+from grader.system.strict_json import first_error
 from tests.grader.reports import samples
 
 
@@ -14,7 +14,7 @@ def error(tmp_path):
 
 def said(path):
     data = json.loads(path.read_text(encoding="utf-8"))
-    assert first_error("grader.result", "error", data) is None
+    assert first_error("grader.exercise.result", "error", data) is None
     return data["whose"], data["message"], data["max_score"]
 
 

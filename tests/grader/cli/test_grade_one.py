@@ -11,11 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from grader import files, grading
+from grader import grading
 from grader.cli import main
 from grader.cli.grade_one import out_of
 from grader.exercise.loading import load_exercise
 from grader.recording import reading
+from grader.system import files
 from tests import archive
 from tests.programs import ROOT
 

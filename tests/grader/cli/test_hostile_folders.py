@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from grader import files
 from grader.cli import main
 from grader.errors import UsageError
 from grader.recording import reading
+from grader.system import files
 
 MINE = "mine, and no student's\n"
 NAMES = ["output.txt", "canvas.png", "report.html", "result.json"]

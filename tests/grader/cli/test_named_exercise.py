@@ -5,18 +5,18 @@ import pytest
 
 import grader
 from grader import grading
-from grader.batch.class_file import ClassFile
 from grader.cli import main
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
-from grader.message import NOTHING
+from grader.exercise.result.result import Result
 from grader.recording.subject import Role
-from grader.result.result import Result
 from grader.run.opening import marks_of
 from grader.submission.reader import Marks
+from grader.text.message import NOTHING
+from grader_class.class_file import ClassFile
 from tests.files import lay
-from tests.grader.batch.classes import batch, work_here
 from tests.grader.testing import exercises
+from tests.grader_class.classes import batch, work_here
 
 DESCRIPTION = load_exercise("description_package").folder / "reference"
 COMMENT = "# grader: exercise={}\n"

@@ -19,9 +19,9 @@ import psutil
 import pytest
 import yaml
 
-from grader import scratch
 from grader.cli import main
-from grader.strict_json import first_error
+from grader.system import scratch
+from grader.system.strict_json import first_error
 from tests import once
 from tests.programs import ROOT
 
@@ -107,7 +107,7 @@ def test_a_result_follows_the_schema_its_files_exist_and_no_process_is_left(
 ):
     """The page is the one that report makes of its folder, and judged again it is the same."""
     run = graded(name)
-    assert first_error("grader.result", "result", run.result) is None
+    assert first_error("grader.exercise.result", "result", run.result) is None
     assert all((run.out / path).exists() for path in run.result["artifacts"].values())
     assert not run.left_running
     capfdbinary.readouterr()

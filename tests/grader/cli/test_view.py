@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from grader import extensions
 from grader.cli import main
 from grader.recording import saving
 from grader.recording.recording import Recordings
 from grader.recording.subject import load_subject
+from grader.system import extensions
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict

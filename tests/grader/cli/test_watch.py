@@ -11,7 +11,7 @@ from rich.console import Console
 from grader.cli import watch
 from grader.cli.watch import change, each_save, grade_again
 from grader.errors import UsageError
-from grader.result.result import Result
+from grader.exercise.result.result import Result
 from tests.grader.cli.test_live import ONE_RUN
 from tests.grader.reports import samples
 from tests.programs import ROOT

@@ -5,9 +5,9 @@ import os
 import pytest
 
 from grader.cli import main
+from grader.exercise.result.result import Result
 from grader.recording import saving
 from grader.recording.recording import Recordings
-from grader.result.result import Result
 from tests.files import contents
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples

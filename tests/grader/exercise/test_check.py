@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from grader import system
 from grader.errors import CheckFailed
 from grader.exercise import asking, check
 from grader.exercise.check import Checks, judge
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Evidence, Finding
-from grader.limited import WorkLimits
 from grader.recording.recording import NominalAlone, NotOver, Recordings
+from grader.system import versions as system
+from grader.system.limited import WorkLimits
 from tests.grader.driving import Spiral, drive
 
 

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 import yaml
 
-from grader import extensions
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
+from grader.system import extensions
 from grader.testing import drive
 from tests.grader.testing.exercises import refusal
 

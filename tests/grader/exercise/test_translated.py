@@ -7,13 +7,13 @@ import yaml
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
+from grader.exercise.result import json_file
 from grader.exercise.sheet import Start, sheet
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recordings
 from grader.recording.subject import load_subject
-from grader.result import json_file
 from grader.testing import drive
-from grader.translations import ENGLISH, translate, use
+from grader.text.translations import ENGLISH, translate, use
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import refusal
 

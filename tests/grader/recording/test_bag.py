@@ -15,9 +15,9 @@ from rosbags.highlevel import AnyReader
 
 from grader.recording import bag, mcap, reading, saving
 from grader.recording.recording import Recordings
-from grader.rosidl.bag_types import OF_ROS
-from grader.rosidl.definitions import Definitions
-from grader.rosidl.messages import serialise
+from grader.ros.bag_types import OF_ROS
+from grader.ros.definitions import Definitions
+from grader.ros.messages import serialise
 from grader.scenes import load_scene
 from tests import archive
 from tests.grader.driving import drive, pen, twist

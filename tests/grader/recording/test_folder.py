@@ -11,17 +11,18 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from grader import cli, content
+from grader import cli
 from grader.errors import RecordingError
-from grader.message import msg
 from grader.recording import bag, reading, saving
 from grader.recording.observations import End, Observations, SourceLine, Standstill
 from grader.recording.recording import OwnInterfaces, Provenance, Recordings
 from grader.recording.saving import BAG, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.saving import CIRCUMSTANCES_FILE as CIRCUMSTANCES
 from grader.scenes.turtlesim.trace import Log
-from grader.strict_json import to_json
 from grader.submission.trace import PackageTrace
+from grader.system import content
+from grader.system.strict_json import to_json
+from grader.text.message import msg
 from tests.files import contents
 from tests.grader.driving import Spiral, drive
 from turtlesim_py.world.events import RotateAbsolute, SetParameter, SetPen

@@ -3,7 +3,7 @@
 from tests.limited import printed_by
 
 CODE = """
-from grader.diagnosis import crash
+from grader_diagnosis import crash
 from grader.recording import printed
 limit(4, 4_000_000_000)
 for hard in (

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.message import msg, plain_text
 from grader.recording import reading, saving
 from grader.recording.recording import ProgramRun, PublishedTopic, Recording, Recordings, Run
 from grader.recording.subject import Start
 from grader.run.finish import Ending, record
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
+from grader.text.message import msg, plain_text
 from tests.conftest import EXAMPLES
 from tests.grader.driving import Spiral, drive, twist
 from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_traces, texts

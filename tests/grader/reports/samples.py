@@ -4,11 +4,11 @@ import base64
 import json
 from pathlib import Path
 
+from grader.exercise.result.result import Result
 from grader.recording import saving
 from grader.recording.recording import Recordings
 from grader.reports import Report, names, render
 from grader.reports.beside import Beside
-from grader.result.result import Result
 
 #: The formats that are installed.
 FORMATS = names()

@@ -3,8 +3,8 @@ import io
 
 import pytest
 
+from grader.exercise.result.error import ErrorResult
 from grader.reports import csv, read
-from grader.result.error import ErrorResult
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 
 from grader.errors import UsageError
+from grader.exercise.result.error import ErrorResult
 from grader.reports import ErrorReport, read, render
-from grader.result.error import ErrorResult
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import FORMATS
 from tests.grader.reports.test_every_format import TEXTS, safe_to_print

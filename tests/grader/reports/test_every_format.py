@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.exercise.result.result import Result
 from grader.reports import Report, render
 from grader.reports.beside import Beside
-from grader.result.result import Result
 from tests.grader.reports import samples
 from tests.grader.reports.readers import READERS
 from tests.grader.reports.samples import FORMATS

@@ -8,11 +8,11 @@ from grader import judging
 from grader.cli import main
 from grader.errors import SubmissionError
 from grader.exercise.loading import load_exercise
-from grader.message import msg
+from grader.exercise.result.error import ErrorResult
 from grader.recording.recording import Recordings
 from grader.reports import ErrorReport, Report, render
-from grader.result.error import ErrorResult
-from grader.translations import ENGLISH, use
+from grader.text.message import msg
+from grader.text.translations import ENGLISH, use
 from tests.grader.driving import Spiral, drive
 
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from grader.exercise.result.result import Result
 from grader.recording.recording import Recordings
 from grader.reports import Report, render
 from grader.reports import read as read_report
-from grader.result.result import Result
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import FORMATS, evidence, verdict

@@ -7,16 +7,16 @@ from functools import cache
 import pytest
 
 from grader.cli import main
+from grader.exercise.result.result import SubmissionInfo
 from grader.reports import read as read_report
 from grader.reports import render
 from grader.reports.wording import duration
-from grader.result.result import SubmissionInfo
-from grader.strict_json import to_json
+from grader.system.strict_json import to_json
 from tests.grader.driving import Spiral, drive
+from tests.grader.exercise.result.test_result import DUE, LATE, POLICY
 from tests.grader.reports import samples
 from tests.grader.reports.readers import READERS
 from tests.grader.reports.samples import FORMATS
-from tests.grader.result.test_result import DUE, LATE, POLICY
 
 #: Made for teachers: a table of a class; and Gradescope hides what the file tells it to.
 FOR_STUDENTS = sorted(set(FORMATS) - {"csv", "gradescope"})

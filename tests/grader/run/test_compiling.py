@@ -9,19 +9,19 @@ from pathlib import Path
 import pytest
 import yaml
 
-from grader import scratch
-from grader.message import msg
 from grader.recording.recording import OwnInterfaces
-from grader.rosidl import compiler
-from grader.rosidl.definitions import Definitions, slot_of
-from grader.rosidl.messages import installed
+from grader.ros import compiler
+from grader.ros.definitions import Definitions, slot_of
+from grader.ros.messages import installed
 from grader.run import compiling, real_time, run_context
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.run.processes import levels
 from grader.scenes.scene import Limits
+from grader.system import scratch
+from grader.text.message import msg
 from tests import runs
-from tests.grader.rosidl.comparing import differences
+from tests.grader.ros.comparing import differences
 from tests.grader.run.conftest import at_levels
 from turtlesim_py.ros import interfaces
 

@@ -10,13 +10,13 @@ from itertools import count
 
 import pytest
 
-from grader import linux
 from grader.recording.observations import LintFinding, Observations, SourceLine
 from grader.run import evidence
 from grader.run.evidence import EvidencePage
 from grader.run.observe import account
 from grader.run.opening import open_submission
 from grader.submission.start import Submission
+from grader.system import linux
 from tests.children import in_child
 
 PLACE = {"file": "a.py", "line": 2, "function": "", "text": "pass"}

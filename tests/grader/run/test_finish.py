@@ -5,12 +5,12 @@ from typing import get_args
 
 import pytest
 
-from grader.message import msg, plain_text
 from grader.recording.recording import Outcome, ProgramRun, PublishedTopic, Run
 from grader.recording.subject import Start
 from grader.run.finish import Ending, outcome, record
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits, Reason
+from grader.text.message import msg, plain_text
 from tests.grader.driving import Spiral, drive
 
 REASONS = get_args(Reason)

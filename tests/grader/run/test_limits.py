@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from grader import linux
 from grader.run import limits
 from grader.run.limits import GIB, LIMITS, MIB, RunLimits
 from grader.run.processes import supervisor
+from grader.system import linux
 from tests.children import NOBODYS_UID, error_of, in_child
 
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from grader.message import NOTHING, msg
 from grader.run.finish import limits_struck
 from grader.run.limits import LIMITS, size
+from grader.text.message import NOTHING, msg
 from tests.tiers import others_are_more
 
 OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <module>\n'

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 import yaml
 
-from grader.message import msg
 from grader.run.clock import executor
+from grader.text.message import msg
 from tests.tiers import others_are_more
 
 OUTPUTS = Path(__file__).parent / "messages"

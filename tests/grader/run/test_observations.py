@@ -2,8 +2,6 @@
 
 import pytest
 
-from grader.diagnosis import standstill
-from grader.diagnosis.case import Case
 from grader.recording.observations import (
     Burst,
     End,
@@ -15,6 +13,8 @@ from grader.recording.observations import (
 )
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
+from grader_diagnosis import standstill
+from grader_diagnosis.case import Case
 from tests import runs
 from turtlesim_py.world.events import CmdVel
 

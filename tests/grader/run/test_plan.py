@@ -5,10 +5,10 @@ from dataclasses import fields
 
 import pytest
 
-from grader.message import msg, plain_text
 from grader.recording.subject import Start
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
+from grader.text.message import msg, plain_text
 
 
 def test_every_field_and_its_type_survive_the_way_to_another_process_as_one_line():

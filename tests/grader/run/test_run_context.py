@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 import yaml
 
-from grader import scratch
 from grader.errors import NotNow
 from grader.recording.recording import Recording
 from grader.run import environment, virtual_time
@@ -21,6 +20,7 @@ from grader.run.opening import open_submission
 from grader.run.processes import levels, network
 from grader.run.run_context import RunContext
 from grader.scenes.scene import Limits
+from grader.system import scratch
 from tests.grader.run.conftest import CLOCKS, either_clock
 from turtlesim_py.world.events import CmdVel
 

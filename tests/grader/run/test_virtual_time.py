@@ -5,7 +5,6 @@ import re
 
 import pytest
 
-from grader.message import msg
 from grader.recording.subject import Start
 from grader.run import virtual_time
 from grader.run.clock import executor
@@ -13,6 +12,7 @@ from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
+from grader.text.message import msg
 from tests import runs
 from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more

@@ -22,7 +22,7 @@ MISTAKES = '''
 import time
 
 import numpy as np
-from grader.message import msg
+from grader.text.message import msg
 from grader.recording.subject import Endpoint, Start
 from grader.recording.view import Curve, Pictures, View
 from lamp import BOOL, TOPIC, Lamp, LampSimulation, LampTrace

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 import grader.scenes
-from grader import extensions
 from grader.recording.subject import load_subject
 from grader.scenes import load_scene
+from grader.system import extensions
 
 ROOT = Path(__file__).parents[3]
 NAMES = [*extensions.points(extensions.SCENES)]
@@ -21,8 +21,9 @@ def test_a_subject_is_called_as_it_is_asked_for(name):
 
 
 def test_there_is_a_name_for_every_folder_with_a_scene():
-    folder = Path(grader.scenes.__path__[0])
-    assert {path.parent.name for path in folder.glob("*/scene.py")} <= set(NAMES)
+    folders = {path.parent.name for path in Path(grader.scenes.__path__[0]).glob("*/scene.py")}
+    modules = {point.module for name in NAMES for point in extensions.points("grader.scenes")[name]}
+    assert {f"grader.scenes.{name}.scene" for name in folders} <= modules
 
 
 @pytest.mark.parametrize("name", ["moon", "", "turtlesim.scene", "../turtlesim", "scene"])

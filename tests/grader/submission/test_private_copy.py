@@ -7,12 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from grader import grading, scratch
+from grader import grading
 from grader.exercise.loading import load_exercise
 from grader.run.opening import open_submission
 from grader.submission import private_copy
 from grader.submission.answer import SetUp
 from grader.submission.private_copy import PrivateCopy, install
+from grader.system import scratch
 from tests.files import lay
 from tests.grader.submission.copies import GUARDED as NODE
 from tests.grader.submission.copies import refused

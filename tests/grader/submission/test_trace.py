@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.message import NOTHING, plain_text
 from grader.recording.reading import load
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.saving import save_all
@@ -26,6 +25,7 @@ from grader.submission.trace import (
     decode,
     encode,
 )
+from grader.text.message import NOTHING, plain_text
 
 SETUP = Setup(
     "a", "a", "", "ament_python", NOTHING, ("b",), None, (), (), (), "", ("x",), ("y",), ()

@@ -7,8 +7,8 @@ import pytest
 from grader.exercise import asking
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
-from grader.limited import WorkLimits
 from grader.recording.recording import Recordings
+from grader.system.limited import WorkLimits
 from grader.testing import check_exercise, checking, drive, twist
 from grader.testing.checking import examine, odd_recordings
 from tests.grader.testing import exercises

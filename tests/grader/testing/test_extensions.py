@@ -5,13 +5,13 @@ from itertools import count
 
 import pytest
 
-from grader import extensions
-from grader.message import msg
 from grader.recording.subject import load_subject
 from grader.reports import Format, load
 from grader.scenes.turtlesim.scene import Turtlesim
+from grader.system import extensions
 from grader.testing import check_report, check_scene
 from grader.testing import extensions as checked
+from grader.text.message import msg
 from tests.grader.reports.samples import CLASSROOM50, FORMATS
 
 

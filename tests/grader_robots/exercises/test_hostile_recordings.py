@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings
+from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene.driving import EPOCH_NS, drive, joint_state, tf
-from robot_py.robot_state import Placed
 from tests.conftest import CASES
 
 TICKS = 60

@@ -8,7 +8,6 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.message import NOTHING, plain_text
 from grader.recording.recording import Recording, Recordings
 from grader.submission.trace import (
     Include,
@@ -21,8 +20,9 @@ from grader.submission.trace import (
     Parameter,
     Setup,
 )
+from grader.text.message import NOTHING, plain_text
+from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene.driving import drive, joint_state, tf
-from robot_py.robot_state import Placed
 
 EXERCISE = load_exercise("state_publisher")
 URDF = EXERCISE.setting

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from grader.strict_json import from_json
 from grader.submission import safe_files
 from grader.submission.answer import SetUpFacts
 from grader.submission.examining import main, steps
@@ -24,6 +23,7 @@ from grader.submission.examining.steps import (
     step,
 )
 from grader.submission.trace import FAILED, PackageTrace, decode, encode
+from grader.system.strict_json import from_json
 from grader_robots.inspection import meshes
 from tests.grader_robots.packages import INSPECTORS, REFERENCE, looked_at, written
 

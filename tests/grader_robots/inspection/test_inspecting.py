@@ -6,12 +6,13 @@ import zipfile
 import pytest
 
 import grader
-from grader import judging, scratch
+from grader import judging
 from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
 from grader.run import inspecting
 from grader.run.processes import levels, network
 from grader.submission.trace import FAILED
+from grader.system import scratch
 from tests import archive, runs
 from tests.grader.run.test_opening import TEXTS
 from tests.grader_robots.packages import EXERCISE, REFERENCE, looked_at, recorded, written

@@ -5,9 +5,6 @@ import re
 
 import pytest
 
-from grader.batch.gradebook.feedback import Feedback
-from grader.batch.page.thumb import THUMB, Thumb, thumb
-from grader.message import plain_text
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.view import Tree, TreeNode
 from grader.reports import gradescope
@@ -15,11 +12,14 @@ from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.reports.page.parts import DEEPEST, WIDTH, drawn
 from grader.submission.trace import Description, LaunchedNode, LaunchFile, PackageTrace, Parameter
+from grader.text.message import plain_text
+from grader_class.gradebook.feedback import Feedback
+from grader_class.page.thumb import THUMB, Thumb, thumb
 from grader_robots.scene.driving import drive
 from grader_robots.scene.trace import RobotTrace
-from tests.grader.batch.page.classes import entry, result
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import evidence, verdict
+from tests.grader_class.page.classes import entry, result
 from tests.grader_robots.scene.robots import walks
 from tests.grader_robots.scene.test_view import URDF
 

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 
+from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene.driving import Said, joint_state, tf
-from robot_py.robot_state import Placed
 
 URDF = """<robot name="two">
   <link name="axis"/><link name="body"/><link name="head"/>

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene import frames
 from grader_robots.scene.driving import drive, tf
 from grader_robots.scene.trace import TF_STATIC, RobotTrace
-from robot_py.robot_state import Placed
 from tests.grader_robots.scene.robots import URDF, walks
 
 STILL = (0.0, 0.0, 0.0, 1.0)

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene import view
 from grader_robots.scene.driving import drive, joint_state, tf
 from grader_robots.scene.scene import SCENE
 from grader_robots.scene.trace import TF, TICK_NS, RobotTrace
-from robot_py.robot_state import Placed
 from tests.grader_robots.scene.robots import walks
 
 URDF = """<robot name="two"><material name="m"><color rgba="0 0 1 1"/></material>

@@ -42,7 +42,7 @@ def call(code, *arguments, folder, shim=WITHOUT_ROS, **env):
 GRADER = "from grader.__main__ import main; main()"
 
 
-ROBOT = "import robot_py.commands as c; sys.exit(c.robot_state_publisher())"
+ROBOT = "import grader_robots.robot_py.commands as c; sys.exit(c.robot_state_publisher())"
 COMMANDS = [
     ("turtlesim_node", "import turtlesim_py.commands as c; sys.exit(c.turtlesim_node())", []),
     ("turtle_controller", "import turtlesim_challenge as c; c.main()", []),

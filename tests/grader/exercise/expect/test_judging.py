@@ -10,8 +10,8 @@ from grader.exercise.check import Checks, judge
 from grader.exercise.expect.checks import add_checks
 from grader.exercise.known_types import KnownTypes
 from grader.exercise.verdict import Finding
-from grader.limited import WorkLimits
 from grader.recording.recording import Recording, Recordings
+from grader.system.limited import WorkLimits
 from tests.grader.exercise.expect.traces import (
     endpoint,
     event,

@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from grader.cast.trace import CastTrace, SentMessage
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import parse
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recording, Recordings, Run
-from grader.rosidl.bag_types import BagTypes
+from grader.ros.bag_types import BagTypes
+from grader.scenes.cast.trace import CastTrace, SentMessage
 from grader.scenes.scene import STEP_NS
 
 TYPES, NOW = BagTypes({}), {"sec": 0, "nanosec": 0}

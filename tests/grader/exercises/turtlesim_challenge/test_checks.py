@@ -8,7 +8,7 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.recording.recording import Recordings
-from grader.strict_json import to_json
+from grader.system.strict_json import to_json
 from tests.grader.driving import CENTRE, RED, WHITE, Spiral, drive, pen, spoiled, twist
 from tests.grader.exercises.turtlesim_challenge.judging import (
     EXERCISE,

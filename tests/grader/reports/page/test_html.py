@@ -9,11 +9,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from grader.exercise.result.result import Result
 from grader.recording.recording import Recordings
 from grader.reports import Report, terminal
 from grader.reports import read as read_report
 from grader.reports.page import html
-from grader.result.result import Result
 from tests.grader.driving import Spiral, drive, pen, twist
 from tests.grader.reports import readers, samples
 from tests.grader.reports.readers import elements

@@ -4,11 +4,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.message import plain_text
 from grader.recording.view import Curve, View
 from grader.reports.page.plots import HEIGHT, WIDTH, plots
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import view
+from grader.text.message import plain_text
 from tests.grader.driving import Spiral, drive, pen
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.turtle import TICK_S

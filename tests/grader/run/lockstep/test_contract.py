@@ -10,14 +10,14 @@ import rclpy.executors
 import rclpy.task
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader import system
-from grader.message import NOTHING, msg
 from grader.run import virtual_time
 from grader.run.handover import Plan
 from grader.run.lockstep import contract
 from grader.run.opening import open_submission
 from grader.run.processes import levels
 from grader.scenes.scene import Limits
+from grader.system import versions as system
+from grader.text.message import NOTHING, msg
 from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more
 

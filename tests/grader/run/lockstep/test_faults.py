@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from grader.message import Message
 from grader.run.lockstep import faults
 from grader.run.lockstep.registry import EndpointRegistry
+from grader.text.message import Message
 
 
 def raised(function: Callable[..., Any], *args: Any) -> Exception:

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.message import msg, plain_text
 from grader.run.lockstep.protocol import (
     TICK_NS,
     Advance,
@@ -21,6 +20,7 @@ from grader.run.lockstep.protocol import (
     decode,
     encode,
 )
+from grader.text.message import msg, plain_text
 from turtlesim_py.world import arena
 
 U32, U64 = st.integers(0, 2**32 - 1), st.integers(0, 2**64 - 1)

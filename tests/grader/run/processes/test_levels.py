@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from grader import cli, scratch
+from grader import cli
 from grader.cli import run
 from grader.errors import GraderFailure, NotNow, UsageError
 from grader.run import run_context
@@ -18,6 +18,7 @@ from grader.run.processes import levels, network, refusal
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
 from grader.run.sandbox import view
+from grader.system import scratch
 from tests.children import in_child
 from tests.grader.run.processes.conftest import ENV
 from tests.programs import ran

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from grader import linux
 from grader.run.limits import LIMITS, MIB, RunLimits
 from grader.run.processes.limits_guard import Family, LimitsGuard
+from grader.system import linux
 
 TEXTS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text())
 

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from grader import scratch
 from grader.errors import NotNow
 from grader.run.processes import network, refusal
 from grader.run.run_context import RunContext, open_context
+from grader.system import scratch
 from tests.programs import ran
 from tests.tiers import others_are_more, that_apply
 

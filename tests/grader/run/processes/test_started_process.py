@@ -13,9 +13,9 @@ import psutil
 import pytest
 import yaml
 
-from grader import linux, scratch
 from grader.run.processes import supervisor
 from grader.run.processes.started_process import await_ends
+from grader.system import linux, scratch
 from tests.children import in_child
 from tests.grader.run.processes.conftest import ROOT, UNPRIVILEGED
 from tests.programs import ran

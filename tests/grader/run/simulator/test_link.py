@@ -11,7 +11,6 @@ from itertools import chain
 
 import pytest
 
-from grader.message import plain_text
 from grader.run.limits import Patience
 from grader.run.lockstep.protocol import (
     PROGRESS,
@@ -28,6 +27,7 @@ from grader.run.lockstep.protocol import (
 from grader.run.observe import account
 from grader.run.simulator import link
 from grader.run.simulator.link import Refused, StudentLink
+from grader.text.message import plain_text
 
 #: Where nobody asks how far a process has got.
 NO_PAGE = -1

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grader.message import msg
 from grader.recording.subject import BagMessage
-from grader.rosidl.cdr import CdrReader
-from grader.rosidl.messages import serialise
+from grader.ros.cdr import CdrReader
+from grader.ros.messages import serialise
 from grader.scenes.scene import STEP_NS, Introduction, Scene, Simulation, arrived
+from grader.text.message import msg
 
 SHOWN, MIXED, LIGHT = "/light", "/mixed", "light_interfaces/msg/Light"
 

@@ -8,8 +8,8 @@ from hypothesis import given
 
 from grader.recording.channel import Channel
 from grader.recording.subject import BagMessage
-from grader.rosidl.bag_types import OF_ROS
-from grader.rosidl.cdr import string
+from grader.ros.bag_types import OF_ROS
+from grader.ros.cdr import string
 from grader.scenes.turtlesim import messages
 from grader.scenes.turtlesim.scene import SCENE
 from grader.scenes.turtlesim.trace import TurtleTrace

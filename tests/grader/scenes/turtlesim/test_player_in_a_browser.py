@@ -10,7 +10,7 @@ from grader.recording import saving
 from grader.recording.recording import Recordings
 from grader.recording.subject import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
-from grader.translations import ENGLISH, use
+from grader.text.translations import ENGLISH, use
 from tests.barriers import barriers
 from tests.browser import WIDTHS, clipped, cut_off, moving, needs_browser, obstacles
 from tests.grader.driving import RED, Spiral, drive, pen, twist

@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from grader.cast import pages
 from grader.scenes import joined
-from grader.translations import ENGLISH, catalogue
+from grader.scenes.cast import pages
+from grader.text.translations import ENGLISH, catalogue
 
 #: Of each page its name, its first module, and the folders of its modules before those of others.
 PAGES = [

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.message import NOTHING
 from grader.recording.view import PenChange
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import PLANE, view
+from grader.text.message import NOTHING
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
 from turtlesim_py.world.arena import TICK_NS, Arena
 from turtlesim_py.world.turtle import SIZE_M, TICK_S

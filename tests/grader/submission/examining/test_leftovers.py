@@ -7,7 +7,7 @@ import pytest
 
 BEGIN = """
 import ctypes, os, signal, sys, threading, time
-from grader import linux
+from grader.system import linux
 from grader.submission.examining import leftovers
 
 def born():

@@ -2,10 +2,10 @@
 
 import pytest
 
-from grader.strict_json import from_json
 from grader.submission.answer import DataFiles, SetUpFacts
 from grader.submission.examining.setup_call import evaluate, run_setup
 from grader.submission.examining.steps import Ended, step
+from grader.system.strict_json import from_json
 
 SETUP = "from setuptools import setup\n"
 ONLY_CALLS = f"{SETUP}setup()\n"

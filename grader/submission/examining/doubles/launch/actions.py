@@ -22,8 +22,8 @@ from launch._core import (
 from launch.events import Shutdown as ShutdownEvent
 from launch.utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
 
-from grader.message import msg
 from grader.submission.examining.steps import not_known
+from grader.text.message import msg
 
 #: Nothing starts later [s].
 _LONGEST_S = 1e6

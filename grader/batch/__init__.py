@@ -1,1 +1,0 @@
-"""A whole class: find it in an export, grade it in parallel, and compare its hand-ins."""

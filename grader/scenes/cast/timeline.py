@@ -1,0 +1,124 @@
+"""What was exchanged in a run, hop by hop, as plain data for a page: lanes, and what is on them.
+
+An item has a time [s], perhaps an end, the lane that it comes from, the lanes that it reaches, what
+it is about, and its values in a line. An item may still change while a run goes on; its id stays.
+"""
+
+from __future__ import annotations
+
+import json
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from grader.scenes.cast.trace import ROSOUT, CastTrace, Event
+
+#: So many items a page has, so many characters of the values of each, so many nodes of a program.
+MOST_ITEMS, LONGEST, MOST_NODES = 12_000, 200, 24
+#: The lane of a program whose nodes are not known.
+PROGRAM: Final = "/"
+#: The lane of all nodes that have none.
+OTHERS: Final = "…"
+_LEVELS: Final = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
+_SECOND: Final = 1e9
+
+
+def lanes(trace: CastTrace) -> list[str]:
+    """Return the program's nodes, of several in the order of these, and then those of the cast."""
+    own = {event["node"] for event in trace.of_kind("endpoint")} - {PROGRAM}
+
+    def place(node: str) -> tuple[int, str]:
+        number = trace.programs.get(node, "").rpartition("-")[2]  # of 'talker-1'
+        return int(number) if number.isdecimal() else 0, node
+
+    shown = sorted(own, key=place) or [PROGRAM]
+    if len(shown) > MOST_NODES:
+        shown[MOST_NODES - 1 :] = [OTHERS]
+    return [*shown, *trace.peers]
+
+
+def labels(trace: CastTrace) -> dict[str, str]:
+    """Return what lanes are called otherwise: those of several programs, as a terminal has them."""
+    return {node: f"[{name}] {node}" for node, name in trace.programs.items() if name}
+
+
+def items(trace: CastTrace, since_ns: int = 0) -> list[dict[str, Any]]:
+    """Return all items but the messages before a time, by time."""
+    own = lanes(trace)[: -len(trace.peers) or None]
+    readers = _readers(trace)
+    first = bisect_left(trace.messages, since_ns, key=lambda sent: sent.time_ns)
+    made = []
+    for number, sent in enumerate(trace.messages[first:MOST_ITEMS], first):
+        values, sender = trace.values(sent), sent.node or own[0]
+        item: dict[str, Any] = {"id": f"m{number}", "t": sent.time_ns / _SECOND, "from": sender}
+        if sent.topic == ROSOUT:
+            level = _LEVELS.get(values["level"], "?")
+            node = f"/{values.get('name', '')}".replace(".", "/")
+            item |= {"kind": "log", "from": node if node in own else sender, "to": []}
+            item |= {"what": level, "text": clipped(values["msg"])}
+        else:
+            to = sorted(readers.get(sent.topic, set()) - {sender})
+            item |= {"kind": "message", "to": to, "what": sent.topic, "text": clipped(values)}
+        made.append(item)
+    made += [item for n, event in enumerate(trace.events) for item in _of(n, event, own[0])]
+    return sorted(made, key=lambda item: item["t"])
+
+
+def _readers(trace: CastTrace) -> dict[str, set[str]]:
+    """Return the lanes of those that hear a topic, by its name."""
+    found: dict[str, set[str]] = {}
+    for event in trace.of_kind("endpoint", writes=False):
+        found.setdefault(event["channel"].partition(" ")[2], set()).add(event["node"])
+    for event in trace.of_kind("offers", what="subscription"):
+        found.setdefault(event["name"], set()).add(event["node"])
+    return found
+
+
+def _of(number: int, event: Event, program: str) -> Iterator[dict[str, Any]]:
+    """Yield the item of an event; none of those that nobody sees happen."""
+    kind, peer = event["kind"], event.get("peer", "")
+    begin = event.get("sent_ns", event["time_ns"]) / _SECOND
+    end_ns = event.get("answered_ns", event.get("ended_ns"))
+    item = {"id": f"e{number}", "t": begin, "from": peer, "to": [program], "kind": kind}
+    if end_ns is not None:
+        item["end"] = end_ns / _SECOND
+    match kind:
+        case "call" if "sent_ns" in event:
+            yield item | {"what": event["service"], "text": _answered(event, "request", "response")}
+        case "served":
+            turned = {"from": program, "to": [peer], "kind": "call"}
+            text = _answered(event, "request", "response")
+            yield item | turned | {"what": event["service"], "text": text}
+        case "goal" if "sent_ns" in event:
+            marks = [time_ns / _SECOND for time_ns, _ in event["feedback"]]
+            text = _answered(event, "goal", "result")
+            yield item | {"what": event["action"], "text": text, "marks": marks}
+        case "action":
+            marks = [time_ns / _SECOND for time_ns, _ in event["feedback"]]
+            turned = {"from": program, "to": [peer], "kind": "goal", "marks": marks}
+            yield item | turned | {"what": event["action"], "text": _answered(event, "goal", "")}
+        case "parameter" if "sent_ns" in event:
+            verb = "set" if "set" in event else "get"
+            told = event.get(verb, event.get("values", {})).items()
+            text = ", ".join(f"{verb} {name}{_after(value)}" for name, value in told)
+            yield item | {"what": event["node"], "text": clipped(text)}
+
+
+def _after(value: Any) -> str:
+    """Return the value of a parameter, or why it was refused; '' for neither."""
+    return "" if value == "" else f" → {clipped(value)}"
+
+
+def _answered(event: Event, asked: str, answer: str) -> str:
+    """Return a question with its answer, if that has come."""
+    told = clipped(event.get(asked, {}))
+    return f"{told} → {clipped(event[answer])}" if answer in event else told
+
+
+def clipped(value: Any) -> str:
+    """Return plain data in a line, not too long."""
+    if isinstance(value, Mapping) and len(value) == 1:
+        (value,) = value.values()
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    text = text.encode("utf-8", "replace").decode()
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 4]} ..."

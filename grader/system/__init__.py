@@ -1,0 +1,1 @@
+"""Files, processes, limits and data: what all rooms use, once each."""

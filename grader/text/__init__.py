@@ -1,0 +1,1 @@
+"""What people read: messages, their translations, and strangers' text made showable."""

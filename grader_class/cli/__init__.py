@@ -1,0 +1,1 @@
+"""The verbs of a class, and what they print."""

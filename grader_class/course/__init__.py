@@ -1,0 +1,1 @@
+"""The repository of a course, for the systems that grade on their own machines."""

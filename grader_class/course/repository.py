@@ -1,0 +1,129 @@
+"""The repository of a course, made of templates: data files in which @@name stands for a value."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from grader.cli import starters as starter
+from grader.exercise.exercise import Exercise
+from grader.exercise.places import installed
+from grader.system import versions as system
+from grader.text import strings as text
+from grader_class.course.kinds import EXERCISE, GRADE, INSTALL, PUBLISH, Kind
+
+TEMPLATES = Path(__file__).parent / "templates"
+#: What of them every kind has, and what is laid where a kind wants it.
+ALL, SCRIPTS = "all", "scripts"
+#: Begins names that have a dot there in a course: among ours git would heed, or pip forget, some.
+DOT = "dot-"
+IGNORE = "dot-gitignore"
+#: A README is `README` with the kind's `STEPS`.
+README, STEPS = "README.md", "steps.md"
+OTHERS = "The commands below are for the first of them; do the same for each."
+#: The share of an exercise's points from which on a check is green, if nothing else is said.
+PASS_SHARE = 0.6
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a teacher may say of a course.
+
+    Attributes:
+        source: what pip installs.
+        pass_points: from how many points on a check is green; None: `PASS_SHARE` of them.
+        ros: the ROS 2 release that starters are for.
+    """
+
+    source: str
+    pass_points: float | None
+    ros: str
+
+
+class Template(string.Template):
+    """A text with @@name for values: no file of the systems has two @."""
+
+    delimiter = "@@"
+
+
+def write(
+    folder: Path, name: str, kind: Kind, exercises: Sequence[Exercise], how: Settings
+) -> None:
+    """Write the repository for the kind of this name into a folder that is not there yet."""
+    slugs = [(each, each.name.replace("_", kind.slug)) for each in exercises]
+    for exercise, slug in slugs:
+        place = folder / kind.starter.replace(EXERCISE, slug)
+        starter.write(place, exercise, exercise.name, slug, how.ros)
+        rubric = folder / kind.rubric.replace(EXERCISE, slug)
+        rubric.parent.mkdir(parents=True, exist_ok=True)
+        rubric.write_bytes(installed(exercise.name).description.read_bytes())
+    of_course = _of_course(kind, exercises, [slug for _, slug in slugs], how)
+    readme = _text(TEMPLATES / ALL / README).replace("@@steps\n", _text(TEMPLATES / name / STEPS))
+    _fill(folder / README, readme, of_course)
+    for path, template in _templates(name, kind):
+        of_each = slugs if EXERCISE in str(path) else [(exercises[0], "")]
+        for exercise, slug in of_each:
+            target = folder / str(path).replace(EXERCISE, slug)
+            passed = PASS_SHARE * exercise.max_score if how.pass_points is None else how.pass_points
+            _fill(target, _text(template), of_course | {"pass_points": str(text.number(passed))})
+
+
+def _templates(name: str, kind: Kind) -> Iterator[tuple[PurePosixPath, Path]]:
+    """Yield where each file of a kind goes, and its template."""
+    for part in (ALL, name):
+        for path in sorted(path for path in (TEMPLATES / part).rglob("*") if path.is_file()):
+            place = PurePosixPath(path.relative_to(TEMPLATES / part))
+            if place.name in (README, STEPS) or "__pycache__" in place.parts:
+                continue
+            yield _with_dots(place), path
+    scripts = dict.fromkeys((GRADE, INSTALL), kind.scripts)
+    if kind.is_copied:
+        scripts[PUBLISH] = ""
+        yield _with_dots(PurePosixPath(kind.starter, IGNORE)), TEMPLATES / SCRIPTS / IGNORE
+    for file, where in scripts.items():
+        yield PurePosixPath(where, file), TEMPLATES / SCRIPTS / file
+
+
+def _with_dots(path: PurePosixPath) -> PurePosixPath:
+    parts = (f".{part[len(DOT) :]}" if part.startswith(DOT) else part for part in path.parts)
+    return PurePosixPath(*parts)
+
+
+def _of_course(
+    kind: Kind, exercises: Sequence[Exercise], slugs: Sequence[str], how: Settings
+) -> dict[str, str]:
+    """Return the values that are the same in all files."""
+    first, slug = exercises[0], slugs[0]
+    return {
+        "system": kind.title,
+        "version": system.grader_version(),
+        "source": how.source,
+        "unusable": kind.unusable,
+        "failed": kind.failed,
+        "log": kind.log,
+        "first": slug,
+        "first_name": first.name,
+        "first_title": str(first.title),
+        "others": f"\n{OTHERS}" if len(slugs) > 1 else "",
+        "rubric": kind.rubric.replace(EXERCISE, slug),
+        "table": "\n".join(map(_row, exercises, slugs)),
+    }
+
+
+def _row(exercise: Exercise, slug: str) -> str:
+    return f"| `{slug}` | {exercise.title!s} | {text.number(exercise.max_score)} |"
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def _fill(target: Path, template: str, values: Mapping[str, str]) -> None:
+    """Write a file with its values; what begins as a script can be started."""
+    content = Template(template).substitute(values)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text(content, encoding="utf-8")
+    if content.startswith("#!"):
+        target.chmod(0o755)

@@ -1,0 +1,241 @@
+"""Do one task: run a submission, unless that was done; judge it for each who handed it in.
+
+All files are written into the task's own folder. A worker does this (`grader_class.pool`), on this
+machine or on another one.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import queue
+import shutil
+import sys
+import threading
+import traceback
+from contextlib import ExitStack
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import IO
+
+from grader import grading, judging
+from grader.errors import (
+    CheckFailed,
+    GraderError,
+    NotNow,
+    NotOffered,
+    RecordingError,
+    SubmissionError,
+    UsageError,
+)
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
+from grader.exercise.result import json_file
+from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.result import PAGE, RESULT, SubmissionInfo, artifacts, put_artifacts
+from grader.recording.recording import Recordings
+from grader.reports import Report, render
+from grader.run import fork_servers
+from grader.run.opening import open_submission
+from grader.run.processes import levels, started_process
+from grader.submission.start import Submission
+from grader.system import files, scratch, strict_json
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import plain
+from grader.text.translations import use
+from grader_class import export
+from grader_class.entry import Entry, HandIn, State
+from grader_class.find.joining import NOT_HANDED_IN, UNCLEAR
+from grader_class.page.thumb import THUMB, thumb
+from grader_class.pool import Answer, Ending, Task
+from grader_class.store import ERROR, RECORDING, RUN, STUDENTS
+
+#: The path of the submission that a student's traceback shows.
+SHOWN = "/submission"
+#: A process has run out of something that another one, or the same a little later, may have.
+SCARCE = (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
+#: How a task ends with an error: the first class that fits.
+_STATES: dict[type[GraderError], Ending] = {
+    CheckFailed: "exercise",
+    NotOffered: "unfit",
+    NotNow: "again",
+    GraderError: "failed",
+}
+
+
+def serve(servers: str) -> None:
+    """Do the tasks on standard input, one a line, until it ends.
+
+    Args:
+        servers: `fork_servers.described` of those that this process is given.
+    """
+    fork_servers.take(fork_servers.inherited(servers))
+    # what anything prints by mistake must not be read as an answer
+    answers = os.fdopen(os.dup(1), "wb", buffering=0)
+    os.dup2(2, 1)
+    tasks: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks), daemon=True).start()
+    started_process.adopt_orphans()
+    while True:
+        task = strict_json.of_line(Task, tasks.get())
+        answers.write(strict_json.line(done(task)))
+
+
+def done(task: Task) -> Answer:
+    """Do a task, and return how it ended; every exception becomes an answer."""
+    try:
+        use(task.language)
+        levels.only(task.isolation)
+        make(task)
+    except GraderError as error:
+        state = next(state for kind, state in _STATES.items() if isinstance(error, kind))
+        return Answer(state, error.message.map_texts(plain))
+    except Exception as error:
+        traceback.print_exc()
+        what = "".join(traceback.format_exception_only(error)).strip()
+        is_scarce = isinstance(error, OSError) and error.errno in SCARCE
+        return Answer(
+            "again" if is_scarce else "failed",
+            msg("unexpected: {what}", what=plain(what)),
+        )
+    return Answer("done")
+
+
+def _listen(pipe: IO[bytes], tasks: queue.SimpleQueue[bytes]) -> None:
+    for line in pipe:
+        tasks.put(line)
+    os._exit(0)
+
+
+def make(task: Task) -> None:
+    """Fill a task's folder.
+
+    Raises:
+        GraderFailure: a run could not be made.
+        CheckFailed: the exercise's code failed.
+        UsageError: something cannot be written.
+        RecordingError: the task names a run that cannot be read.
+    """
+    exercise = _exercise(task.exercise)
+    found = _loaded(task) or _run(task, exercise)
+    for hand_in in task.hand_ins:
+        folder = task.into / STUDENTS / hand_in.id
+        if isinstance(found, Recordings):
+            _judge(found, exercise, hand_in, task, folder)
+        else:
+            _put(hand_in, exercise, folder, "unusable", found, task.key)
+
+
+@lru_cache(maxsize=1)
+def _exercise(name_or_path: str) -> Exercise:
+    """Load an exercise, once for all tasks of a worker: it takes a third of the time of judging."""
+    return load_exercise(name_or_path)
+
+
+def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
+    """Fill the folder of a hand-in that cannot be graded, or that is missing."""
+    is_nothing = hand_in.problem in (NOT_HANDED_IN, UNCLEAR)
+    _put(hand_in, exercise, folder, "nothing" if is_nothing else "unusable", hand_in.problem)
+
+
+def failed(hand_in: HandIn, exercise: Exercise, folder: Path, message: Message) -> None:
+    """Fill the folder of a hand-in that the grader failed to judge."""
+    _put(hand_in, exercise, folder, "failed", message.map_texts(plain))
+
+
+def _run(task: Task, exercise: Exercise) -> Recordings | Message:
+    """Run a submission, and save and return its recordings; or return why it cannot be started."""
+    place = task.into / RUN
+    files.make_folder(place)
+    try:
+        with ExitStack() as held:
+            path = submitted = task.path
+            assert submitted is not None and path is not None
+            if path.is_file():  # by its original name, and apart from the files of others
+                name = task.filename or path.name
+                path = held.enter_context(scratch.make_folder()) / name
+                shutil.copyfile(submitted, path)
+            elif task.filename:  # and not by that of the export, which may be the student's
+                path = held.enter_context(scratch.make_folder()) / task.filename
+                path.symlink_to(submitted)
+            opened = held.enter_context(
+                open_submission(path, task.executable, task.launch, **exercise.opening)
+            )
+            submission = _without_path(opened)
+            runner = grading.runner(exercise, task.time)
+            recordings = grading.run_all(
+                submission, exercise, runner, seed=task.seed, hides_seed=task.hides_seed
+            )
+            _keep_for_pages(submission, recordings, place)
+    except (SubmissionError, UsageError) as error:
+        result = ErrorResult.of(error, exercise.max_score)
+        files.put(place / ERROR, json_file.text(result.to_json()).encode())
+        return result.message
+    judging.save_recordings(recordings, place / RECORDING)
+    return recordings
+
+
+def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path) -> None:
+    """Write what the pages of the whole class show of a run: they open no recording."""
+    copy = submission.copy
+    if copy is not None:
+        export.keep(copy.folder, place / export.SOURCE)
+    files.put(place / THUMB, thumb(recordings))
+
+
+def _without_path(submission: Submission) -> Submission:
+    """Return the submission with `SHOWN` in the place of its path.
+
+    The path may be in the folder of another student who handed in the same; and it differs on each
+    machine, and each time that an archive is unpacked.
+    """
+    copy = submission.copy
+    if copy is None:
+        return submission
+    return replace(submission, copy=replace(copy, prefix=str(copy.folder), shown=SHOWN))
+
+
+def _loaded(task: Task) -> Recordings | Message | None:
+    """Load an earlier run, or why there was none; None where there is nothing readable."""
+    if task.run is None:
+        return None
+    error = task.run / ERROR
+    try:
+        if os.path.lexists(error):
+            data = json_file.read(error, is_ours=True)
+            return json_file.made(ErrorResult.from_json, error, data).message
+        return judging.load_recordings(task.run / RECORDING)
+    except (RecordingError, UsageError):
+        if task.path is None:
+            raise
+        return None
+
+
+def _judge(
+    recordings: Recordings, exercise: Exercise, hand_in: HandIn, task: Task, folder: Path
+) -> None:
+    """Write the folder of a hand-in, except the recording, which `Store.put` links into it."""
+    result = judging.judge(recordings, exercise, submission=hand_in.name)
+    whose = SubmissionInfo.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
+    result = replace(result, artifacts=artifacts(recordings.nominal), handed_in=whose)
+    files.make_folder(folder)
+    result.put(folder / RESULT)
+    if not task.judge_only:
+        put_artifacts(recordings.nominal, folder)
+        page = render("html", [Report.of(result, folder, recordings, "whole")])
+        files.put(folder / PAGE, page.encode("utf-8"))
+    _put(hand_in, exercise, folder, "judged", key=task.key)
+
+
+def _put(
+    hand_in: HandIn,
+    exercise: Exercise,
+    folder: Path,
+    state: State,
+    message: Message = NOTHING,
+    key: str = "",
+) -> None:
+    files.make_folder(folder)
+    score, digest = exercise.max_score, exercise.sha256
+    Entry(hand_in, state, score, key, message, digest, folder=folder).put()
