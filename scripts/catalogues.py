@@ -56,9 +56,10 @@ def of_code(path: Path) -> Iterator[Sentence]:
 
     The first lines of docstrings are the titles of checks, and the help of verbs.
     """
-    if path.parent.name == "cli":
-        yield (ast.get_docstring(ast.parse(path.read_bytes())) or "").partition("\n")[0]
-    for node in ast.walk(ast.parse(path.read_bytes())):
+    tree = ast.parse(path.read_bytes())
+    if {"add_arguments", "main"} <= {getattr(node, "name", "") for node in tree.body}:
+        yield (ast.get_docstring(tree) or "").partition("\n")[0]
+    for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             texts = [a.value for a in node.args if isinstance(a, ast.Constant)]
             texts = [text for text in texts if isinstance(text, str)]
