@@ -18,7 +18,7 @@ from itertools import product
 from pathlib import Path
 
 from grader.errors import ExerciseError, GraderFailure, UsageError
-from grader.exercise import DEFAULT, places
+from grader.exercise import places
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.result.result import Result
@@ -39,6 +39,7 @@ from grader.submission.roles import is_among
 from grader.submission.start import Submission
 from grader.system import content
 from grader.system import versions as system
+from grader.system.extensions import DEFAULT_EXERCISE
 from grader.text.message import NOTHING, Message, msg
 from grader.text.strings import listed, shown
 
@@ -84,7 +85,7 @@ def exercise_for(path: Path, marks: Marks) -> tuple[str, Message]:
             "It names several exercises ({names}), so that none counts: choose one with --exercise",
             names=names,
         )
-        return DEFAULT, several
+        return DEFAULT_EXERCISE, several
     for name, file in marks.exercises.items():
         if not places.is_installed(name):
             raise UsageError(
@@ -95,7 +96,7 @@ def exercise_for(path: Path, marks: Marks) -> tuple[str, Message]:
                 file=file,
             )
         said = msg("Exercise: {name} (named in {file})", name=name, file=file)
-        return name, NOTHING if name == DEFAULT else said
+        return name, NOTHING if name == DEFAULT_EXERCISE else said
     fitting = fitting_exercises(marks)
     if len(fitting) == 1:
         said = msg("Exercise: {name}, by what the source has; another one: --exercise NAME")
@@ -106,7 +107,7 @@ def exercise_for(path: Path, marks: Marks) -> tuple[str, Message]:
             path=shown(path),
             names=listed(fitting),
         )
-    return DEFAULT, NOTHING
+    return DEFAULT_EXERCISE, NOTHING
 
 
 def fitting_exercises(marks: Marks) -> list[str]:
@@ -114,7 +115,7 @@ def fitting_exercises(marks: Marks) -> list[str]:
 
     It fits where it has all that an exercise names: on the graph, or, without a program, files.
     """
-    if _worth(DEFAULT, marks):
+    if _worth(DEFAULT_EXERCISE, marks):
         return []
     worth = {name: _worth(name, marks) for name in places.names()}
     best = max(worth.values())
@@ -380,7 +381,7 @@ def _record(
 def _asked(submission: AnyPath | Submission, exercise: AnyPath | Exercise | None) -> Exercise:
     if exercise is None and not isinstance(submission, Submission):
         exercise, _ = exercise_for(Path(submission), marks_of(Path(submission)))
-    return loaded(DEFAULT if exercise is None else exercise)
+    return loaded(DEFAULT_EXERCISE if exercise is None else exercise)
 
 
 @contextmanager

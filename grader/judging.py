@@ -5,19 +5,20 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from grader.exercise import DEFAULT, check
+from grader.exercise import check
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.result.diagnosis import diagnose
 from grader.exercise.result.result import Result, build
 from grader.recording import reading, saving
 from grader.recording.recording import Recording, Recordings
+from grader.system.extensions import DEFAULT_EXERCISE
 
 AnyPath = str | os.PathLike[str]
 
 
 def judge(
-    recordings: Recordings, exercise: AnyPath | Exercise = DEFAULT, *, submission: str = ""
+    recordings: Recordings, exercise: AnyPath | Exercise = DEFAULT_EXERCISE, *, submission: str = ""
 ) -> Result:
     """Judge recordings, as often as needed.
 

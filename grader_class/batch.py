@@ -6,15 +6,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grader.errors import UsageError
-from grader.exercise.exercise import Exercise
-from grader.exercise.result.visible import View
-from grader.recording.recording import Clock
-from grader.submission.request import LaunchAsked
+from grader import Exercise, UsageError
+from grader.exercise import View
+from grader.recording import Clock
+from grader.submission import LaunchAsked
 from grader.system import content, files
 from grader.system import versions as system
-from grader.text.message import NOTHING, Message, joined, msg
-from grader.text.translations import tr
+from grader.text import NOTHING, Message, joined, msg, tr
 from grader_class import export, grade
 from grader_class.class_file import CLASS, MACHINE, ClassFile
 from grader_class.entry import Entry, HandIn

@@ -12,14 +12,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
-from grader.errors import NotOffered, UsageError
-from grader.exercise.exercise import Exercise
-from grader.exercise.result import json_file
-from grader.recording.recording import Clock
-from grader.run.processes import levels
-from grader.run.processes.levels import ADVICE, LEVELS
+from grader import Exercise, NotOffered, UsageError
+from grader.exercise import json_file
+from grader.recording import Clock
+from grader.run import ADVICE, LEVELS, levels
 from grader.system import files
-from grader.text.message import Message, Text, msg
+from grader.text import Message, Text, msg
 
 SCHEMA = "turtlesim-grader/class/v2"
 CLASS = "class.json"

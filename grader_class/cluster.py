@@ -18,11 +18,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.errors import GraderFailure, UsageError
-from grader.run.processes import levels
-from grader.run.processes.levels import ADVICE, LEVELS
-from grader.system.requirements import require
-from grader.text.message import Message, joined, msg
+from grader import GraderFailure, UsageError
+from grader.run import ADVICE, LEVELS, levels
+from grader.system import require
+from grader.text import Message, joined, msg
 from grader_class import class_file, pool
 from grader_class.pool import Answer, Done, Task
 from grader_class.store import installed_versions

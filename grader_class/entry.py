@@ -17,13 +17,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from grader.errors import UsageError
-from grader.exercise.result import json_file
-from grader.exercise.result.result import RESULT, ROUNDING, Result
-from grader.exercise.verdict import Verdict
-from grader.system import files, strict_json
-from grader.system.strict_json import UNSTORED
-from grader.text.message import NOTHING, Message, msg
+from grader import Result, UsageError, Verdict
+from grader.exercise import RESULT, ROUNDING, json_file
+from grader.system import UNSTORED, files, strict_json
+from grader.text import NOTHING, Message, msg
 
 
 @dataclass(frozen=True)

@@ -27,13 +27,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from grader.errors import ExerciseError, SubmissionError
-from grader.exercise.exercise import Exercise
-from grader.reports.csv import cell, table
-from grader.submission.folder import MAX_SOURCE_BYTES, files_below, read_bounded
+from grader import Exercise, ExerciseError, SubmissionError
+from grader.reports import cell, table
+from grader.submission import MAX_SOURCE_BYTES, files_below, read_bounded
 from grader.system import files as whole_files
-from grader.system.removal import remove
-from grader.testing.solutions import FILE_NAME, read_solutions
+from grader.system import remove
+from grader.testing import FILE_NAME, read_solutions
 from grader_class.entry import Entry
 
 SOURCE: Final = "source"

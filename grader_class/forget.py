@@ -14,15 +14,11 @@ from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 
-from grader.errors import UsageError
-from grader.exercise.exercise import Exercise
-from grader.exercise.result.result import PAGE, RESULT
-from grader.exercise.result.visible import View
-from grader.reports import Report, render
-from grader.reports.beside import Beside
-from grader.system import files
-from grader.system.removal import remove
-from grader.text.strings import listed, nearest
+from grader import Exercise, UsageError
+from grader.exercise import PAGE, RESULT, View
+from grader.reports import Beside, Report, render
+from grader.system import files, remove
+from grader.text import listed, nearest
 from grader_class import batch
 from grader_class.class_file import ClassFile
 from grader_class.entry import SUBMISSIONS, Entry, HandIn, Person, comparable, entries, id_of

@@ -19,31 +19,38 @@ from functools import lru_cache
 from pathlib import Path
 from typing import IO
 
-from grader import grading, judging
-from grader.errors import (
+from grader import (
     CheckFailed,
+    Exercise,
     GraderError,
     NotNow,
     NotOffered,
     RecordingError,
+    Recordings,
     SubmissionError,
     UsageError,
+    judge,
+    load_exercise,
+    load_recordings,
+    open_submission,
+    run_all,
+    runner,
+    save_recordings,
 )
-from grader.exercise.exercise import Exercise
-from grader.exercise.loading import load_exercise
-from grader.exercise.result import json_file
-from grader.exercise.result.error import ErrorResult
-from grader.exercise.result.result import PAGE, RESULT, SubmissionInfo, artifacts, put_artifacts
-from grader.recording.recording import Recordings
+from grader.exercise import (
+    PAGE,
+    RESULT,
+    ErrorResult,
+    SubmissionInfo,
+    artifacts,
+    json_file,
+    put_artifacts,
+)
 from grader.reports import Report, render
-from grader.run import fork_servers
-from grader.run.opening import open_submission
-from grader.run.processes import levels, started_process
-from grader.submission.start import Submission
+from grader.run import fork_servers, levels, started_process
+from grader.submission import Submission
 from grader.system import files, scratch, strict_json
-from grader.text.message import NOTHING, Message, msg
-from grader.text.strings import plain
-from grader.text.translations import use
+from grader.text import NOTHING, Message, msg, plain, use
 from grader_class import export
 from grader_class.entry import Entry, HandIn, State
 from grader_class.find.joining import NOT_HANDED_IN, UNCLEAR
@@ -163,16 +170,16 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
                 open_submission(path, task.executable, task.launch, **exercise.opening)
             )
             submission = _without_path(opened)
-            runner = grading.runner(exercise, task.time)
-            recordings = grading.run_all(
-                submission, exercise, runner, seed=task.seed, hides_seed=task.hides_seed
+            run = runner(exercise, task.time)
+            recordings = run_all(
+                submission, exercise, run, seed=task.seed, hides_seed=task.hides_seed
             )
             _keep_for_pages(submission, recordings, place)
     except (SubmissionError, UsageError) as error:
         result = ErrorResult.of(error, exercise.max_score)
         files.put(place / ERROR, json_file.text(result.to_json()).encode())
         return result.message
-    judging.save_recordings(recordings, place / RECORDING)
+    save_recordings(recordings, place / RECORDING)
     return recordings
 
 
@@ -205,7 +212,7 @@ def _loaded(task: Task) -> Recordings | Message | None:
         if os.path.lexists(error):
             data = json_file.read(error, is_ours=True)
             return json_file.made(ErrorResult.from_json, error, data).message
-        return judging.load_recordings(task.run / RECORDING)
+        return load_recordings(task.run / RECORDING)
     except (RecordingError, UsageError):
         if task.path is None:
             raise
@@ -216,7 +223,7 @@ def _judge(
     recordings: Recordings, exercise: Exercise, hand_in: HandIn, task: Task, folder: Path
 ) -> None:
     """Write the folder of a hand-in, except the recording, which `Store.put` links into it."""
-    result = judging.judge(recordings, exercise, submission=hand_in.name)
+    result = judge(recordings, exercise, submission=hand_in.name)
     whose = SubmissionInfo.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
     result = replace(result, artifacts=artifacts(recordings.nominal), handed_in=whose)
     files.make_folder(folder)

@@ -20,14 +20,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from grader.errors import GraderFailure
-from grader.recording.recording import Clock
-from grader.run import fork_servers
-from grader.run.processes.fork_server import Branch, ServerLost
-from grader.submission.request import LaunchAsked
+from grader import GraderFailure
+from grader.recording import Clock
+from grader.run import Branch, ServerLost, fork_servers
+from grader.submission import LaunchAsked
 from grader.system import strict_json
-from grader.text.message import NOTHING, Message, Text, msg
-from grader.text.translations import current
+from grader.text import NOTHING, Message, Text, current, msg
 from grader_class.entry import HandIn
 
 

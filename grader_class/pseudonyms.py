@@ -17,9 +17,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
-from grader.errors import UsageError
+from grader import UsageError
 from grader.system import files
-from grader.text.message import Message, msg
+from grader.text import Message, msg
 from grader_class.class_file import CLASS, ClassFile
 from grader_class.entry import HandIn, Person, comparable, id_of
 

@@ -17,17 +17,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grader.errors import UsageError
-from grader.exercise.exercise import Exercise
-from grader.exercise.loading import load_exercise
-from grader.exercise.result.visible import View
-from grader.exercise.sentences import not_followed
-from grader.reports.csv import cell, table
-from grader.system import files, scratch
+from grader import Exercise, UsageError, load_exercise
+from grader.exercise import View, not_followed
+from grader.reports import cell, table
+from grader.system import files, remove, scratch
 from grader.system import versions as system
-from grader.system.removal import remove
-from grader.text.message import Message, chained, msg
-from grader.text.strings import number
+from grader.text import Message, chained, msg, number
 from grader_class import batch, pool
 from grader_class.class_file import ClassFile
 from grader_class.entry import Entry, entries

@@ -20,13 +20,12 @@ from contextlib import contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 
-from grader.exercise.exercise import Exercise
-from grader.recording.recording import Clock
-from grader.submission.folder import MAX_ENTRIES, is_generated, is_junk
-from grader.system import content, files
+from grader import Exercise
+from grader.recording import Clock
+from grader.submission import MAX_ENTRIES, is_generated, is_junk
+from grader.system import content, files, remove
 from grader.system import versions as system
-from grader.system.removal import remove
-from grader.text.message import msg
+from grader.text import msg
 from grader_class.class_file import CLASS
 from grader_class.entry import ENTRY, SUBMISSIONS
 from grader_class.export import SOURCE

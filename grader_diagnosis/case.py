@@ -12,22 +12,25 @@ from functools import cached_property
 from string import Formatter
 from typing import Any
 
-from grader.exercise.result.diagnosis import Diagnosis
-from grader.recording.observations import (
+from grader import Recording
+from grader.exercise import Diagnosis
+from grader.recording import (
     End,
     EndKind,
+    Endpoint,
+    EndpointKind,
     LintFinding,
     LintKind,
     Observations,
+    ProgramRun,
     Raised,
+    Run,
     SourceLine,
     Standstill,
+    last_exception,
+    load_subject,
 )
-from grader.recording.printed import last_exception
-from grader.recording.recording import ProgramRun, Recording, Run
-from grader.recording.subject import Endpoint, EndpointKind, load_subject
-from grader.text.message import NOTHING, Message, joined, msg
-from grader.text.strings import shown
+from grader.text import NOTHING, Message, joined, msg, shown
 
 #: The endpoint that an end of the submission's needs on the other side.
 OPPOSITE: dict[EndKind, EndpointKind] = {

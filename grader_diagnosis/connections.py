@@ -10,11 +10,9 @@ import re
 from dataclasses import replace
 from difflib import SequenceMatcher
 
-from grader.exercise.result.diagnosis import Diagnosis
-from grader.recording.observations import End, EndKind
-from grader.recording.subject import Endpoint
-from grader.text.message import NOTHING, Message, msg
-from grader.text.strings import shown
+from grader.exercise import Diagnosis
+from grader.recording import End, EndKind, Endpoint
+from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis import lint_findings, standstill
 from grader_diagnosis.case import OPPOSITE, Case, at, diagnosed, of_kind, since
 from grader_diagnosis.crash import misses_message

@@ -8,11 +8,9 @@ from contextlib import suppress
 from dataclasses import replace
 from signal import Signals
 
-from grader.exercise.result.diagnosis import Diagnosis
-from grader.recording.observations import Raised, SourceLine
-from grader.recording.printed import thread_exception
-from grader.text.message import NOTHING, Message, msg, plain_text
-from grader.text.strings import clip, shown
+from grader.exercise import Diagnosis
+from grader.recording import Raised, SourceLine, thread_exception
+from grader.text import NOTHING, Message, clip, msg, plain_text, shown
 from grader_diagnosis import lint_findings, lint_hints
 from grader_diagnosis.case import Case, diagnosed, line, of_kind, sentences
 from grader_diagnosis.known_exceptions import Hint

@@ -14,13 +14,10 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
-from grader.exercise.result.diagnosis import Diagnosis, costliest
-from grader.exercise.verdict import Verdict
-from grader.recording.observations import LintKind
-from grader.recording.recording import Recordings
-from grader.recording.subject import Endpoint
-from grader.text.message import msg
-from grader.text.strings import in_one_line, shown
+from grader import Recordings, Verdict
+from grader.exercise import Diagnosis, costliest
+from grader.recording import Endpoint, LintKind
+from grader.text import in_one_line, msg, shown
 from grader_diagnosis import (
     connections,
     crash,

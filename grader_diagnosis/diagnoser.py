@@ -6,11 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
-from grader.exercise.exercise import Exercise
-from grader.exercise.result.diagnosis import Diagnoser, Diagnosis
-from grader.exercise.verdict import Verdict
-from grader.recording.observations import LintFinding, RanFile
-from grader.recording.recording import Recordings
+from grader import Exercise, Recordings, Verdict
+from grader.exercise import Diagnoser, Diagnosis
+from grader.recording import LintFinding, RanFile
 from grader_diagnosis.lint import lint, paths
 
 #: So many calls that were not reached are kept.

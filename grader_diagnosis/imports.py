@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 import sys
 
-from grader.exercise.result.diagnosis import Diagnosis
-from grader.recording.observations import Raised
-from grader.text.message import NOTHING, Message, msg
-from grader.text.strings import misspelt, shown
+from grader.exercise import Diagnosis
+from grader.recording import Raised
+from grader.text import NOTHING, Message, misspelt, msg, shown
 from grader_diagnosis.case import Case, diagnosed, filled, of_kind, words_of
 
 #: Python's suffix to some errors, which helps nobody.

@@ -10,9 +10,8 @@ import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.recording.observations import Caught, Raised, SourceLine
-from grader.text.message import NOTHING, Message, msg
-from grader.text.strings import shown
+from grader.recording import Caught, Raised, SourceLine
+from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis.case import filled
 
 #: So much of an exception's text is searched [characters].

@@ -12,10 +12,8 @@ from dataclasses import replace
 from itertools import chain
 from typing import Any
 
-from grader.recording.observations import LintFinding, LintKind, Raised
-from grader.ros.fields import readable
-from grader.text.message import NOTHING, Message, as_message, msg
-from grader.text.strings import misspelt, shown
+from grader.recording import LintFinding, LintKind, Raised, readable
+from grader.text import NOTHING, Message, as_message, misspelt, msg, shown
 from grader_diagnosis import known_exceptions
 from grader_diagnosis.case import Case, filled, function, of_kind, words_of
 from grader_diagnosis.known_exceptions import Hint

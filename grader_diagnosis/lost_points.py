@@ -6,10 +6,9 @@ import re
 from dataclasses import replace
 from typing import Any
 
-from grader.exercise.result.diagnosis import Diagnosis
-from grader.recording.observations import End, LintFinding, LintKind
-from grader.text.message import NOTHING, Message, msg
-from grader.text.strings import shown
+from grader.exercise import Diagnosis
+from grader.recording import End, LintFinding, LintKind
+from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis.case import (
     Case,
     diagnosed,

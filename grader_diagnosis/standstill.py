@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from grader.exercise.result.diagnosis import Diagnosis
-from grader.recording.observations import SourceLine, Standstill
-from grader.recording.recording import NOT_THERE
-from grader.text.message import NOTHING, Message, joined, msg, msg_many
-from grader.text.strings import shown
+from grader.exercise import Diagnosis
+from grader.recording import NOT_THERE, SourceLine, Standstill
+from grader.text import NOTHING, Message, joined, msg, msg_many, shown
 from grader_diagnosis.case import (
     Case,
     after,

@@ -5,11 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import PurePath
 
-from grader.exercise.result.diagnosis import Diagnosis
-from grader.recording.observations import Caught, SourceLine
-from grader.recording.printed import is_library
-from grader.text.message import NOTHING, Message, joined, msg, plain_text
-from grader.text.strings import shown
+from grader.exercise import Diagnosis
+from grader.recording import Caught, SourceLine, is_library
+from grader.text import NOTHING, Message, joined, msg, plain_text, shown
 from grader_diagnosis.case import Case, after, diagnosed, function, sentences
 from grader_diagnosis.known_exceptions import explain
 

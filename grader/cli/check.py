@@ -10,9 +10,7 @@ from pathlib import Path
 
 from grader import judging
 from grader.cli import options
-from grader.cli.run import points
 from grader.errors import UsageError
-from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
@@ -20,8 +18,9 @@ from grader.exercise.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Resul
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.saving import WINDOW_PICTURE
-from grader.reports import Report
+from grader.reports.report import Report
 from grader.system import files
+from grader.system.extensions import DEFAULT_EXERCISE
 from grader.text.message import Message, msg
 from grader.text.strings import for_terminal
 from grader.text.translations import tr
@@ -49,13 +48,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--json", type=Path, metavar="FILE", help=tr("write the result here, and nothing else")
     )
     parser.add_argument(
-        "--fail-under", type=points, metavar="POINTS", help=tr("exit 1 below this score")
+        "--fail-under", type=options.points, metavar="POINTS", help=tr("exit 1 below this score")
     )
 
 
 def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
-    asked, args.exercise = args.exercise, args.exercise or DEFAULT
+    asked, args.exercise = args.exercise, args.exercise or DEFAULT_EXERCISE
     if args.json:
         files.check_writable(args.json, FAMILY, options.inputs(args))
     place = find_recording(args.recording)
@@ -120,7 +119,9 @@ def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) 
     if asked is not None:
         return load_exercise(asked)
     origin = recordings.nominal.provenance
-    name = (origin and origin.exercise) or (place.older and place.older.exercise) or DEFAULT
+    name = (
+        (origin and origin.exercise) or (place.older and place.older.exercise) or DEFAULT_EXERCISE
+    )
     if name not in names():
         raise UsageError(
             "the recording was made for the exercise {name!r}, which is not "
@@ -138,7 +139,7 @@ def _is_same(file: Path, place: RecordingPlace) -> bool:
 
 def _rewrite(place: RecordingPlace, result: Result, recordings: Recordings) -> Path | None:
     """Replace the older result and its page; return the page, None if they cannot be written."""
-    from grader.reports import render
+    from grader.reports.formats import render
 
     page = place.folder / PAGE
     try:

@@ -42,7 +42,7 @@ from grader.text.translations import tr
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
-    from grader.reports import Report
+    from grader.reports.report import Report
 
 #: Where no line can be overwritten, as in a CI log, one is printed this often [simulated s].
 LINE_EVERY_S = 10.0
@@ -114,7 +114,7 @@ def _run_and_judge(
     def show_nominal(nominal: Recording) -> None:
         if live is None and nominal.run.outcome != "stalled":
             return
-        from grader.reports import Report
+        from grader.reports.report import Report
 
         known = judging.judge_nominal(nominal, exercise, submission=submission.name)
         if live is None:  # the others will take as long
@@ -157,7 +157,9 @@ def _watched(
 
 def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> Report:
     """Print the result, and write it and the files beside it."""
-    from grader.reports import Report, render, terminal
+    from grader.reports import terminal
+    from grader.reports.formats import render
+    from grader.reports.report import Report
 
     report, page = Report.of(result, out, recordings), out / PAGE
 

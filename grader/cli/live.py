@@ -20,7 +20,8 @@ from grader.exercise.exercise import Exercise
 from grader.exercise.result.visible import is_hidden
 from grader.recording.playback import JudgedCheck
 from grader.recording.recording import Clock
-from grader.reports import Report, playback
+from grader.reports import playback
+from grader.reports.report import Report
 from grader.run.handover import Plan
 from grader.scenes.live import Grading, LivePage
 from grader.scenes.scene import Scene

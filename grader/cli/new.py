@@ -7,10 +7,10 @@ import os
 from pathlib import Path
 
 from grader.cli import starters as starter
-from grader.exercise import DEFAULT
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
 from grader.system import files
+from grader.system.extensions import DEFAULT_EXERCISE
 from grader.text.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
@@ -22,7 +22,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = tr("Exercises that are installed: {names}.", names=", ".join(names()))
     parser.add_argument("folder", type=Path, metavar="DIR", help=tr("a new or empty folder"))
     parser.add_argument(
-        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help=tr("which one (the challenge)")
+        "--exercise",
+        default=DEFAULT_EXERCISE,
+        metavar="NAME|FOLDER",
+        help=tr("which one (the challenge)"),
     )
     parser.add_argument(
         "--ros",

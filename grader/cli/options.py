@@ -7,6 +7,7 @@ written whole or not at all.
 from __future__ import annotations
 
 import argparse
+import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from datetime import date
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, NoReturn
 from grader.errors import GraderError, UsageError
 from grader.submission.request import LaunchAsked
 from grader.system import files
+from grader.system.extensions import DEFAULT_EXERCISE
 from grader.text.message import msg, msg_many
 from grader.text.translations import LANGUAGES, of_environment, tr, tr_many, use
 
@@ -46,6 +48,11 @@ ARGPARSE = (
     msg("ignored explicit argument %r"),
     msg_many("expected %s argument", "expected %s arguments", 1),
 )
+
+#: Those of `grader.run.processes.levels.LEVELS`, which takes long to import.
+LEVELS = ("namespaces", "landlock", "limits")
+#: The keys of `grader.grading.RUNNERS`, which takes long to import.
+CLOCKS = ("real", "virtual")
 
 
 class Misuse(UsageError):
@@ -268,3 +275,56 @@ def processes(text: str) -> int:
             tr("expected a number of processes, found {text}", text=text)
         )
     return int(text)
+
+
+def add_of_runs(parser: argparse.ArgumentParser, clock: str, isolation: str) -> None:
+    """Declare how submissions are run; the texts are the help on --time and --isolation."""
+    parser.add_argument(
+        "--exercise",
+        metavar="NAME|FOLDER|FILE",
+        help=tr(
+            "an installed one, the folder of another, or an edited exercise.yaml; default: the one "
+            "that the files of a starter name (one for a class), else the challenge"
+        ),
+    )
+    parser.set_defaults(
+        named=DEFAULT_EXERCISE
+    )  # by what is handed in, where --exercise is left out
+    parser.add_argument("--time", choices=CLOCKS, default="virtual", help=clock)
+    seeds = parser.add_mutually_exclusive_group()
+    seeds.add_argument(
+        "--seed",
+        type=int,
+        metavar="N",
+        help=tr("where the varied runs start (the exercise's own)"),
+    )
+    seeds.add_argument(
+        "--seed-file",
+        type=Path,
+        metavar="FILE",
+        help=tr("a secret, from which each student gets a seed that no result shows"),
+    )
+    parser.add_argument(
+        "--seed-shown-from",
+        type=day,
+        metavar="DATE",
+        help=tr("of --seed-file: from this day on results show the seed (never)"),
+    )
+    parser.add_argument("--isolation", choices=LEVELS, metavar="LEVEL", help=isolation)
+
+
+def points(text: str) -> float:
+    """Parse a number of points of the command line."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(tr("expected a number of points, found {text}", text=text))
+    return value
+
+
+def day(text: str) -> date:
+    """Parse a date of the command line."""
+    try:
+        return date.fromisoformat(text)
+    except ValueError:
+        found = tr("expected a date, e.g. 2026-12-31, found {text}", text=text)
+        raise argparse.ArgumentTypeError(found) from None

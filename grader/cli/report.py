@@ -14,7 +14,7 @@ from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.exercise.result.result import ARTIFACTS, RESULT
 from grader.exercise.result.visible import is_hidden
-from grader.reports import Report
+from grader.reports.report import Report
 from grader.system import files
 from grader.text.message import msg
 from grader.text.translations import tr, translate

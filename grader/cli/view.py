@@ -15,7 +15,8 @@ from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import load_subject
-from grader.reports import Report, playback
+from grader.reports import playback
+from grader.reports.report import Report
 from grader.system import files
 from grader.text.message import Message, msg
 from grader.text.strings import for_terminal

@@ -1,4 +1,5 @@
 """An exercise: exercise.yaml, checks, verdicts."""
 
-#: The exercise that is meant where none is named.
-DEFAULT = "turtlesim_challenge"
+from grader import face
+
+__getattr__ = face(__name__, __file__)

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 from grader.errors import UsageError
 from grader.exercise.verdict import Verdict
-from grader.reports import Format
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.report import Report
 from grader.text import strings as text
 from grader.text.message import msg

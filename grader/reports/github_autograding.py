@@ -6,8 +6,8 @@ import base64
 import json
 from typing import Any, Final
 
-from grader.reports import Format
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.report import Report
 from grader.text import strings as text
 from grader.text.message import msg

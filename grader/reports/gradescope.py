@@ -12,8 +12,8 @@ from typing import Any, Final
 
 from grader.exercise.result.visible import is_hidden
 from grader.exercise.verdict import Verdict
-from grader.reports import Format
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.page import pictures
 from grader.reports.report import Report
 from grader.text import strings as text

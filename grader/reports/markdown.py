@@ -6,8 +6,9 @@ import re
 from typing import Final
 
 from grader.exercise.verdict import Verdict
-from grader.reports import Format, wording
+from grader.reports import wording
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
 from grader.text import strings as text
@@ -102,7 +103,7 @@ def _seen(report: Report, verdict: Verdict) -> str:
 
 
 def _run(report: Report) -> str:
-    how = wording.how_it_ran(report.run, _quote(wording.outcome(report.outcome(0))))
+    how = wording.how_it_ran(report.run, _quote(wording.outcome_text(report.outcome(0))))
     flags = ("- " + tr("Note: {flag}", flag=_quote(flag)) for flag in report.flags)
     return "\n".join([how, *flags])
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from grader.exercise.verdict import Verdict
-from grader.reports import Format
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
 from grader.text import strings as text

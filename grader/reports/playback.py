@@ -43,7 +43,7 @@ def judged(report: Report, runs: int) -> tuple[JudgedCheck, ...]:
 
 
 def _played_run(number: int, recording: Recording) -> PlayedRun:
-    outcome = wording.outcome(recording.run.outcome.replace("_", " "))
+    outcome = wording.outcome_text(recording.run.outcome.replace("_", " "))
     start = recording.start
     if start is not None:
         outcome = tr("{outcome}; {begins}", outcome=outcome, begins=start.words)

@@ -6,8 +6,8 @@ import json
 from typing import Any, Final
 
 from grader.exercise.verdict import Verdict
-from grader.reports import Format
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.page import pictures
 from grader.reports.report import Report
 from grader.reports.wording import title_of, word

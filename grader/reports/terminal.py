@@ -18,8 +18,9 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.exercise.verdict import Verdict
-from grader.reports import Format, wording
+from grader.reports import wording
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
 from grader.text.message import msg
@@ -74,7 +75,7 @@ def show(report: Report, console: Console) -> None:
     for _, alike in groupby(lost, lambda v: (v.rationale, report.help_for(v), v.evidence)):
         console.print(_explanation(report, list(alike)))
     console.print()
-    console.print(_text(wording.how_it_ran(report.run, wording.outcome(report.outcome(0)))))
+    console.print(_text(wording.how_it_ran(report.run, wording.outcome_text(report.outcome(0)))))
     for flag in report.flags:
         console.print(_text(tr("Note: {flag}", flag=flag)))
     for note in report.notes:

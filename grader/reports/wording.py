@@ -68,7 +68,7 @@ def so_many(status: str, count: int) -> str:
     return tr_many("{n} not judged", "{n} not judged", count)
 
 
-def outcome(key: str) -> str:
+def outcome_text(key: str) -> str:
     """Return how a run ended, for people."""
     return translate(OUTCOMES.get(key, key))
 

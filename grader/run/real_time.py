@@ -29,9 +29,8 @@ from grader.run.simulator_process import (
     live_feed,
     start_simulator,
 )
-from grader.scenes import load_scene
 from grader.scenes.cast import script
-from grader.scenes.scene import Introduction, Reason
+from grader.scenes.scene import Introduction, Reason, load_scene
 from grader.submission.program import Program
 from grader.submission.start import Submission
 from grader.system import linux

@@ -43,8 +43,7 @@ from grader.run.simulator_process import (
     live_feed,
     start_simulator,
 )
-from grader.scenes import load_scene
-from grader.scenes.scene import Introduction
+from grader.scenes.scene import Introduction, load_scene
 from grader.submission.program import Program
 from grader.submission.start import Submission
 from grader.system import linux

@@ -17,7 +17,7 @@ from typing import Any, ClassVar, Final, Literal, get_args
 
 from grader.errors import SceneFailure
 from grader.recording.scene_at_work import LONGEST_WORDS
-from grader.recording.subject import Start, Subject, Trace
+from grader.recording.subject import Start, Subject, Trace, load_subject
 from grader.scenes.live import LivePage
 from grader.text.message import Message, msg
 
@@ -267,3 +267,15 @@ def command_by_hand(program: str, package: str) -> str:
     if package and len(inside) > 1:
         return f"(cd {shlex.quote(folder)} && python3 -m {'.'.join(inside)})"
     return f"python3 {shlex.quote(program)}"
+
+
+def load_scene(name: str) -> Scene:
+    """Load the scene of this name.
+
+    Raises:
+        KeyError: there is none.
+    """
+    scene = load_subject(name)
+    if not isinstance(scene, Scene):
+        raise KeyError(f"{name!r} is no scene: nothing runs beside a submission")
+    return scene

@@ -34,6 +34,8 @@ REPORTS: Final = "grader.reports"
 INSPECTIONS: Final = "grader.inspections"
 DIAGNOSES: Final = "grader.diagnoses"
 VERBS: Final = "grader.verbs"
+#: The exercise that is meant where none is named.
+DEFAULT_EXERCISE: Final = "turtlesim_challenge"
 #: The distribution that this module is of.
 DISTRIBUTION: Final = "turtlesim_py"
 

@@ -214,8 +214,8 @@ def joined(parts: Iterable[str | Message], between: str | Message = "") -> Messa
     return Message("".join(f"{{{name}}}" for name in values), values)
 
 
-def listed(items: Iterable[str | Message]) -> Message:
-    """Join things as a list: 'a', 'a and b', 'a, b and c'."""
+def series(items: Iterable[str | Message]) -> Message:
+    """Join things as a series: 'a', 'a and b', 'a, b and c'."""
     *those, last = list(items) or [NOTHING]
     if not those:
         return as_message(last)

@@ -13,17 +13,14 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from grader import UsageError
 from grader.cli import GRADER_FAILED, JUDGED, options, say
-from grader.cli.run import LEVELS, add_of_runs
-from grader.errors import UsageError
-from grader.exercise import DEFAULT
-from grader.system.requirements import require_ros
-from grader.text.message import NOTHING, Message, joined, msg, msg_many
-from grader.text.translations import tr
+from grader.system import DEFAULT_EXERCISE, require_ros
+from grader.text import NOTHING, Message, joined, msg, msg_many, tr
 
 if TYPE_CHECKING:
-    from grader.exercise.exercise import Exercise
-    from grader.exercise.result.visible import View
+    from grader import Exercise
+    from grader.exercise import View
     from grader_class.batch import Order, Work
     from grader_class.entry import Entry, HandIn
     from grader_class.find.finding import Found
@@ -56,10 +53,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="ADDRESS",
         help=tr("grade on the workers of a Dask cluster instead, which share a folder"),
     )
-    add_of_runs(
+    options.add_of_runs(
         parser,
         tr("the clock that submissions live by"),
-        tr("refuse to run submissions confined less well: {levels}", levels=", ".join(LEVELS)),
+        tr(
+            "refuse to run submissions confined less well: {levels}",
+            levels=", ".join(options.LEVELS),
+        ),
     )
     options.add_of_start(parser)
     parser.add_argument("--pattern", metavar="P", help=tr("how names tell whose a submission is"))
@@ -111,10 +111,10 @@ def main(args: argparse.Namespace) -> int:
     else:
         require_ros(args.time)
     if args.isolation and not args.scheduler:
-        from grader.run.processes import levels
+        from grader.run import levels
 
         levels.require(args.isolation)
-    from grader.exercise.loading import load_exercise
+    from grader import load_exercise
     from grader_class import batch
     from grader_class.batch import Order, check_same_class
     from grader_class.class_file import begun_at
@@ -156,15 +156,15 @@ def main(args: argparse.Namespace) -> int:
 
 def _named(found: Found, messages: Console) -> str:
     """Return the one exercise that hand-ins name, else the default one."""
-    from grader import grading
-    from grader.run.opening import marks_of
-    from grader.text.strings import listed
+    from grader import exercise_for
+    from grader.run import marks_of
+    from grader.text import listed
 
     named: dict[str, list[str]] = {}
     said = NOTHING
     for hand_in in found.hand_ins:
         if hand_in.path is not None and len((marks := marks_of(hand_in.path)).exercises) == 1:
-            name, said = grading.exercise_for(hand_in.path, marks)
+            name, said = exercise_for(hand_in.path, marks)
             named.setdefault(name, []).append(hand_in.id)
     if len(named) > 1:
         who = (joined([name, listed(ids, 3)], ": ") for name, ids in named.items())
@@ -174,7 +174,7 @@ def _named(found: Found, messages: Console) -> str:
             who=joined(list(who), "; "),
         )
     say(messages, said)
-    return next(iter(named), DEFAULT)
+    return next(iter(named), DEFAULT_EXERCISE)
 
 
 def _pseudonyms(args: argparse.Namespace, messages: Console) -> Pseudonyms | None:
@@ -262,7 +262,7 @@ def _found(
 def _grade(
     args: argparse.Namespace, order: Order, found: Found, store: Store, messages: Console
 ) -> None:
-    from grader.text.strings import listed
+    from grader.text import listed
     from grader_class import batch, class_file, pool
     from grader_class.cli import class_progress
     from grader_class.store import ASIDE
@@ -308,7 +308,7 @@ def _check_words(args: argparse.Namespace) -> None:
 
 
 def _jobs_of(args: argparse.Namespace) -> int:
-    from grader.run.processes import cores
+    from grader.run import cores
 
     return args.jobs or max(1, round(cores.share()))
 

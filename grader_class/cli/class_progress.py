@@ -13,10 +13,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from grader.cli import say
-from grader.reports.wording import points
-from grader.text.message import Message, msg
-from grader.text.strings import clip, for_terminal
-from grader.text.translations import tr, tr_many, translate
+from grader.reports import points
+from grader.text import Message, clip, for_terminal, msg, tr, tr_many, translate
 from grader_class.batch import Planned
 from grader_class.entry import Entry, HandIn, State
 from grader_class.store import Store

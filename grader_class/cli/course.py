@@ -8,16 +8,12 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.errors import UsageError
-from grader.exercise import DEFAULT
-from grader.exercise.exercise import Exercise
-from grader.exercise.loading import load_exercise
-from grader.exercise.places import installed, names
-from grader.system import files
+from grader import Exercise, UsageError, load_exercise
+from grader.exercise import installed, names
+from grader.system import DEFAULT_EXERCISE, files
 from grader.system import versions as system
+from grader.text import msg, tr
 from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import tr
 from grader_class.course import repository
 from grader_class.course.kinds import HAVE_A_CHECK, KINDS
 
@@ -51,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exercises",
         nargs="+",
-        default=[DEFAULT],
+        default=[DEFAULT_EXERCISE],
         metavar="NAME",
         help=tr("which ones, in their order (the challenge); the list is below"),
     )

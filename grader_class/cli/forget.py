@@ -8,9 +8,8 @@ from pathlib import Path
 from rich.console import Console
 
 from grader.cli import JUDGED, options, say
-from grader.exercise.result.visible import View
-from grader.text.message import msg
-from grader.text.translations import tr
+from grader.exercise import View
+from grader.text import msg, tr
 
 NEEDS_LINUX = True
 
@@ -31,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Show what would go, and with --yes let it go."""
-    from grader.exercise.loading import load_exercise
+    from grader import load_exercise
     from grader_class import forget
     from grader_class.class_file import ClassFile
     from grader_class.store import Store

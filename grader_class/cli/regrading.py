@@ -9,9 +9,9 @@ from pathlib import Path
 from rich.console import Console
 
 from grader.cli import GRADER_FAILED, JUDGED, say
-from grader.exercise.result.visible import View
+from grader.exercise import View
 from grader.system import files
-from grader.text.message import msg
+from grader.text import msg
 from grader_class import regrade
 from grader_class.class_file import ClassFile
 from grader_class.store import Store

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
+from grader import Exercise
 from grader.cli import starters as starter
-from grader.exercise.exercise import Exercise
-from grader.exercise.places import installed
+from grader.exercise import installed
 from grader.system import versions as system
 from grader.text import strings as text
 from grader_class.course.kinds import EXERCISE, GRADE, INSTALL, PUBLISH, Kind

@@ -12,9 +12,8 @@ from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 from typing import Final, Protocol
 
-from grader.submission.folder import is_junk
-from grader.text.message import NOTHING, Message, Text
-from grader.text.strings import listed, one_line, shown
+from grader.submission import is_junk
+from grader.text import NOTHING, Message, Text, listed, one_line, shown
 from grader_class.entry import Person
 
 _MAX_NAME = 200  # characters of a person's name or id

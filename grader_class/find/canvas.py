@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from grader.submission.folder import is_junk
-from grader.text.message import NOTHING, Message, msg
+from grader.submission import is_junk
+from grader.text import NOTHING, Message, msg
 from grader_class.entry import Person
 from grader_class.find.attempt import Attempt, Export, Item, Piece, add_note, at_least_half, person
 

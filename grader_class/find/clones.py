@@ -12,8 +12,7 @@ import os
 from collections.abc import Sequence
 from typing import Final
 
-from grader.text.message import Message, msg
-from grader.text.strings import shown
+from grader.text import Message, msg, shown
 from grader_class.find.attempt import (
     Attempt,
     Export,

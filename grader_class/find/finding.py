@@ -10,14 +10,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from grader.errors import SubmissionError, UsageError
-from grader.submission.archive import unpack
-from grader.submission.safe_members import ArchiveLimits, Budget, Member, TooMuch
-from grader.submission.unpacking import is_archive
-from grader.system.scratch import make_folder
-from grader.text import message
-from grader.text.message import Message, msg, msg_many
-from grader.text.strings import listed, shown
+from grader import SubmissionError, UsageError
+from grader.submission import ArchiveLimits, Budget, Member, TooMuch, is_archive, unpack
+from grader.system import make_folder
+from grader.text import Message, listed, msg, msg_many, shown
+from grader.text import joined as joined_texts
 from grader_class.class_file import CLASS
 from grader_class.entry import HandIn
 from grader_class.find import canvas, clones, gradescope, moodle, newest, plain
@@ -122,7 +119,7 @@ def _first_note(layout: Message, hand_ins: Sequence[HandIn]) -> Message:
         notes.append(msg("Missing: {missing}.", missing=missing))
     if layout == plain.LAYOUT:
         notes.append(msg("If that is wrong, say with --pattern how the names are made."))
-    return message.joined(notes, " ")
+    return joined_texts(notes, " ")
 
 
 # Which folder ------------------------------------------------------------------------------------

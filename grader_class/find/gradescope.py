@@ -13,8 +13,7 @@ from typing import Any, Final
 
 import yaml
 
-from grader.text.message import NOTHING, Message, msg, reason
-from grader.text.strings import in_one_line
+from grader.text import NOTHING, Message, in_one_line, msg, reason
 from grader_class.entry import Person
 from grader_class.find.attempt import (
     Attempt,

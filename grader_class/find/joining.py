@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
 
-from grader.text.message import Message, msg
-from grader.text.strings import listed, shown
+from grader.text import Message, listed, msg, shown
 from grader_class.entry import Person
 from grader_class.find.attempt import Attempt
 from grader_class.find.roster import Roster, RosterMember, folded, letters

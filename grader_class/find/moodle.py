@@ -13,8 +13,8 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from grader.submission.folder import is_junk
-from grader.text.message import NOTHING, Message, msg
+from grader.submission import is_junk
+from grader.text import NOTHING, Message, msg
 from grader_class.find.attempt import Attempt, Export, Item, Piece, add_note, at_least_half, person
 
 LAYOUT: Final = msg("what Moodle's “Download all submissions” makes")

@@ -17,10 +17,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from grader.submission.folder import is_junk
-from grader.submission.safe_members import short
-from grader.text.message import NOTHING, Message, msg
-from grader.text.strings import shown, unaccented
+from grader.submission import is_junk, short
+from grader.text import NOTHING, Message, msg, shown, unaccented
 from grader_class import store
 from grader_class.entry import MAX_ID, HandIn, Person, id_of
 from grader_class.find.attempt import Attempt, Piece, add_note, moment

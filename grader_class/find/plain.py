@@ -16,11 +16,9 @@ from dataclasses import replace
 from functools import cache
 from typing import Final
 
-from grader.errors import UsageError
-from grader.submission.folder import is_junk
-from grader.submission.unpacking import is_archive
-from grader.text.message import NOTHING, Message, msg
-from grader.text.strings import listed, shown
+from grader import UsageError
+from grader.submission import is_archive, is_junk
+from grader.text import NOTHING, Message, listed, msg, shown
 from grader_class.find.attempt import (
     Attempt,
     Export,

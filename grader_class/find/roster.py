@@ -17,9 +17,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Final
 
-from grader.errors import UsageError
-from grader.text.message import Message, msg
-from grader.text.strings import listed, shown
+from grader import UsageError
+from grader.text import Message, listed, msg, shown
 from grader_class.entry import Person
 from grader_class.find.attempt import moment, person, read_time
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from grader.reports.csv import cell, table
+from grader.reports import cell, table
 from grader_class.gradebook import known
 from grader_class.gradebook.feedback import has_feedback
 from grader_class.gradebook.grade import Grade, decimal

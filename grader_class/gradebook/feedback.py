@@ -12,17 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 
-from grader.exercise.result.error import ErrorResult
-from grader.exercise.result.result import RunSummary
-from grader.exercise.result.visible import View
-from grader.recording.recording import Recording
-from grader.reports import ErrorReport, Report, render
-from grader.reports.beside import Beside
-from grader.reports.wording import points
+from grader import Recording
+from grader.exercise import ErrorResult, RunSummary, View
+from grader.reports import Beside, ErrorReport, Report, points, render
 from grader.system import files
+from grader.text import LANGUAGES, Message, msg, tr, translate
 from grader.text import strings as text
-from grader.text.message import Message, msg
-from grader.text.translations import LANGUAGES, tr, translate
 from grader_class.entry import Entry
 from grader_class.gradebook.grade import LONGEST, Grade, out_of
 from grader_class.page.thumb import Thumb

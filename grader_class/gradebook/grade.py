@@ -6,8 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from grader.reports.wording import points
-from grader.text.translations import tr
+from grader.reports import points
+from grader.text import tr
 from grader_class.entry import Entry, Person
 from grader_class.find.joining import UNCLEAR
 from grader_class.gradebook import known

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from grader.reports.csv import is_safe_id
+from grader.reports import is_safe_id
 from grader_class.entry import HandIn, Person
 
 #: The keys of a person in Moodle's grade import, the most reliable first, each with the names that

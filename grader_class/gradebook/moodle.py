@@ -10,7 +10,7 @@ import html
 import re
 from collections.abc import Sequence
 
-from grader.reports.csv import cell, table
+from grader.reports import cell, table
 from grader.text import strings as text
 from grader_class.gradebook import known
 from grader_class.gradebook.feedback import PAGE, Feedback, has_feedback, is_ours

@@ -17,13 +17,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.result.visible import View
-from grader.reports.csv import cell, table
+from grader.exercise import View
+from grader.reports import cell, table
 from grader.system import files
+from grader.text import Message, msg, plain_all, translate
 from grader.text import strings as text
-from grader.text.message import Message, msg
-from grader.text.strings import plain_all
-from grader.text.translations import translate
 from grader_class.entry import Entry
 from grader_class.find.joining import UNCLEAR
 from grader_class.gradebook import canvas, known, moodle

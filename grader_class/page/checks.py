@@ -7,11 +7,9 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
-from grader.exercise.result.result import Result
-from grader.exercise.verdict import Verdict
+from grader import Result, Verdict
+from grader.text import Message, plain_text, translate
 from grader.text import strings as text
-from grader.text.message import Message, plain_text
-from grader.text.translations import translate
 
 _LONGEST_LINE = 400
 #: Whether it is about the run as a whole, and not about the check.

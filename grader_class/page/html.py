@@ -20,15 +20,13 @@ from urllib.parse import quote
 
 import jinja2
 
-from grader.exercise.exercise import Exercise
-from grader.exercise.result.result import PAGE as REPORT
-from grader.exercise.result.result import SubmissionInfo
-from grader.recording.subject import load_subject
-from grader.reports import wording
-from grader.reports.page import templating
+from grader import Exercise
+from grader.exercise import PAGE as REPORT
+from grader.exercise import SubmissionInfo
+from grader.recording import load_subject
+from grader.reports import outcome_text, points, templating
+from grader.text import NOTHING, Message, msg, tr, translate
 from grader.text import strings as text
-from grader.text.message import NOTHING, Message, msg
-from grader.text.translations import tr, translate
 from grader_class.entry import SUBMISSIONS, Entry, State
 from grader_class.page.checks import check_rows
 from grader_class.page.thumb import EDGE_PX, UNITS, Thumb
@@ -79,7 +77,7 @@ class Student:
         if result is None:
             return translate(STATES.get(self.entry.state, NOTHING))
         outcome = text.clip(text.plain(result.run.outcome), _WORD_LIMIT).replace("_", " ")
-        return wording.outcome(outcome)
+        return outcome_text(outcome)
 
     @property
     def at_text(self) -> str:
@@ -104,7 +102,7 @@ class Student:
             length = tr("{days} d {hours} h", days=days, hours=hours)
         else:
             length = tr("{hours} h {minutes} min", hours=hours, minutes=minutes % 60)
-        return f"{length}, −{wording.points(found.deducted)}" if found.deducted else length
+        return f"{length}, −{points(found.deducted)}" if found.deducted else length
 
     @property
     def _handed_in(self) -> SubmissionInfo | None:

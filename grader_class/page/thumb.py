@@ -17,14 +17,13 @@ from typing import Annotated, Final, Literal, Self
 import numpy as np
 from PIL import Image
 
-from grader.exercise.result import json_file
-from grader.recording.recording import Recording, Recordings
-from grader.recording.subject import load_subject
-from grader.recording.view import Floats
-from grader.reports.page.html import draw
+from grader import Recording, Recordings
+from grader.exercise import json_file
+from grader.recording import Floats, load_subject
+from grader.reports import draw
 from grader.system import strict_json
 from grader.text import strings as text
-from grader.text.translations import translate
+from grader.text import translate
 
 THUMB = "thumb.json"
 SCHEMA: Final = "turtlesim-grader/thumb/v1"

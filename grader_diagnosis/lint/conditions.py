@@ -10,8 +10,8 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from grader.submission.python_source import Function, last, scope_nodes
-from grader.system.expressions import Expression, ExpressionError
+from grader.submission import Function, last, scope_nodes
+from grader.system import Expression, ExpressionError
 from grader_diagnosis.lint.scopes import Found, Source
 
 #: The window's side [m], as turtlesim draws it.

@@ -15,10 +15,9 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from grader.recording.observations import LintFinding, SourceLine
-from grader.submission.folder import read_bounded
-from grader.submission.python_source import Function, last, parse, scope_nodes, seen
-from grader.text.strings import misspelt, nearest
+from grader.recording import LintFinding, SourceLine
+from grader.submission import Function, last, parse, read_bounded, scope_nodes, seen
+from grader.text import misspelt, nearest
 from grader_diagnosis.lint import paths, ros_mistakes, scopes
 from grader_diagnosis.lint.scopes import Found, Source
 

@@ -14,8 +14,8 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.recording.observations import LintFinding, RanFile
-from grader.submission.python_source import Function, last
+from grader.recording import LintFinding, RanFile
+from grader.submission import Function, last
 from grader_diagnosis.lint.scopes import LEAVES, Found, Parents, Source
 
 #: The calls that a diagnosis asks about.

@@ -9,8 +9,8 @@ import ast
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
-from grader.submission.python_source import Function, last
-from grader.text.strings import misspelt
+from grader.submission import Function, last
+from grader.text import misspelt
 from grader_diagnosis.lint import scopes
 from grader_diagnosis.lint.conditions import Values
 from grader_diagnosis.lint.scopes import LEAVES, Found, Source, is_read

@@ -13,8 +13,8 @@ from collections.abc import Iterator, Mapping
 from itertools import chain
 from typing import TypeGuard
 
-from grader.submission.python_source import Function, last
-from grader.text.strings import misspelt
+from grader.submission import Function, last
+from grader.text import misspelt
 from grader_diagnosis.lint import conditions, python_mistakes, scopes
 from grader_diagnosis.lint.scopes import Found, Source, is_read, unread
 

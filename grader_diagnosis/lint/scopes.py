@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
-from grader.recording.observations import LintKind
-from grader.submission.python_source import Function, last, scope_nodes
+from grader.recording import LintKind
+from grader.submission import Function, last, scope_nodes
 
 #: Kind, name, near, line; see `LintFinding`.
 Found = tuple[LintKind, str, str, int]

@@ -8,13 +8,16 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from grader.submission import safe_files
-from grader.submission.examining.launch_record import LaunchRecord
-from grader.submission.examining.launches import prepare, watch_files
-from grader.submission.examining.layout import Workspace
-from grader.submission.examining.packages import is_description
-from grader.submission.examining.steps import end_of
-from grader.submission.trace import NamedMesh
+from grader.submission import (
+    LaunchRecord,
+    NamedMesh,
+    Workspace,
+    end_of,
+    is_description,
+    prepare,
+    safe_files,
+    watch_files,
+)
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].

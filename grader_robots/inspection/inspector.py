@@ -12,24 +12,26 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from grader.submission import trace
-from grader.submission.examining.examination import Examination
-from grader.submission.examining.steps import Ended, attempt, open_account, step
-from grader.submission.inspector import Inspector
-from grader.submission.trace import (
+from grader.submission import (
     Description,
+    Ended,
+    Examination,
+    Inspector,
     LaunchFile,
     NamedMesh,
     Obstacle,
     PackageTrace,
     Varied,
+    attempt,
+    open_account,
+    step,
+    trace,
 )
-from grader.text.message import Message, msg, plain_text
+from grader.text import Message, msg, plain_text
 from grader_robots.inspection import files, meshes
 
 if TYPE_CHECKING:
-    from grader.recording.subject import Trace
-    from grader.recording.view import Part
+    from grader.recording import Part, Trace
 
 
 #: So many descriptions are looked at with other numbers.

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from grader.recording.subject import Trace
-from grader.submission.trace import (
+from grader.recording import Trace
+from grader.submission import (
     Description,
     Include,
     InstalledScript,
@@ -21,7 +21,7 @@ from grader.submission.trace import (
     Setup,
     Varied,
 )
-from grader.text.message import NOTHING, plain_text
+from grader.text import NOTHING, plain_text
 
 _SETUP: Final = Setup("", "", "", "", NOTHING, (), None, (), (), (), "", (), (), ())
 _LAUNCH: Final = LaunchFile("", None, (), (), (), (), (), (), (), "")

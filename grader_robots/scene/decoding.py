@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
-from grader.ros.bag_types import BagTypes
+from grader.recording import BagTypes
 
 JOINT_STATE, TF_MESSAGE = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 STRING = "std_msgs/msg/String"

@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from grader.recording.view import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
-from grader.submission.trace import Description, PackageTrace
-from grader.text.message import NOTHING, Message, joined, msg
+from grader.recording import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
+from grader.submission import Description, PackageTrace
+from grader.text import NOTHING, Message, joined, msg
 from grader_robots.robot_py.kinematics import forward, joint_transform, tree
 from grader_robots.robot_py.model import Model
 from grader_robots.robot_py.urdf import parse

@@ -9,9 +9,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
-from grader.recording.subject import Trace
-from grader.ros.cdr import string
-from grader.ros.messages import serialise
+from grader.recording import Trace, serialise, string
 from grader_robots.robot_py.model import Vector
 from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene.trace import (

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
-from grader.recording.view import Tree, TreeNode
-from grader.text.message import NOTHING, Message, Text, joined, listed, msg
+from grader.recording import Tree, TreeNode
+from grader.text import NOTHING, Message, Text, joined, msg, series
 from grader_robots.scene.decoding import Transform
 from grader_robots.scene.motion import ODOM, bare
 from grader_robots.scene.shapes import MOST_NODES, descend, name_of, named
@@ -122,7 +122,7 @@ def _node(depth: int, name: str, frame: Hung | None, is_lost: bool) -> TreeNode:
     if frame is None:
         return TreeNode(depth, name_of(name), msg("hangs on nothing"), mark)
     senders = sorted((_SENDERS[each] for each in frame.senders), key=str)
-    details: list[Text] = [_pace(frame), listed(senders)]
+    details: list[Text] = [_pace(frame), series(senders)]
     if depth == 0:
         details.append(msg("goes round in a circle by {frame}", frame=name_of(frame.parent)))
     if len(frame.parents) > 1:

@@ -9,7 +9,7 @@ from typing import NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording.view import Floats
+from grader.recording import Floats
 from grader_robots.scene.decoding import Transform
 from grader_robots.scene.trace import TF, RobotTrace
 

@@ -9,17 +9,9 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from grader.recording.channel import Channel
-from grader.recording.subject import (
-    BagMessage,
-    Endpoint,
-    Start,
-    Trace,
-)
-from grader.recording.view import Pictures, View
-from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
-from grader.text.message import NOTHING, Message, msg
-from grader.text.translations import tr
+from grader.recording import BagMessage, Channel, Endpoint, Pictures, Start, Trace, View
+from grader.scenes import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
+from grader.text import NOTHING, Message, msg, tr
 from grader_robots.robot_py.robot_state import RefusedDescription, Robot
 from grader_robots.scene import driving, trace, view
 from grader_robots.scene.trace import DESCRIPTION, JOINT_STATES, TF, TF_STATIC, TOPICS, RobotTrace

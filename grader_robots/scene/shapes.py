@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from grader.recording.view import Floats, Placing, Shape, Solid, SolidFrame
+from grader.recording import Floats, Placing, Shape, Solid, SolidFrame
+from grader.text import Message, joined, msg, msg_many
 from grader.text import strings as text
-from grader.text.message import Message, joined, msg, msg_many
 from grader_robots.robot_py.kinematics import matrix, quaternion, translation
 from grader_robots.robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual
 

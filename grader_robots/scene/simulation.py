@@ -10,9 +10,9 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from grader.ros.messages import serialise
-from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Simulation, arrived
-from grader.text.message import Message
+from grader.recording import serialise
+from grader.scenes import Forecast, Hooks, Limits, Reason, Simulation, arrived
+from grader.text import Message
 from grader_robots.robot_py.robot_state_publisher import LATCHED, tf_message
 from grader_robots.scene.trace import (
     DESCRIPTION,

@@ -18,10 +18,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple, Self
 
-from grader.recording.channel import Channel
-from grader.recording.subject import BagMessage, Trace
-from grader.ros.cdr import string, string_of
-from grader.text.message import Message, msg
+from grader.recording import BagMessage, Channel, Trace, string, string_of
+from grader.text import Message, msg
 from grader_robots.robot_py.robot_state import JointState, Placed, Robot, RobotState
 from grader_robots.scene import decoding
 from grader_robots.scene.decoding import JOINT_STATE, STRING, TF_MESSAGE, HeardJointState, Transform

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 from PIL import Image, ImageDraw
 
-from grader.recording.view import (
+from grader.recording import (
     Curve,
     Floats,
     PenChange,
@@ -24,8 +24,8 @@ from grader.recording.view import (
     Track,
     View,
 )
+from grader.text import Message, msg
 from grader.text import strings as text
-from grader.text.message import Message, msg
 from grader_robots.robot_py.model import Model
 from grader_robots.scene import shapes
 from grader_robots.scene.decoding import Transform

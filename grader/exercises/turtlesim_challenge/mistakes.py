@@ -13,7 +13,7 @@ from grader.exercises.turtlesim_challenge import colours
 from grader.exercises.turtlesim_challenge.commands import Cause
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, QUADRANTS, ROMAN, Path
 from grader.exercises.turtlesim_challenge.pens import Coloring, came_after
-from grader.text.message import Message, chained, joined, listed, msg
+from grader.text.message import Message, chained, joined, msg, series
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S
@@ -100,11 +100,11 @@ def alike(groups: list[list[int]], colors: dict[int, colours.Color | None]) -> C
 
 def _of_one_colour(group: list[int], colors: dict[int, colours.Color | None]) -> Message:
     names = list(dict.fromkeys(colours.name(colors[quadrant]) for quadrant in group))
-    quadrants = {"quadrants": listed([ROMAN[q] for q in group])}
+    quadrants = {"quadrants": series([ROMAN[q] for q in group])}
     if len(names) > 1:
         return msg(
             "Quadrants {quadrants} are {colours}: no eye tells them apart.",
-            colours=listed(names),
+            colours=series(names),
             **quadrants,
         )
     if len(group) == 2:
@@ -166,7 +166,7 @@ def _before_the_line(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
 def _lifted(found: Coloring) -> Cause:
     lifted = [ROMAN[q] for q, color in sorted(found.by_quadrant.items()) if color is None]
     text = msg(
-        "The pen is off in quadrant {quadrants}: it draws nothing there.", quadrants=listed(lifted)
+        "The pen is off in quadrant {quadrants}: it draws nothing there.", quadrants=series(lifted)
     )
     if len(lifted) == len(found.by_quadrant):
         text = msg("The pen is off everywhere: it draws nothing there.")

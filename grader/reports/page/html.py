@@ -26,8 +26,9 @@ from grader.exercise.verdict import Evidence
 from grader.recording.recording import Recording
 from grader.recording.subject import Subject, load_subject
 from grader.recording.view import Floats, Plane, Solid, Table, Tree
-from grader.reports import Format, readable, wording
+from grader.reports import readable, wording
 from grader.reports.error_report import ErrorReport
+from grader.reports.formats import Format
 from grader.reports.page import templating
 from grader.reports.page.parts import DrawnTree, Turnable, drawn, turnable
 from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, recorded_uri
@@ -212,7 +213,7 @@ def _environment() -> jinja2.Environment:
         run_name=wording.run_name,
         so_many=wording.so_many,
         clock=wording.clock,
-        outcome_word=wording.outcome,
+        outcome_word=wording.outcome_text,
         isolation=wording.isolation,
         points=wording.points,
         score_text=wording.score_text,

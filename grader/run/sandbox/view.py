@@ -50,7 +50,7 @@ HOST = (
     *("grader_robots/__init__.py", "grader_robots/inspection"),
     "grader/system/strict_json.py",
     # ... and the sentences of its remarks
-    *("grader/text/__init__.py", "grader/text/message.py"),
+    *("grader/text/__init__.py", "grader/text/__init__.pyi", "grader/text/message.py"),
     # interfaces of its own
     *("grader/ros", "grader/errors.py", "grader/text/strings.py"),
 )

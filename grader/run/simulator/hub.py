@@ -58,8 +58,7 @@ from grader.run.simulator.process import (
     scene_in_time,
     send_message,
 )
-from grader.scenes import load_scene
-from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
+from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason, load_scene
 from grader.text.message import msg
 
 #: So many new objects are searched for garbage: what a run records stays to its end.

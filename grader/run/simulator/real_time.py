@@ -35,8 +35,7 @@ from grader.run.simulator.process import (
     send_message,
 )
 from grader.run.simulator.wall import WallWire
-from grader.scenes import load_scene
-from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason
+from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason, load_scene
 from grader.text.message import Message, msg
 from turtlesim_py.ros import program
 

@@ -66,7 +66,7 @@ def serve_runs(words: Sequence[str]) -> list[str]:
     from grader.run.lockstep import endpoints
     from grader.run.processes import fork_server_main
     from grader.run.simulator import hub  # noqa: F401
-    from grader.scenes import load_scene
+    from grader.scenes.scene import load_scene
 
     @cache
     def load(scene: str) -> None:

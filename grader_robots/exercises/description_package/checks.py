@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.exercise.check import Checks
+from grader import Checks
 from grader_robots.exercises.description_package import (
     dependencies,
     installing,

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Finding
-from grader.submission.error_texts import shown
-from grader.submission.examining.known import DESKTOP
-from grader.submission.trace import NamedMesh
-from grader.text.message import Message, joined, msg
+from grader import Checks, Finding, Tolerances
+from grader.submission import DESKTOP, NamedMesh, shown
+from grader.text import Message, joined, msg
 from grader_robots.exercises.description_package import robots
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

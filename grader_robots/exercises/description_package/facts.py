@@ -7,20 +7,10 @@ from dataclasses import dataclass
 from functools import wraps
 from typing import NamedTuple
 
-from grader.exercise.asking import CheckFunction
-from grader.exercise.check import Tolerances
-from grader.exercise.unknown import UNKNOWN, not_judged
-from grader.exercise.verdict import Finding
-from grader.recording.recording import Recordings
-from grader.submission.examining.known import SIMULATORS
-from grader.submission.trace import (
-    Description,
-    LaunchedNode,
-    LaunchFile,
-    PackageTrace,
-    Setup,
-)
-from grader.text.message import Message, msg
+from grader import Finding, Recordings, Tolerances
+from grader.exercise import UNKNOWN, CheckFunction, not_judged
+from grader.submission import SIMULATORS, Description, LaunchedNode, LaunchFile, PackageTrace, Setup
+from grader.text import Message, msg
 
 #: Obstacles of a launch file that may be one of several: it wants what its user knows, too.
 NO_FAULT = (UNKNOWN, "argument")

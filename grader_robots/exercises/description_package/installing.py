@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from posixpath import dirname
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Finding
-from grader.submission.error_texts import how_it_ends, shown
-from grader.submission.trace import EMPTY, Lacking, LaunchFile, Obstacle
-from grader.text.message import Message, joined, msg
+from grader import Checks, Finding, Tolerances
+from grader.submission import EMPTY, Lacking, LaunchFile, Obstacle, how_it_ends, shown
+from grader.text import Message, joined, msg
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
     PackageFault,

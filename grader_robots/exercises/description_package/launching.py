@@ -6,13 +6,21 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.unknown import unless_unknown
-from grader.exercise.verdict import Finding
-from grader.submission.error_texts import advice, how_it_ends, shown
-from grader.submission.examining.known import FILES, KNOWN
-from grader.submission.trace import EMPTY, Lacking, LaunchedNode, LaunchFile, Obstacle
-from grader.text.message import joined, msg
+from grader import Checks, Finding, Tolerances
+from grader.exercise import unless_unknown
+from grader.submission import (
+    EMPTY,
+    FILES,
+    KNOWN,
+    Lacking,
+    LaunchedNode,
+    LaunchFile,
+    Obstacle,
+    advice,
+    how_it_ends,
+    shown,
+)
+from grader.text import joined, msg
 from grader_robots.exercises.description_package import installing
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,

@@ -8,12 +8,10 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.unknown import unless_unknown
-from grader.exercise.verdict import Finding
-from grader.submission.error_texts import shown
-from grader.submission.trace import Description
-from grader.text.message import NOTHING, Message, msg
+from grader import Checks, Finding, Tolerances
+from grader.exercise import unless_unknown
+from grader.submission import Description, shown
+from grader.text import NOTHING, Message, msg
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,
     PackageFacts,

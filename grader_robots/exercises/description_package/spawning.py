@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.unknown import unless_unknown
-from grader.exercise.verdict import Finding
-from grader.submission.error_texts import shown
-from grader.submission.trace import LaunchedNode, LaunchFile
-from grader.text.message import Message, msg
+from grader import Checks, Finding, Tolerances
+from grader.exercise import unless_unknown
+from grader.submission import LaunchedNode, LaunchFile, shown
+from grader.text import Message, msg
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,
     PackageFacts,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.exercise.check import Checks
+from grader import Checks
 from grader_robots.exercises.state_publisher import joints, packaging, timing, transforms
 
 checks = Checks(*(part.checks for part in (packaging, timing, joints, transforms)))

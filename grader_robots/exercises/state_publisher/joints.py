@@ -9,10 +9,9 @@ import math
 
 import numpy as np
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Evidence, Expected, Finding
-from grader.recording.view import Floats
-from grader.text.message import NOTHING, Message, msg, msg_many
+from grader import Checks, Evidence, Expected, Finding, Tolerances
+from grader.recording import Floats
+from grader.text import NOTHING, Message, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import (
     RobotRun,
     finite,

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.unknown import unless_unknown
-from grader.exercise.verdict import Finding
-from grader.recording.recording import Recordings
-from grader.submission.error_texts import described, shown
-from grader.submission.trace import PREFIX, LaunchedNode, LaunchFile
-from grader.text.message import NOTHING, Message, joined, msg
+from grader import Checks, Finding, Recordings, Tolerances
+from grader.exercise import unless_unknown
+from grader.submission import PREFIX, LaunchedNode, LaunchFile, described, shown
+from grader.text import NOTHING, Message, joined, msg
 from grader_robots.exercises.description_package import installing, launching
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

@@ -8,13 +8,10 @@ from functools import wraps
 
 import numpy as np
 
-from grader.exercise.asking import CheckFunction
-from grader.exercise.check import Tolerances
-from grader.exercise.sentences import error_first, how_it_ended
-from grader.exercise.verdict import Evidence, Finding
-from grader.recording.recording import Recordings
-from grader.recording.view import Floats
-from grader.text.message import Message, joined, msg, plain_text
+from grader import Evidence, Finding, Recordings, Tolerances
+from grader.exercise import CheckFunction, error_first, how_it_ended
+from grader.recording import Floats
+from grader.text import Message, joined, msg, plain_text
 from grader_robots.robot_py.model import Joint
 from grader_robots.scene.motion import joints, odometry
 from grader_robots.scene.trace import TICK_S, RobotTrace

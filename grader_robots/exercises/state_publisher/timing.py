@@ -11,9 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Evidence, Finding
-from grader.text.message import NOTHING, Message, msg, msg_many
+from grader import Checks, Evidence, Finding, Tolerances
+from grader.text import NOTHING, Message, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import RobotRun, of_run, sentence
 from grader_robots.scene.trace import TF, TF_STATIC, TICK_S, RobotTrace
 

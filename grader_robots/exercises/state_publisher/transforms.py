@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Expected, Finding
-from grader.recording.view import Floats
-from grader.text.message import Message, msg, msg_many
+from grader import Checks, Expected, Finding, Tolerances
+from grader.recording import Floats
+from grader.text import Message, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import RobotRun, listed, of_run, sentence
 from grader_robots.scene.frames import below, hung, why_refused
 from grader_robots.scene.motion import ODOM, Odometry, bare, fitted

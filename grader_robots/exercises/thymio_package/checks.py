@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Finding
-from grader.submission.error_texts import shown
-from grader.text.message import NOTHING, Message, msg
+from grader import Checks, Finding, Tolerances
+from grader.submission import shown
+from grader.text import NOTHING, Message, msg
 from grader_robots.exercises.description_package import checks as of_packages
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,

@@ -9,10 +9,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from grader.exercise.check import Checks, Tolerances
-from grader.exercise.verdict import Finding
-from grader.submission.error_texts import shown
-from grader.text.message import Message, joined, msg
+from grader import Checks, Finding, Tolerances
+from grader.submission import shown
+from grader.text import Message, joined, msg
 from grader_robots.exercises.description_package.facts import PackageFacts, no_robot, of_package
 from grader_robots.exercises.description_package.robots import best_of
 from grader_robots.robot_py import kinematics

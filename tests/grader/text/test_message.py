@@ -20,11 +20,11 @@ from grader.text.message import (
     fill,
     in_context,
     joined,
-    listed,
     msg,
     msg_many,
     plain_text,
     reason,
+    series,
 )
 from grader.text.strings import clip, one_line
 
@@ -72,8 +72,8 @@ def test_a_row_has_its_parts_and_those_of_rows_in_it():
     [([], ""), (["a"], "a"), (["a", "b"], "a and b"), (["a", "b", "c"], "a, b and c")],
 )
 def test_some_things_in_one_row(items, said):
-    assert str(listed(items)) == said
-    assert str(listed(map(msg, items))) == said
+    assert str(series(items)) == said
+    assert str(series(map(msg, items))) == said
     assert str(chained(items)) == said.replace(",", " and")
 
 

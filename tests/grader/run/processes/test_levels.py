@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from grader import cli
-from grader.cli import run
+from grader.cli import options
 from grader.errors import GraderFailure, NotNow, UsageError
 from grader.run import run_context
 from grader.run.processes import levels, network, refusal
@@ -42,7 +42,7 @@ def weak(monkeypatch):
 
 
 def test_the_command_line_knows_the_same_levels():
-    assert run.LEVELS == levels.LEVELS
+    assert options.LEVELS == levels.LEVELS
 
 
 def test_a_level_is_as_good_as_those_below():

@@ -1,0 +1,10 @@
+from grader.scenes.scene import Forecast as Forecast
+from grader.scenes.scene import Hooks as Hooks
+from grader.scenes.scene import Introduction as Introduction
+from grader.scenes.scene import Limits as Limits
+from grader.scenes.scene import Reason as Reason
+from grader.scenes.scene import Scene as Scene
+from grader.scenes.scene import Simulation as Simulation
+from grader.scenes.scene import arrived as arrived
+from grader.scenes.scene import command_by_hand as command_by_hand
+from grader.scenes.scene import load_scene as load_scene
