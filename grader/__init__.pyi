@@ -1,8 +1,6 @@
 from collections.abc import Callable
 from typing import Any
 
-from grader import grading as grading
-from grader import judging as judging
 from grader.errors import CheckFailed as CheckFailed
 from grader.errors import ExerciseError as ExerciseError
 from grader.errors import GraderError as GraderError

@@ -20,7 +20,6 @@ from grader.recording import (
     Endpoint,
     EndpointKind,
     LintFinding,
-    LintKind,
     Observations,
     ProgramRun,
     Raised,
@@ -183,12 +182,12 @@ class Case:
         return load_subject(self.recording.scene).the_thing
 
 
-def of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
+def of_kind(case: Case, *kinds: str) -> Iterator[LintFinding]:
     """Yield the lint findings of these kinds."""
     return (finding for finding in case.observed.lint_findings if finding.kind in kinds)
 
 
-def first_of(case: Case, kind: LintKind) -> SourceLine | None:
+def first_of(case: Case, kind: str) -> SourceLine | None:
     """Return the place of the first finding of a kind."""
     return next((finding.place for finding in of_kind(case, kind)), None)
 

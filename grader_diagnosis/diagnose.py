@@ -16,7 +16,7 @@ from typing import Final
 
 from grader import Recordings, Verdict
 from grader.exercise import Diagnosis, costliest
-from grader.recording import Endpoint, LintKind
+from grader.recording import Endpoint
 from grader.text import in_one_line, msg, shown
 from grader_diagnosis import (
     connections,
@@ -112,7 +112,7 @@ def diagnose(
 
 def _at_its_line(found: Diagnosis, case: Case) -> Diagnosis:
     """Give a diagnosis the line to change, where the source shows another than the run."""
-    lines: dict[str, LintKind] = {
+    lines = {
         "never_spins": "no_spin",
         "ends_early": "spins_once",
         "does_nothing": "uncalled",

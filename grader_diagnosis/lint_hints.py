@@ -12,7 +12,7 @@ from dataclasses import replace
 from itertools import chain
 from typing import Any
 
-from grader.recording import LintFinding, LintKind, Raised, readable
+from grader.recording import LintFinding, Raised, readable
 from grader.text import NOTHING, Message, as_message, misspelt, msg, shown
 from grader_diagnosis import known_exceptions
 from grader_diagnosis.case import Case, filled, function, of_kind, words_of
@@ -27,7 +27,7 @@ _NO_FIELD = re.compile(r"(?:has no attribute '|passed to constructor: )(\w{1,60}
 _NO_ATTRIBUTE = re.compile(r"has no attribute '(\w{1,60})'")
 _OF_A_SERVICE = re.compile(r"(\w{1,60})(?:\.__init__)?\(\) (?:got an unexpected k|takes no arg)")
 #: What an exception shows not to have been begun -> what the source lacks.
-_BEGINNINGS: dict[Message, tuple[LintKind, ...]] = {
+_BEGINNINGS: dict[Message, tuple[str, ...]] = {
     known_exceptions.NO_INIT: ("no_init",),
     known_exceptions.NO_NODE: ("no_super",),
 }

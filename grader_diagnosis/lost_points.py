@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from grader.exercise import Diagnosis
-from grader.recording import End, LintFinding, LintKind
+from grader.recording import End, LintFinding
 from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis.case import (
     Case,
@@ -27,13 +27,13 @@ _SAY_MORE = ("at_wall", "uncalled", "always", "local", "unread")
 
 _COLOURS = "look at its conditions"
 #: Kind of a finding that explains some checks only -> words of theirs.
-_ABOUT: dict[LintKind, str] = {
+_ABOUT: dict[str, str] = {
     **dict.fromkeys(("late", "degrees", "overrules", "twice", "shared"), _COLOURS),
     **{"always": "driving", "heads": "into a quadrant gave", "quiet": "was not logged"},
     "grows": "grew by",
 }
 #: Kind of a finding -> cause and help.
-_MEANT: dict[LintKind, tuple[Message, Message]] = {
+_MEANT: dict[str, tuple[Message, Message]] = {
     "compared": (msg("`{name}` compares, and sets nothing{where}."), msg("Write = for ==.")),
     "always": (msg("`{name}`{where} is always true."), NOTHING),
     "adds_nothing": (msg("`{name}`{where} lets nothing grow."), NOTHING),

@@ -14,6 +14,7 @@ from grader.exercise.result.result import SubmissionInfo as SubmissionInfo
 from grader.exercise.result.result import artifacts as artifacts
 from grader.exercise.result.result import put_artifacts as put_artifacts
 from grader.exercise.result.visible import View as View
+from grader.exercise.result.visible import is_hidden as is_hidden
 from grader.exercise.sentences import error_first as error_first
 from grader.exercise.sentences import how_it_ended as how_it_ended
 from grader.exercise.sentences import not_followed as not_followed

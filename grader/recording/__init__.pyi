@@ -3,7 +3,6 @@ from grader.recording.observations import Caught as Caught
 from grader.recording.observations import End as End
 from grader.recording.observations import EndKind as EndKind
 from grader.recording.observations import LintFinding as LintFinding
-from grader.recording.observations import LintKind as LintKind
 from grader.recording.observations import Observations as Observations
 from grader.recording.observations import Raised as Raised
 from grader.recording.observations import RanFile as RanFile

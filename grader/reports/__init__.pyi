@@ -8,8 +8,12 @@ from grader.reports.formats import load as load
 from grader.reports.formats import names as names
 from grader.reports.formats import read as read
 from grader.reports.formats import render as render
+from grader.reports.page import pictures as pictures
 from grader.reports.page import templating as templating
 from grader.reports.page.html import draw as draw
 from grader.reports.report import Report as Report
 from grader.reports.wording import outcome_text as outcome_text
 from grader.reports.wording import points as points
+from grader.reports.wording import score_text as score_text
+from grader.reports.wording import title_of as title_of
+from grader.reports.wording import word as word

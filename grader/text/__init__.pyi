@@ -1,4 +1,3 @@
-from grader.text import message as message
 from grader.text import strings as strings
 from grader.text.message import NOTHING as NOTHING
 from grader.text.message import Message as Message

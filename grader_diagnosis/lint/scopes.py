@@ -7,11 +7,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
-from grader.recording import LintKind
 from grader.submission import Function, last, scope_nodes
 
 #: Kind, name, near, line; see `LintFinding`.
-Found = tuple[LintKind, str, str, int]
+Found = tuple[str, str, str, int]
 #: Statements after which the next line does not run.
 LEAVES = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 #: A node -> the one that it is part of.

@@ -9,6 +9,7 @@ import yaml
 from grader.recording.observations import LintFinding, SourceLine
 from grader.run.opening import open_submission
 from grader_diagnosis.lint import lint
+from grader_diagnosis.lint.kinds import KINDS
 from tests.hand_ins import SUBMISSIONS
 
 TUTORIALS = SUBMISSIONS / "tutorials"
@@ -26,6 +27,7 @@ PLACES = {
 
 def found_in(sources):
     found = lint.find(lint.parsed_of(sources), sources, lambda _: False)
+    assert {finding[0] for _, finding in found} <= KINDS.keys()
     return [LintFinding(*each[:3], SourceLine(file, each[3])) for file, each in found]
 
 

@@ -7,7 +7,6 @@ import pytest
 
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.view import Tree, TreeNode
-from grader.reports import gradescope
 from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.reports.page.parts import DEEPEST, WIDTH, drawn
@@ -15,6 +14,7 @@ from grader.submission.trace import Description, LaunchedNode, LaunchFile, Packa
 from grader.text.message import plain_text
 from grader_class.gradebook.feedback import Feedback
 from grader_class.page.thumb import THUMB, Thumb, thumb
+from grader_class.reports import gradescope
 from grader_robots.scene.driving import drive
 from grader_robots.scene.trace import RobotTrace
 from tests.grader.reports import readers, samples

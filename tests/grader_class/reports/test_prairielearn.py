@@ -4,8 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.reports import prairielearn
 from grader.reports import read as read_report
+from grader_class.reports import prairielearn
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import verdict

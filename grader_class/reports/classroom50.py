@@ -9,13 +9,10 @@ from datetime import datetime
 from decimal import ROUND_HALF_UP, Decimal
 from typing import Any, Final
 
-from grader.errors import UsageError
-from grader.exercise.verdict import Verdict
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
-from grader.reports.report import Report
+from grader import UsageError, Verdict
+from grader.reports import ErrorReport, Format, Report
+from grader.text import msg
 from grader.text import strings as text
-from grader.text.message import msg
 
 _SCHEMA = "classroom50/result/v1"
 _NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "COMMIT_URL", "RELEASE_URL")

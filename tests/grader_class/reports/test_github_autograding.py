@@ -1,7 +1,7 @@
 import base64
 import json
 
-from grader.reports import github_autograding
+from grader_class.reports import github_autograding
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 

@@ -1,7 +1,7 @@
 import json
 
-from grader.reports import gradescope
 from grader.reports import read as read_report
+from grader_class.reports import gradescope
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers, samples
 

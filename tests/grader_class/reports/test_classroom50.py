@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import UsageError
-from grader.reports import classroom50
-from grader.reports.classroom50 import whole_points
+from grader_class.reports import classroom50
+from grader_class.reports.classroom50 import whole_points
 from tests.grader.reports import readers, samples
 
 

@@ -1,6 +1,6 @@
 import pytest
 
-from grader.reports import moodle_vpl
+from grader_class.reports import moodle_vpl
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import evidence, verdict
 

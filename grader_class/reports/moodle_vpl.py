@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from grader.exercise.verdict import Verdict
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
-from grader.reports.report import Report
-from grader.reports.wording import score_text, title_of, word
+from grader import Verdict
+from grader.reports import ErrorReport, Format, Report, score_text, title_of, word
+from grader.text import msg, tr, translate
 from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import tr, translate
 
 
 def render(report: Report) -> str:

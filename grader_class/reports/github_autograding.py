@@ -6,12 +6,9 @@ import base64
 import json
 from typing import Any, Final
 
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
-from grader.reports.report import Report
+from grader.reports import ErrorReport, Format, Report
+from grader.text import msg, translate
 from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import translate
 
 
 def render(report: Report) -> str:

@@ -5,14 +5,10 @@ from __future__ import annotations
 import json
 from typing import Any, Final
 
-from grader.errors import UsageError
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
-from grader.reports.report import Report
-from grader.reports.wording import word
+from grader import UsageError
+from grader.reports import ErrorReport, Format, Report, word
+from grader.text import msg, tr
 from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import tr
 
 _STAGE = "Checks"
 

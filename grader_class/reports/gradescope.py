@@ -10,15 +10,11 @@ import html
 import json
 from typing import Any, Final
 
-from grader.exercise.result.visible import is_hidden
-from grader.exercise.verdict import Verdict
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
-from grader.reports.page import pictures
-from grader.reports.report import Report
+from grader import Verdict
+from grader.exercise import is_hidden
+from grader.reports import ErrorReport, Format, Report, pictures
+from grader.text import msg, tr, translate
 from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import tr, translate
 
 _OUTPUT_LIMIT = 20_000
 _HIDDEN = {"after_due": "after_due_date", "never": "hidden"}

@@ -5,15 +5,10 @@ from __future__ import annotations
 import json
 from typing import Any, Final
 
-from grader.exercise.verdict import Verdict
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
-from grader.reports.page import pictures
-from grader.reports.report import Report
-from grader.reports.wording import title_of, word
+from grader import Verdict
+from grader.reports import ErrorReport, Format, Report, pictures, title_of, word
+from grader.text import msg, tr, translate
 from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import tr, translate
 
 #: PrairieLearn refuses a file above 1 MB.
 LIMIT_BYTES = 1_000_000

@@ -1,6 +1,6 @@
 import json
 
-from grader.reports import autolab
+from grader_class.reports import autolab
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 

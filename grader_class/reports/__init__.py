@@ -1,0 +1,1 @@
+"""Reports for the systems that grade on machines of their own."""
