@@ -1,1 +1,0 @@
-"""An action server for Fibonacci's numbers."""

@@ -1,1 +1,0 @@
-"""A node that logs what it hears."""

@@ -1,1 +1,0 @@
-"""Interfaces of one's own."""

@@ -1,1 +1,0 @@
-"""A node with a parameter."""

@@ -1,1 +1,0 @@
-"""A relay with the right quality of service."""

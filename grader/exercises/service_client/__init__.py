@@ -1,1 +1,0 @@
-"""A client that asks for a sum."""

@@ -1,1 +1,0 @@
-"""A service that adds two numbers."""

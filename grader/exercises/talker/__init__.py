@@ -1,1 +1,0 @@
-"""A node that sends Hello World twice a second."""

@@ -1,1 +1,0 @@
-"""A transform that is sent once."""
