@@ -28,7 +28,8 @@ def face(package: str, file: str) -> Callable[[str], Any]:
 
         stub = ast.parse(Path(file).with_suffix(".pyi").read_text(encoding="utf-8"))
         imports = (node for node in stub.body if isinstance(node, ast.ImportFrom))
-        return {alias.name: node.module or "" for node in imports for alias in node.names}
+        names = {alias.name: node.module or "" for node in imports for alias in node.names}
+        return {name: module for name, module in names.items() if module.startswith("grader")}
 
     def load(name: str) -> Any:
         if name == "__all__":

@@ -3,8 +3,8 @@
     python scripts/size.py [FOLDER]
 
 It counts the Python that git tracks, without tests and without students' programs. A room is a
-top-level folder, and below grader/ each sub-folder; the core is grader/ without exercises and
-batch. Nothing of the code is imported. Who imports whom is proved by import-linter.
+top-level folder, and below grader/ each sub-folder; the core is grader/ without its exercises.
+Nothing of the code is imported. Who imports whom is proved by import-linter.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pathlib import Path, PurePosixPath
 #: Folders of students' programs.
 STUDENTS = {"starter", "reference", "right"}
 #: Rooms of grader/ that are not the core.
-AROUND_THE_CORE = {"grader/exercises", "grader_class"}
+AROUND_THE_CORE = {"grader/exercises"}
 #: Folders whose classes have the names of ROS's.
 DOUBLES = ("tf2/",)
 

@@ -17,14 +17,14 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator
+from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from markdown_it import MarkdownIt
 
-import grader
-from grader import cli, testing
+from grader import cli
 from grader.exercise.loading import load_exercise
 from grader.text.strings import points
 from tests.browser import BROWSER, open_browser
@@ -49,6 +49,11 @@ copy; [how to write your own](../docs/write-an-exercise.md).
 |---|---|---:|
 """
 API = "# The Python API\n\nTo grade, to write checks, to try them: [how](docs/python-api.md).\n"
+#: The packages whose stubs say what is public; that of authors first.
+FACES = (
+    *("grader", "grader.testing", "grader.exercise", "grader.scenes", "grader.recording"),
+    *("grader.reports", "grader.submission", "grader.run", "grader.system", "grader.text"),
+)
 #: A controller that draws its spiral in seconds.
 MISTAKES = SUBMISSIONS / "first_lines"
 QUICK = (SUBMISSIONS / "quick_spiral.py").read_text(encoding="utf-8")
@@ -67,6 +72,15 @@ DRAWN = ("spiral", "pen_star")
 SIZE = {"width": 1280, "height": 1000}
 
 
+def api_of(package: str) -> str:
+    """Return the part of the API's page about a package: its public classes and functions."""
+    face = import_module(package)
+    objects = (getattr(face, name) for name in face.__all__)
+    names = (f"{each.__module__}.{each.__qualname__}" for each in objects if callable(each))
+    ours = (name for name in names if name.startswith("grader."))
+    return f"\n## {package}\n" + "".join(f"\n::: {name}\n" for name in ours)
+
+
 def main() -> None:
     """Build, and tell what is wrong with what was built."""
     shutil.rmtree(OUT, ignore_errors=True)
@@ -81,8 +95,7 @@ def main() -> None:
         shutil.copy(path, pages / "docs")
     names = list(project["entry-points"]["grader.exercises"])
     write_sheets(pages / "exercises", names)
-    public = [f"{of.__name__}.{name}" for of in (grader, testing) for name in of.__all__]
-    write(pages / "api.md", API + "".join(f"\n::: {name}\n" for name in public))
+    write(pages / "api.md", API + "".join(map(api_of, FACES)))
     write_gallery(pages / "gallery")
     shutil.copytree(HERE, pages / "assets", ignore=shutil.ignore_patterns("*.py", "*.toml", "__*"))
     settings: dict[str, Any] = tomllib.loads((HERE / "zensical.toml").read_text("utf-8"))["project"]
