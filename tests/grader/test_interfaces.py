@@ -9,26 +9,22 @@ import pytest
 
 from grader import grading
 from grader.exercise.result.result import Result
-from grader.exercise.verdict import Verdict
-from grader.recording.recording import OwnInterfaces, Recordings
+from grader.recording.recording import OwnInterfaces
 from grader.run import virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
-from grader.text.message import msg, plain_text
-from grader_diagnosis.diagnose import diagnose
-from tests import hand_ins, runs
+from grader.text.message import msg
+from tests import hand_ins, once, runs
 from tests.docs.test_examples import environment_with
 from tests.grader.testing import exercises
-from tests.grader_diagnosis.cases import expect_said
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 
 FOLDER = runs.SUBMISSIONS / "interfaces"
 LIGHT = Path(__file__).with_name("scenes") / "light"
-JUDGED, WRONG = (hand_ins.read("interfaces")[kind] for kind in ("judged", "wrong"))
+JUDGED = hand_ins.read("interfaces")["judged"]
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=6))
-LOST = [Verdict("check", plain_text("Check"), "failed", 0, 20, plain_text("It lacks something."))]
 #: What each says once it has used its interfaces.
 SAID = {
     "workspace": ("The sum is 6", "All: [0, 1, 1, 2, 3, 5, 8, 13]", "[tutorial_interfaces.msg.Num"),
@@ -59,33 +55,36 @@ def test_a_program_uses_its_own_messages_services_and_actions(name):
     assert recording.interfaces.faults == recording.interfaces.unlike == {}
 
 
-@pytest.fixture(scope="module")
-def lit(tmp_path_factory):
+def lit():
     """A Python for which `LIGHT`, the exercise's scene, is installed: found by its entry point."""
-    place = tmp_path_factory.mktemp("lit")
-    shutil.copytree(LIGHT, place / "light")
-    return environment_with(place / "light", place / "venv")
+
+    def install(folder):
+        shutil.copytree(LIGHT, folder / "light")
+        environment_with(folder / "light", folder / "venv")
+
+    return once.folder(install, "lit", made_by=("tests/grader/scenes/light",)) / "venv/bin/python"
+
+
+def graded(name, folder):
+    """What one of `JUDGED` gets; only what is for an exercise of `LIGHT` takes long."""
+    case, made = JUDGED[name], runs.path_of(f"interfaces/judged/{name}")
+    if "exercise" not in case:
+        return runs.graded(made)
+    out = folder / "out"
+    words = [str(lit()), "-m", "grader", "run", str(made), "--out", str(out)]
+    words += ["--exercise", str(LIGHT / case["exercise"])]
+    subprocess.run(words, check=True, cwd=folder, capture_output=True)
+    return Result.read(out / "result.json")
 
 
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize(
     "name", others_are_more("gradings of the same kind", JUDGED, "a_wrong_cmake")
 )
-def test_a_workspace_gets_what_was_judged_by_hand(request, tmp_path, name):
-    case = JUDGED[name]
-    made = runs.path_of(f"interfaces/judged/{name}")
-    if "exercise" not in case:
-        result = runs.graded(made)
-    else:
-        python, out = str(request.getfixturevalue("lit")), tmp_path / "out"
-        words = [python, "-m", "grader", "run", str(made), "--out", str(out)]
-        words += ["--exercise", str(LIGHT / case["exercise"])]
-        subprocess.run(words, check=True, cwd=tmp_path, capture_output=True)
-        result = Result.read(out / "result.json")
-    assert result.score == case["score"]
-    assert (result.diagnosis is not None) == ("says" in case)
-    if "says" in case:
-        expect_said(result.diagnosis, case)
+def test_a_workspace_gets_what_was_judged_by_hand(tmp_path, name):
+    result = graded(name, tmp_path)
+    assert result.score == JUDGED[name]["score"]
+    assert (result.diagnosis is not None) == ("says" in JUDGED[name])
 
 
 def run(path, interfaces=None):
@@ -93,19 +92,6 @@ def run(path, interfaces=None):
         if interfaces is not None:
             submission = replace(submission, interfaces=interfaces)
         return replace(virtual_time.run(submission, PLAN), interfaces=submission.interfaces)
-
-
-@pytest.mark.parametrize(
-    "name",
-    others_are_more(
-        "tests/grader/submission/test_interfaces.py finds them without a run",
-        WRONG,
-        *("not_listed", "wrong_module", "misspelt_field"),
-    ),
-)
-def test_the_first_lines_say_what_is_wrong(name):
-    found = diagnose(Recordings(run(FOLDER / "wrong" / name)), LOST)
-    expect_said(found, WRONG[name])
 
 
 def test_a_package_that_package_xml_does_not_name_is_remarked(tmp_path):
@@ -124,19 +110,16 @@ def test_a_package_that_package_xml_does_not_name_is_remarked(tmp_path):
     ]
 
 
+#: The reference publishes another Twist than the exercise has.
+UNLIKE = {"geometry_msgs/msg/Twist": msg("Twist.msg of geometry_msgs has other fields")}
+OTHERWISE = OwnInterfaces({"demo/msg/Num": "int8 num\n"}, {}, UNLIKE)
+
+
 def test_types_that_the_two_sides_define_otherwise_exchange_nothing():
-    unlike = {"geometry_msgs/msg/Twist": msg("Twist.msg of geometry_msgs has other fields")}
-    interfaces = OwnInterfaces({"demo/msg/Num": "int8 num\n"}, {}, unlike)
-    recording = run(runs.REFERENCE, interfaces)
+    recording = run(runs.REFERENCE, OTHERWISE)
     assert not recording.trace.of_kind(CmdVel)
     (topic,) = (each for each in recording.topics if each.topic == "/turtle1/cmd_vel")
     assert topic.type == "geometry_msgs/msg/Twist"
-    found = diagnose(Recordings(recording), LOST)
-    assert found is not None
-    assert found.key == "publishes_to_nobody"
-    assert found.place is not None
-    assert "create_publisher(Twist" in found.place.text
-    assert "not the exercise's, and the two exchange nothing: Twist.msg" in str(found.cause)
 
 
 HINTS = """import rclpy

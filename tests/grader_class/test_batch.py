@@ -6,10 +6,12 @@ from pathlib import Path
 import psutil
 import pytest
 
+from grader.cli import main
 from grader.run.processes import levels
 from grader_class.class_file import ClassFile
 from grader_class.entry import Entry, entries
 from tests.files import lay
+from tests.grader.test_other_systems import SYSTEMS, Elsewhere
 from tests.grader_class.classes import CONTROLLER, ENV, batch, command, rows
 from tests.grader_class.conftest import QUICK
 
@@ -72,6 +74,34 @@ def test_progress_names_people_as_they_know_themselves(tmp_path, in_process):
     handed_in = lay(tmp_path / "handed_in", {"王小明/notes.txt": "I could not do it."})
     _, said = batch(handed_in, "--out", tmp_path / "class", "--exercise", "square")
     assert "[1/1] 王小明: cannot be started" in said
+
+
+def test_a_class_is_graded_by_the_exercise_that_its_hand_ins_name(tmp_path, in_process):
+    handed_in = lay(tmp_path / "handed_in", {"carol/notes.txt": ""})
+    assert main(["new", str(handed_in / "alice"), "--exercise", "square"]) == 0
+    code, said = batch(handed_in, "--out", tmp_path / "class")
+    assert (code, "Exercise: square (named in my_node.py)" in said) == (0, True), said
+    assert ClassFile.read(tmp_path / "class").exercise == "square"
+    code, said = batch("--regrade", tmp_path / "class")  # by the same
+    assert code == 0, said
+
+
+def test_a_class_that_names_several_is_not_graded(tmp_path):
+    handed_in = tmp_path / "handed_in"
+    for who, exercise in (("alice", "talker_listener"), ("bob", "square")):
+        assert main(["new", str(handed_in / who), "--exercise", exercise]) == 0
+    code, said = batch(handed_in, "--out", tmp_path / "class")
+    assert code == 2
+    assert "several exercises (talker_listener: alice; square: bob)" in said
+    assert not (tmp_path / "class").exists()
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_what_runs_submissions_says_that_it_needs_linux(system, tmp_path):
+    done = Elsewhere(system, tmp_path).run("-m", "grader", "batch", "drives.py", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("grader batch: submissions are run on Linux with /proc")
+    assert "Traceback" not in done.stderr
 
 
 def test_a_second_call_runs_nothing_and_changes_nothing(call, out):

@@ -18,6 +18,8 @@ from grader_class.cli import regrading
 from grader_class.entry import Entry, entries
 from grader_class.store import RECORDING, UNFINISHED, Store
 from tests.files import contents
+from tests.grader.exercise.result.test_kept import KEPT, unpacked
+from tests.grader_class import classes
 from tests.grader_class.conftest import QUICK
 from tests.tiers import others_are_more
 
@@ -202,3 +204,22 @@ def test_a_call_that_is_killed_between_two_names_gives_back_what_it_took(out):
     with Store.opened(out):
         pass
     assert scores(out) == before
+
+
+def test_a_changed_rubric_changes_what_it_says_and_nothing_else(tmp_path):
+    kept_class = Path(shutil.copytree(unpacked() / "class", tmp_path / "class"))
+
+    def regrade(rubric, *words):
+        exercise = ["--exercise", str(KEPT / rubric), "--jobs", "1"]
+        return main(["batch", "--regrade", str(kept_class), *exercise, *words])
+
+    assert regrade("before.yaml") == 0
+    assert classes.rows(kept_class / "changes.csv") == {}
+    assert regrade("after.yaml", "--apply") == 0
+    changes = classes.rows(kept_class / "changes.csv").items()
+    told = {who: [row[name] for name in ("sides", "returns", "late")] for who, row in changes}
+    # 2 m, where 3 m are asked for
+    assert told == {"anna": ["lost", "lost", ""], "chen": ["gained", "lost", "late"]}
+    gradebook = classes.rows(kept_class / "gradebook.csv").items()
+    finals = {who: float(row["final"]) for who, row in gradebook}
+    assert finals == {"anna": 55, "ben": 0, "chen": 81, "dora": 0}

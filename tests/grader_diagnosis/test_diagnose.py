@@ -21,7 +21,9 @@ from grader.recording.saving import save_all
 from grader.text.message import plain_text
 from grader.text.strings import one_line
 from grader_diagnosis.diagnose import diagnose
+from tests.grader.recording.test_printed import CODE
 from tests.grader_diagnosis.cases import LINE, run_of, said
+from tests.limited import printed_by
 
 CRASH = run_of(said(raised=Raised("KeyError", "4", 6.0, LINE)), "crashed", exit_code=1)
 SLOW = run_of(said(slow=(SlowCallback(LINE, 0.2, 50),)))
@@ -118,3 +120,8 @@ def test_the_stuck_place_of_a_stop_without_a_line_is_left_out():
     assert str(found.cause).startswith(
         "Your program is stuck from 1.0 s on: it waits while nobody spins"
     )
+
+
+def test_an_output_is_gone_through_once():
+    code = CODE.replace("LOOKS", "[crash._FIELD.search]")
+    assert printed_by(f"from grader_diagnosis import crash{code}") == "done\n"

@@ -128,6 +128,9 @@ CAUSES = {
         "type object 'str' has no attribute '_TYPE_SUPPORT' This might be a ROS 1 message type",
         replace(LINE, text="self.pen = self.create_client('/turtle1/set_pen', SetPen)"),
     ),
+    "crashed: there is no file /home/ada/gains.yaml where your node is graded": raising(
+        "FileNotFoundError", "[Errno 2] No such file or directory: '/home/ada/gains.yaml'"
+    ),
     "crashed: a value of the right type that it cannot take. The whole traceback": raising(
         "ValueError", "math domain error"
     ),

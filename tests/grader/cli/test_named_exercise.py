@@ -13,27 +13,24 @@ from grader.recording.subject import Role
 from grader.run.opening import marks_of
 from grader.submission.reader import Marks
 from grader.text.message import NOTHING
-from grader_class.class_file import ClassFile
 from tests.files import lay
 from tests.grader.testing import exercises
-from tests.grader_class.classes import batch, work_here
 
-DESCRIPTION = load_exercise("description_package").folder / "reference"
 COMMENT = "# grader: exercise={}\n"
 PACKAGE = '<package><export><grader exercise="{}"/></export></package>'
 NODE = "import turtlesim.msg\n"
 
 
 def test_a_starter_names_its_exercise_whatever_becomes_of_its_names(tmp_path):
-    assert main(["new", str(tmp_path / "mine"), "--exercise", "state_publisher"]) == 0
+    assert main(["new", str(tmp_path / "mine"), "--exercise", "talker_listener"]) == 0
     ours = (tmp_path / "mine").rename(tmp_path / "yours")
     (ours / "mine").rename(ours / "walking")
     shutil.copytree(ours, tmp_path / "ws" / "src" / "walking")
     packed = shutil.make_archive(str(tmp_path / "alice"), "zip", tmp_path / "ws")
     twice = shutil.make_archive(str(tmp_path / "server"), "zip", tmp_path, "alice.zip")
-    assert marks_of(ours).exercises == {"state_publisher": "package.xml"}
+    assert marks_of(ours).exercises == {"talker_listener": "package.xml"}
     for path in (tmp_path / "ws", Path(packed), Path(twice)):
-        assert marks_of(path).exercises == {"state_publisher": "src/walking/package.xml"}
+        assert marks_of(path).exercises == {"talker_listener": "src/walking/package.xml"}
 
 
 def test_so_does_a_single_file(tmp_path):
@@ -98,13 +95,13 @@ def test_the_named_exercise_is_used_and_told(tmp_path, capsys, in_no_time):
 
 
 def test_the_default_is_not_told_and_of_several_none_counts(tmp_path):
-    files = {"a.py": COMMENT.format("square"), "b/package.xml": PACKAGE.format("state_publisher")}
+    files = {"a.py": COMMENT.format("square"), "b/package.xml": PACKAGE.format("talker_listener")}
     mine = lay(tmp_path / "mine", files)
     node = lay(tmp_path, {"node.py": COMMENT.format("turtlesim_challenge")}) / "node.py"
     assert grading.exercise_for(node, marks_of(node)) == ("turtlesim_challenge", NOTHING)
     name, said = grading.exercise_for(mine, marks_of(mine))
     assert name == "turtlesim_challenge"
-    assert "several exercises (state_publisher, square), so that none counts" in str(said)
+    assert "several exercises (talker_listener, square), so that none counts" in str(said)
 
 
 @pytest.mark.parametrize("name", ["of_another_course", "../exercise", "exercise.yaml"])
@@ -119,10 +116,10 @@ def test_one_that_is_not_installed_is_asked_for(tmp_path, capsys, name):
         grader.grade(node)
 
 
-def test_a_package_that_is_plainly_for_another_one_is_graded_by_that(tmp_path):
-    mine = shutil.copytree(DESCRIPTION, tmp_path / "mine")
+def test_a_package_that_is_plainly_for_another_one_is_graded_by_that():
+    mine = load_exercise("own_interfaces").folder / "reference"
     name, said = grading.exercise_for(mine, marks_of(mine))
-    assert name == "description_package"
+    assert name == "own_interfaces"
     assert "by what the source has; another one: --exercise NAME" in str(said)
 
 
@@ -130,7 +127,6 @@ FITS = [
     (["publisher /topic"], ["talker"]),
     (["subscription /topic"], ["listener"]),
     (["publisher /topic", "subscription /topic"], ["listener", "talker"]),
-    (["publisher /joint_states"], ["state_publisher"]),
     (["service /draw_polygon", "publisher /turtle1/cmd_vel"], []),  # the default fits, too
     (["publisher /turtle2/cmd_vel", "subscription /tf", "client /spawn"], ["tf2_listener"]),
     (["publisher /turtle1/cmd_vel", "client /turtle1/set_pen"], []),
@@ -148,33 +144,3 @@ def test_where_several_fit_one_has_to_be_chosen(tmp_path):
     marks = Marks(programs=2, roles=(Role("publisher", "/topic"), Role("subscription", "/topic")))
     with pytest.raises(UsageError, match=r"fits several exercises \(.*talker.*--exercise NAME"):
         grading.exercise_for(tmp_path, marks)
-
-
-@pytest.mark.parametrize(
-    "marks", [Marks(files=("a.urdf", "node.py"), programs=1), Marks(files=("package.xml",))]
-)
-def test_files_are_those_of_an_exercise_only_without_a_program(marks):
-    assert grading.fitting_exercises(marks) == []
-
-
-def test_a_class_is_graded_by_the_exercise_that_its_hand_ins_name(
-    tmp_path, in_no_time, monkeypatch
-):
-    work_here(monkeypatch)
-    handed_in = lay(tmp_path / "handed_in", {"carol/notes.txt": ""})
-    assert main(["new", str(handed_in / "alice"), "--exercise", "square"]) == 0
-    code, said = batch(handed_in, "--out", tmp_path / "class")
-    assert (code, "Exercise: square (named in my_node.py)" in said) == (0, True), said
-    assert ClassFile.read(tmp_path / "class").exercise == "square"
-    code, said = batch("--regrade", tmp_path / "class")  # by the same
-    assert code == 0, said
-
-
-def test_a_class_that_names_several_is_not_graded(tmp_path):
-    handed_in = tmp_path / "handed_in"
-    for who, exercise in (("alice", "description_package"), ("bob", "square")):
-        assert main(["new", str(handed_in / who), "--exercise", exercise]) == 0
-    code, said = batch(handed_in, "--out", tmp_path / "class")
-    assert code == 2
-    assert "several exercises (description_package: alice; square: bob)" in said
-    assert not (tmp_path / "class").exists()

@@ -81,7 +81,7 @@ def test_the_commands_on_the_sheet_start_the_student_s_own_file(tmp_path, called
 )
 def test_the_package_is_called_like_its_folder(tmp_path, capsys, called, package):
     mine = tmp_path / called
-    assert main(["new", str(mine), "--exercise", "state_publisher"]) == 0
+    assert main(["new", str(mine), "--exercise", "talker_listener"]) == 0
     told = f"The package is called {package}." in capsys.readouterr().out.splitlines()
     assert told == (called != package)
     assert (mine / package / "__init__.py").is_file()
@@ -91,7 +91,7 @@ def test_the_package_is_called_like_its_folder(tmp_path, capsys, called, package
     assert f" = {package}." in (mine / "setup.py").read_text()
     assert (mine / "setup.cfg").read_text().count(f"$base/lib/{package}\n") == 2
     assert f"    ros2 run {package} " in (mine / "README.md").read_text()
-    placeholder = load_exercise("state_publisher").starter_package
+    placeholder = load_exercise("talker_listener").starter_package
     if package != placeholder:
         for path in (path for path in mine.rglob("*") if path.is_file()):
             assert not re.search(rf"\b{placeholder}\b", f"{path.name} {path.read_text()}")

@@ -1,31 +1,24 @@
 """What the grader does not know costs nothing, and what it leaves out is told."""
 
-from dataclasses import replace
-
 import pytest
 
 from grader.exercise.unknown import unless_unknown
 from grader.exercise.verdict import Finding
 from grader.exercises.talker_listener.checks import launch
-from grader.judging import judge
 from grader.recording.recording import Recording, Recordings, Run
 from grader.scenes.cast.trace import CastTrace
 from grader.submission.trace import LaunchFile, Obstacle, PackageTrace
 from grader.text.message import msg
-from tests.grader_robots.packages import EXERCISE, REFERENCE, looked_at, recorded, written
+from tests.files import lay
+from tests.inspecting import inspected
 
 LAUNCH = "<launch><executable cmd='ls'/></launch>\n"
 
 
-def with_launches(trace: PackageTrace, kind: str) -> PackageTrace:
-    """The same package, whose launch files all end with an obstacle."""
-    launches = [LaunchFile(each.file, Obstacle(kind, msg("it ends"))) for each in trace.launches]
-    return replace(trace, launches=tuple(launches), descriptions=())
-
-
 def test_the_launch_files_that_are_too_many_are_told_as_left_out(tmp_path):
     files = {f"launch/a{number:02}.launch.xml": LAUNCH for number in range(42)}
-    *others, last = looked_at(written(tmp_path, files)).launches
+    files["package.xml"] = "<package><name>demo</name></package>"
+    *others, last = inspected(lay(tmp_path, files)).trace.launches
     assert len(others) == 40
     assert last.problem is not None
     assert last.problem.kind == "unknown"
@@ -41,14 +34,3 @@ def test_a_check_that_takes_points_is_not_judged_where_a_launch_file_is_not_know
     found = launch(Recordings(run), {})
     assert (found.judged, found.share) == (is_judged, 0)
     assert "ros2 launch." not in str(found.help)
-
-
-def test_a_package_whose_launch_files_are_not_known_fails_no_check_for_it():
-    whole = looked_at(REFERENCE)
-    failed = {
-        kind: {v.check for v in judge(recorded(with_launches(whole, kind)), EXERCISE).verdicts
-               if v.status == "failed"}
-        for kind in ("unknown", "argument", "error")
-    }  # fmt: skip
-    assert failed["unknown"] == failed["argument"] == set()
-    assert "launch" in failed["error"]

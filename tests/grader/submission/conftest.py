@@ -1,14 +1,13 @@
 """One process inspects the packages of all tests of this room, and nothing confines it.
 
-One for each package, confined as in a run, would take a third of a second and find the same: see
-tests/grader_robots/inspection/test_inspecting.py. Modules that need it have an `inspection` of
-their own.
+One for each package, confined as in a run, would take a third of a second and find the same.
+Modules that need it have an `inspection` of their own.
 """
 
 import pytest
 
 from grader.run import inspecting
-from tests.grader_robots.packages import inspected
+from tests.inspecting import inspected
 
 
 @pytest.fixture(autouse=True)

@@ -15,8 +15,8 @@ import pytest
 from grader.run import inspecting
 from grader.submission.request import LaunchAsked
 from tests.grader.submission.test_launching import opened
-from tests.grader_robots.packages import inspected
 from tests.hand_ins import SUBMISSIONS
+from tests.inspecting import inspected
 
 FOLDER = SUBMISSIONS / "like_ros2_launch"
 STARTS = json.loads(Path(__file__).with_name("launched.json").read_text())

@@ -1,12 +1,15 @@
 """Packages lose what they should, and the first line names why."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
 
 from grader.judging import judge
+from grader.submission.trace import LaunchFile, Obstacle
+from grader.text.message import msg
 from tests.grader_robots.packages import (
     EXERCISE,
     FOLDER,
@@ -128,6 +131,18 @@ def test_a_name_of_launch_that_nobody_knows_is_not_judged_and_never_failed(tmp_p
     assert "failed" not in {verdict.status for verdict in result.verdicts}
     unknown = "launch.substitutions.Wondrous, which the grader does not know"
     assert unknown in str(verdicts["launch"].rationale)
+
+
+def test_a_package_whose_launch_files_are_not_known_fails_no_check_for_it():
+    whole, failed = looked_at(REFERENCE), {}
+    for kind in ("unknown", "argument", "error"):
+        obstacle = Obstacle(kind, msg("it ends"))
+        launches = tuple(LaunchFile(each.file, obstacle) for each in whole.launches)
+        trace = replace(whole, launches=launches, descriptions=())
+        verdicts = judge(recorded(trace), EXERCISE).verdicts
+        failed[kind] = {v.check for v in verdicts if v.status == "failed"}
+    assert failed["unknown"] == failed["argument"] == set()
+    assert "launch" in failed["error"]
 
 
 def test_a_file_of_another_package_is_nobody_s_fault(tmp_path):

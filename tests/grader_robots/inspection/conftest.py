@@ -1,10 +1,5 @@
-"""Each test is a look of its own: what the children of others took is none of its account."""
+"""Each test is a look of its own, as in tests/grader/submission/examining."""
 
-import pytest
+from tests.grader.submission.examining.conftest import account
 
-from grader.submission.examining import steps
-
-
-@pytest.fixture(autouse=True)
-def _account():
-    steps.open_account()
+__all__ = ["account"]

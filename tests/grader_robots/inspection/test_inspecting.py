@@ -15,6 +15,7 @@ from grader.submission.trace import FAILED
 from grader.system import scratch
 from tests import archive, runs
 from tests.grader.run.test_opening import TEXTS
+from tests.grader.test_packages_at_each_level import expect_same_verdict
 from tests.grader_robots.packages import EXERCISE, REFERENCE, looked_at, recorded, written
 from tests.tiers import others_are_more
 
@@ -42,6 +43,12 @@ def test_it_is_confined_as_a_submission_s_process_is():
     run = runs.recordings(REFERENCE, EXERCISE).nominal.run
     with scratch.make_folder() as folder, network.obtain_isolation(folder) as isolated:
         assert run.isolation.startswith(levels.best(isolated).name())
+
+
+@pytest.mark.more("tests/attacks does what matters at each level")
+@pytest.mark.parametrize("level", [levels.LANDLOCK, levels.LIMITS])
+def test_a_package_has_the_same_verdict_at_each_level(level):
+    expect_same_verdict(level, "description_package")
 
 
 def test_a_zip_is_looked_at_as_its_folder_is(tmp_path):

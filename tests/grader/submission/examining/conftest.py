@@ -6,5 +6,5 @@ from grader.submission.examining import steps
 
 
 @pytest.fixture(autouse=True)
-def _account():
+def account():
     steps.open_account()

@@ -20,7 +20,7 @@ from grader.submission.examining.frontend_substitutions import has_later
 from grader.submission.program import NEVER, Program
 from grader.submission.trace import LaunchFile
 from tests.files import lay
-from tests.grader_robots.packages import inspected
+from tests.inspecting import inspected
 
 FACTS = yaml.safe_load(Path(__file__).with_name("launch_facts.yaml").read_text(encoding="utf-8"))
 CASES = FACTS["cases"]
