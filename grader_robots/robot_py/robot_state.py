@@ -14,8 +14,8 @@ from typing import Literal
 from grader_robots.robot_py import kinematics
 from grader_robots.robot_py.kinematics import LinkTree
 from grader_robots.robot_py.model import Joint, Model, Vector
+from grader_robots.robot_py.tinyxml import UrdfFinding
 from grader_robots.robot_py.urdf import parse
-from grader_robots.robot_py.urdf.tinyxml import UrdfFinding
 
 NS_PER_MS = 1_000_000
 

@@ -13,16 +13,18 @@ from __future__ import annotations
 import hashlib
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, Self
+from typing import Any, Final, Literal, NamedTuple, Self
 
-from grader.recording import BagMessage, Channel, Trace, string, string_of
+from grader.recording import BagMessage, BagTypes, Channel, Trace, string, string_of
 from grader.text import Message, msg
 from grader_robots.robot_py.robot_state import JointState, Placed, Robot, RobotState
-from grader_robots.scene import decoding
-from grader_robots.scene.decoding import JOINT_STATE, STRING, TF_MESSAGE, HeardJointState, Transform
+
+JOINT_STATE, TF_MESSAGE = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
+STRING = "std_msgs/msg/String"
+TYPES: Final = BagTypes({})
 
 TICK_NS = 16_000_000
 TICK_S = TICK_NS / 1e9
@@ -43,6 +45,45 @@ _NOT_ALL = msg(
     number=MOST_MESSAGES,
     megabytes=MOST_BYTES // 10**6,
 )
+
+
+class HeardJointState(NamedTuple):
+    """A JointState message.
+
+    Attributes:
+        positions: [rad or m]; may be of another length than `names`, and hold anything.
+    """
+
+    tick: int
+    stamp_ns: int
+    names: tuple[str, ...]
+    positions: tuple[float, ...]
+
+    @property
+    def is_taken(self) -> bool:
+        return len(self.names) == len(self.positions)
+
+
+class Transform(NamedTuple):
+    """A TransformStamped.
+
+    Attributes:
+        message: which of the trace's messages it stands in.
+        topic, publisher: as in the trace.
+        parent, child: the frames, as they were sent.
+        translation: x, y, z [m].
+        rotation: the quaternion x, y, z, w.
+    """
+
+    tick: int
+    message: int
+    topic: str
+    publisher: str
+    stamp_ns: int
+    parent: str
+    child: str
+    translation: tuple[float, float, float]
+    rotation: tuple[float, float, float, float]
 
 
 class Heard(NamedTuple):
@@ -106,7 +147,7 @@ class RobotTrace:
     @cached_property
     def joint_states(self) -> tuple[HeardJointState, ...]:
         """The joint states that the submission published."""
-        return tuple(decoding.joint_states(m.tick, m.data) for m in self.on(JOINT_STATES))
+        return tuple(_joint_state(m.tick, m.data) for m in self.on(JOINT_STATES))
 
     @cached_property
     def transforms(self) -> tuple[Transform, ...]:
@@ -115,7 +156,7 @@ class RobotTrace:
             transform
             for number, m in enumerate(self.messages)
             if m.topic in (TF, TF_STATIC)
-            for transform in decoding.transforms(m.tick, m.data, number, m.topic, m.publisher)
+            for transform in _transforms(m.tick, m.data, number, m.topic, m.publisher)
         )
 
     def sha256(self) -> str:
@@ -169,7 +210,7 @@ class RobotRecorder:
         """What robot_state_publisher sends on /tf when a message is heard; None: nothing."""
         if not self.hears(topic, data) or topic != JOINT_STATES:
             return None
-        names = decoding.joint_states(0, data)
+        names = _joint_state(0, data)
         state = JointState(names.stamp_ns, names.names, names.positions)
         return self._state.hear(state, now_ns).transforms
 
@@ -233,4 +274,27 @@ def _check(trace: RobotTrace) -> None:
         if not before <= tick <= trace.ticks + 1:
             raise ValueError(f"{topic}: a message at tick {tick} of {trace.ticks}")
         before = tick
-        decoding.TYPES.values(data, TOPICS[topic])
+        TYPES.values(data, TOPICS[topic])
+
+
+def _joint_state(tick: int, data: bytes) -> HeardJointState:
+    """A sensor_msgs/JointState."""
+    found = TYPES.values(data, JOINT_STATE)
+    names, positions = tuple(found["name"]), tuple(found["position"])
+    return HeardJointState(tick, _stamp_ns(found), names, positions)
+
+
+def _transforms(tick: int, data: bytes, number: int, topic: str, publisher: str) -> list[Transform]:
+    """Those of a tf2_msgs/TFMessage."""
+    made = []
+    for found in TYPES.values(data, TF_MESSAGE)["transforms"]:
+        sent = tick, number, topic, publisher, _stamp_ns(found)
+        frames = found["header"]["frame_id"], found["child_frame_id"]
+        moved, turned = (tuple(part.values()) for part in found["transform"].values())
+        made.append(Transform(*sent, *frames, moved, turned))
+    return made
+
+
+def _stamp_ns(found: Mapping[str, Any]) -> int:
+    stamp = found["header"]["stamp"]
+    return int(stamp["sec"]) * 1_000_000_000 + int(stamp["nanosec"])

@@ -28,11 +28,20 @@ from grader.text import Message, msg
 from grader.text import strings as text
 from grader_robots.robot_py.model import Model
 from grader_robots.scene import shapes
-from grader_robots.scene.decoding import Transform
-from grader_robots.scene.frames import Hung, below, hung, tree
-from grader_robots.scene.motion import ODOM, JointMotion, Odometry, fitted, joints, odometry
+from grader_robots.scene.motion import (
+    ODOM,
+    Hung,
+    JointMotion,
+    Odometry,
+    below,
+    fitted,
+    hung,
+    joints,
+    odometry,
+    tree,
+)
 from grader_robots.scene.shapes import is_finite, name_of, named, transform
-from grader_robots.scene.trace import TICK_NS, RobotTrace
+from grader_robots.scene.trace import TICK_NS, RobotTrace, Transform
 
 #: Ten metres square, the origin of `odom` in the middle.
 PLANE = Plane(size_px=500, metre_px=50.0, size_m=10.0, origin_m=-5.0)

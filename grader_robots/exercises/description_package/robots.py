@@ -18,7 +18,8 @@ from grader_robots.exercises.description_package.facts import (
     of_package,
 )
 from grader_robots.robot_py.model import Inertial, Joint, JointType, Model, Origin
-from grader_robots.robot_py.urdf import Consequence, ParsedUrdf, parse
+from grader_robots.robot_py.tinyxml import Consequence
+from grader_robots.robot_py.urdf import ParsedUrdf, parse
 
 checks = Checks()
 #: What is left where a robot is there, and something of it is wrong or dropped.

@@ -14,8 +14,7 @@ from grader import Checks, Expected, Finding, Tolerances
 from grader.recording import Floats
 from grader.text import Message, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import RobotRun, listed, of_run, sentence
-from grader_robots.scene.frames import below, hung, why_refused
-from grader_robots.scene.motion import ODOM, Odometry, bare, fitted
+from grader_robots.scene.motion import ODOM, Odometry, bare, below, fitted, hung, why_refused
 from grader_robots.scene.view import FROM_CENTRE
 from grader_robots.scene.view import HEADING as HEADING_CURVE
 from grader_robots.scene.view import HEIGHT as HEIGHT_CURVE

@@ -30,7 +30,8 @@ from grader_robots.exercises.description_package.spawning import (
 from grader_robots.exercises.thymio_package import wheels
 from grader_robots.robot_py import kinematics
 from grader_robots.robot_py.model import Box, Model, Origin
-from grader_robots.robot_py.urdf import Consequence, ParsedUrdf, parse
+from grader_robots.robot_py.tinyxml import Consequence
+from grader_robots.robot_py.urdf import ParsedUrdf, parse
 
 _MOVED_M = 1e-6
 #: What hangs on a part so far from its middle, as a share of half of its size, is at its side.

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader_robots.robot_py import urdf
 from grader_robots.robot_py.model import (
     BLACK,
     Box,
@@ -22,7 +23,8 @@ from grader_robots.robot_py.model import (
     Origin,
     Sphere,
 )
-from grader_robots.robot_py.urdf import Consequence, document, parse
+from grader_robots.robot_py.tinyxml import Consequence
+from grader_robots.robot_py.urdf import parse
 from tests.grader_robots.robot_py import urdf_cases as cases
 
 URDFDOM = json.loads(Path(__file__).with_name("urdfdom.json").read_text())
@@ -118,7 +120,7 @@ def test_what_stands_behind_a_zero_byte_is_not_read():
 
 
 def test_a_text_that_is_too_long_is_not_read(monkeypatch):
-    monkeypatch.setattr(document, "LONGEST", 20)
+    monkeypatch.setattr(urdf, "LONGEST", 20)
     reading = parse(cases.RIGHT)
     assert reading.model is None
     assert "too many for a URDF: 20 at most" in str(reading.findings[0])

@@ -29,7 +29,7 @@ from grader_robots.robot_py.model import (
     Vector,
     Visual,
 )
-from grader_robots.robot_py.urdf.tinyxml import Consequence, Element, Malformed, UrdfFinding
+from grader_robots.robot_py.tinyxml import Consequence, Element, Malformed, UrdfFinding
 
 Part = TypeVar("Part")
 #: Gets what is left out although its surroundings stay.

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from grader_robots.robot_py.robot_state import Placed
-from grader_robots.scene import frames
+from grader_robots.scene import motion
 from grader_robots.scene.driving import drive, tf
 from grader_robots.scene.trace import TF_STATIC, RobotTrace
 from tests.grader_robots.scene.robots import URDF, walks
@@ -24,7 +24,7 @@ def says(parent: str, child: str, at=(0.0, 0.0, 0.0), turned=STILL, topic: str =
 
 
 def tree(controller, ticks=200):
-    made = frames.tree(drive(controller, ticks, URDF))
+    made = motion.tree(drive(controller, ticks, URDF))
     assert made is not None
     return made
 
@@ -102,4 +102,4 @@ def test_names_are_clipped_and_in_a_line():
 
 
 def test_nothing_heard_is_no_tree():
-    assert frames.tree(RobotTrace(0)) is None
+    assert motion.tree(RobotTrace(0)) is None
