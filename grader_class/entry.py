@@ -38,6 +38,12 @@ class Person:
     name: str = ""
     columns: Mapping[str, str] = field(default_factory=dict)
 
+    def column(self, *names: str) -> str:
+        """Return the first of these cells that is not empty, or ''; names are of any case."""
+        by_name = {name.strip().casefold(): value for name, value in self.columns.items()}
+        cells = (by_name.get(name.casefold(), "").strip() for name in names)
+        return next(filter(None, cells), "")
+
 
 @dataclass(frozen=True)
 class HandIn:

@@ -15,7 +15,7 @@ from grader.system import versions as system
 from grader.text import msg, tr
 from grader.text import strings as text
 from grader_class.course import repository
-from grader_class.course.kinds import HAVE_A_CHECK, KINDS
+from grader_class.course.repository import HAVE_A_CHECK, KINDS
 
 #: The releases of ROS 2 that PyPI has, as extras of ours.
 RELEASES = ("jazzy", "kilted")
@@ -80,7 +80,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Write it, into a new or empty folder alone."""
-    kind = KINDS[args.kind]
     if any("," in name for name in args.exercises):
         raise UsageError(
             "--exercises {names}: separate them by blanks, not commas",
@@ -91,7 +90,7 @@ def main(args: argparse.Namespace) -> int:
     source = _source(args.source, args.ros)
     how = repository.Settings(source, args.pass_points, args.ros)
     with files.filling(args.folder) as copy:
-        repository.write(copy, args.kind, kind, exercises, how)
+        repository.write(copy, args.kind, exercises, how)
     print(tr("The course is in {folder}.", folder=args.folder))
     print(tr("There, {source} is installed.", source=source))
     if source.startswith(os.sep):

@@ -1,4 +1,7 @@
-"""The repository of a course, made of templates: data files in which @@name stands for a value."""
+"""The repository of a course, made of templates: data files in which @@name stands for a value.
+
+In a path, and in the folders below `templates/`, EXERCISE stands for each exercise of the course.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,6 @@ from grader.cli import starters as starter
 from grader.exercise import installed
 from grader.system import versions as system
 from grader.text import strings as text
-from grader_class.course.kinds import EXERCISE, GRADE, INSTALL, PUBLISH, Kind
 
 TEMPLATES = Path(__file__).parent / "templates"
 #: What of them every kind has, and what is laid where a kind wants it.
@@ -25,6 +27,79 @@ README, STEPS = "README.md", "steps.md"
 OTHERS = "The commands below are for the first of them; do the same for each."
 #: The share of an exercise's points from which on a check is green, if nothing else is said.
 PASS_SHARE = 0.6
+#: In paths: each exercise.
+EXERCISE = "EXERCISE"
+GRADE, INSTALL, PUBLISH = "grade.sh", "install.sh", "publish.sh"
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A system, and where a repository for it has what all of them have.
+
+    Attributes:
+        title: what the system is called.
+        scripts: the folder of `grade.sh`, `install.sh` and the rubric.
+        unusable: what a submission gets that cannot be used, there.
+        failed: what becomes of one where the grader fails.
+        log: where the staff reads what the grader said.
+        is_copied: whether the starter is a repository of which each student gets a copy.
+        slug: what stands for the `_` of an exercise's name.
+    """
+
+    title: str
+    scripts: str
+    unusable: str
+    failed: str
+    log: str = "the system's log of the run"
+    is_copied: bool = False
+    slug: str = "_"
+
+    @property
+    def starter(self) -> str:
+        """The folder of a starter."""
+        return f"{'templates' if self.is_copied else 'starters'}/{EXERCISE}"
+
+    @property
+    def rubric(self) -> str:
+        """The exercise that is graded by, an edited copy."""
+        return f"{self.scripts}/rubric.yaml"
+
+
+KINDS = {
+    "gradescope": Kind(
+        "Gradescope",
+        "autograders/EXERCISE",
+        "0, with the message",
+        'none; "This is not your fault", and `grader_failed` in `extra_data`',
+        "the output that only the staff sees",
+    ),
+    "classroom50": Kind(
+        "Classroom 50",
+        "autograders/EXERCISE",
+        "0, in a release with the message",
+        "none; an error",
+        is_copied=True,
+        slug="-",
+    ),
+    "github": Kind(
+        "GitHub Actions",
+        "templates/EXERCISE/.github/grader",
+        '0; the check is red, "0 points: cannot be graded"',
+        'none; the job is red, the check "Not graded"',
+        "`log.txt` of the artifact",
+        is_copied=True,
+    ),
+    "gitlab": Kind(
+        "GitLab CI",
+        "templates/EXERCISE/.gitlab/grader",
+        '0; the job is red, "Points: 0", a failed test',
+        "none; the job is tried again, then red",
+        "`log.txt` of the artifacts",
+        is_copied=True,
+    ),
+}
+#: Where PASS_POINTS makes a check green.
+HAVE_A_CHECK = ("github", "gitlab")
 
 
 @dataclass(frozen=True)
@@ -48,10 +123,9 @@ class Template(string.Template):
     delimiter = "@@"
 
 
-def write(
-    folder: Path, name: str, kind: Kind, exercises: Sequence[Exercise], how: Settings
-) -> None:
+def write(folder: Path, name: str, exercises: Sequence[Exercise], how: Settings) -> None:
     """Write the repository for the kind of this name into a folder that is not there yet."""
+    kind = KINDS[name]
     slugs = [(each, each.name.replace("_", kind.slug)) for each in exercises]
     for exercise, slug in slugs:
         place = folder / kind.starter.replace(EXERCISE, slug)

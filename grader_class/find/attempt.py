@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final
 
 from grader.submission import is_junk
 from grader.text import NOTHING, Message, Text, listed, one_line, shown
@@ -95,16 +95,6 @@ class Export:
     notes: Sequence[Message] = field(default=())
 
 
-class Layout(Protocol):
-    """A module that reads one layout."""
-
-    def matches(self, items: Sequence[Item], /) -> bool:
-        """Whether the items of a folder have this layout."""
-
-    def read(self, items: Sequence[Item], /) -> Export:
-        """Read the attempts in such a folder."""
-
-
 def items_of(folder: Path) -> list[Item]:
     """Return the items of a folder, sorted by name, without the junk of a system or a browser."""
     with os.scandir(folder) as entries:
@@ -125,11 +115,6 @@ def add_note(notes: list[Message], what: Message, names: Iterable[Text]) -> None
     """Add a note about some `{names}`, if there are any."""
     if every := list(names):
         notes.append(what.given(names=listed(every)))
-
-
-def at_least_half(items: Sequence[Item], predicate: Callable[[Item], object]) -> bool:
-    """Whether there are items, and the predicate is true of at least half of them."""
-    return bool(items) and 2 * sum(bool(predicate(item)) for item in items) >= len(items)
 
 
 def person(id: str, name: str = "", columns: Mapping[str, str] | None = None) -> Person:

@@ -17,9 +17,10 @@ from grader.text import Message, listed, msg, msg_many, shown
 from grader.text import joined as joined_texts
 from grader_class.class_file import CLASS
 from grader_class.entry import HandIn
-from grader_class.find import canvas, clones, gradescope, moodle, newest, plain
-from grader_class.find.attempt import Export, Item, Layout, items_of
+from grader_class.find import newest, plain
+from grader_class.find.attempt import Export, Item, items_of
 from grader_class.find.joining import NOT_HANDED_IN, UNCLEAR, joined
+from grader_class.find.layouts import LAYOUTS, Layout
 from grader_class.find.plain import Pattern
 from grader_class.find.roster import Roster, is_of_classroom50, read_roster
 from grader_class.store import STORE, UNFINISHED
@@ -28,8 +29,6 @@ from grader_class.store import STORE, UNFINISHED
 ROSTER: Final = "roster.csv"
 SCORES: Final = "scores.csv"
 _TABLES: Final = (ROSTER, SCORES)
-#: The first layout that a folder matches is used; a plain folder matches none.
-LAYOUTS: Final[tuple[Layout, ...]] = (gradescope, moodle, canvas, clones)
 _MAX_WRAPPERS: Final = 3  # folders in a folder that an archive was packed from
 LIMITS: Final = ArchiveLimits(
     most_bytes=50_000_000_000, most_files=500_000, list_bytes=20_000_000, headers=500_000

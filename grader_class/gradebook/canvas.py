@@ -10,11 +10,18 @@ import re
 from collections.abc import Sequence
 
 from grader.reports import cell, table
-from grader_class.gradebook import known
 from grader_class.gradebook.feedback import has_feedback
-from grader_class.gradebook.grade import Grade, decimal
+from grader_class.gradebook.grade import (
+    SIS_LOGIN_ID,
+    SIS_USER_ID,
+    Grade,
+    canvas_file,
+    canvas_id,
+    decimal,
+    safe_column,
+)
 
-_HEADER = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
+_HEADER = ("Student", "ID", SIS_USER_ID, SIS_LOGIN_ID, "Section")
 _POINTS_POSSIBLE = "Points Possible"
 _ASSIGNMENT = re.compile(r"(.*)\s\((\d+)\)", re.DOTALL)
 
@@ -68,7 +75,7 @@ def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
 
     Canvas shows the feedback under the name of the submission, so it has that one's format.
     """
-    named = ((known.canvas_file(grade.entry.hand_in), grade) for grade in grades)
+    named = ((canvas_file(grade.entry.hand_in), grade) for grade in grades)
     return {name: grade for name, grade in named if name and has_feedback(grade.entry)}
 
 
@@ -76,15 +83,14 @@ def _row(grade: Grade) -> list[str]:
     ids = _ids(grade)
     if not any(ids):
         return []
-    name = cell(known.column(grade.person, ("Student",)) or grade.person.name)
+    name = cell(grade.person.column("Student") or grade.person.name)
     if _POINTS_POSSIBLE in name:  # Canvas would treat the row as that of the possible points
         name = cell(grade.person.id)
-    section = cell(known.column(grade.person, ("Section",)))
+    section = cell(grade.person.column("Section"))
     return [name, *ids, section, decimal(grade.final)]
 
 
 def _ids(grade: Grade) -> tuple[str, str, str]:
     person = grade.person
-    sis = (known.SIS_USER_ID, known.SIS_LOGIN_ID)
-    user, login = (known.safe_column(person, names) for names in sis)
-    return known.canvas_id(person), user, login
+    user, login = (safe_column(person, name) for name in (SIS_USER_ID, SIS_LOGIN_ID))
+    return canvas_id(person), user, login

@@ -12,9 +12,16 @@ from collections.abc import Sequence
 
 from grader.reports import cell, table
 from grader.text import strings as text
-from grader_class.gradebook import known
 from grader_class.gradebook.feedback import PAGE, Feedback, has_feedback, is_ours
-from grader_class.gradebook.grade import Grade, decimal
+from grader_class.gradebook.grade import (
+    MOODLE_KEYS,
+    Grade,
+    decimal,
+    identifier,
+    is_of_worksheet,
+    participant,
+    safe_column,
+)
 
 #: The columns of Moodle 3 and 4 in English. Moodle searches for Identifier, Grade, Last modified
 #: (grade) and Feedback comments, by exactly these names.
@@ -50,7 +57,7 @@ def grade_import(grades: Sequence[Grade], title: str, feedback: Feedback) -> str
     rows = [
         (id_, cell(g.person.name), decimal(g.final), _comment(g, feedback))
         for g in grades
-        if g.final is not None and (id_ := known.safe_column(g.person, key))
+        if g.final is not None and (id_ := safe_column(g.person, *key))
     ]
     header = (key[0], "Full name", cell(title), f"{cell(title)} (Feedback)") if key else ()
     return table([header, *rows]) if rows else ""
@@ -60,16 +67,16 @@ def grade_import_key(grades: Sequence[Grade]) -> tuple[str, ...]:
     """Return the names of the column that identifies the most people; empty if it is none."""
 
     def count(key: tuple[str, ...]) -> int:
-        return sum(bool(known.safe_column(grade.person, key)) for grade in grades)
+        return sum(bool(safe_column(grade.person, *key)) for grade in grades)
 
-    key = max(known.MOODLE_KEYS, key=count)
+    key = max(MOODLE_KEYS, key=count)
     return key if count(key) else ()
 
 
 def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
     """Return the names in the zip of feedback: Moodle reads the number, and shows the end."""
     return {
-        f"{_name(grade)}_{known.participant(grade.person)}_{_PLUGIN}_{PAGE}": grade
+        f"{_name(grade)}_{participant(grade.person)}_{_PLUGIN}_{PAGE}": grade
         for grade in numbered(grades)
         if has_feedback(grade.entry)
     }
@@ -81,31 +88,31 @@ def numbered(grades: Sequence[Grade]) -> list[Grade]:
     If there is a worksheet, only its numbers count: a number in the name of an exported file may be
     that of a group, and in the worksheet that of another student.
     """
-    listed = [grade for grade in grades if known.is_of_worksheet(grade.person)]
-    return [grade for grade in listed or grades if known.participant(grade.person)]
+    listed = [grade for grade in grades if is_of_worksheet(grade.person)]
+    return [grade for grade in listed or grades if participant(grade.person)]
 
 
 def _worksheet_row(grade: Grade, feedback: Feedback) -> list[str]:
     def known_cell(column: str, default: str = "") -> str:
-        return cell(known.column(grade.person, (column,)) or default)
+        return cell(grade.person.column(column) or default)
 
     return [
-        known.identifier(grade.person),
+        identifier(grade.person),
         cell(grade.person.name) or known_cell("Full name"),
-        cell(known.column(grade.person, known.MOODLE_KEYS[0])),
+        cell(grade.person.column(*MOODLE_KEYS[0])),
         known_cell("Status"),
         decimal(grade.final),
         known_cell("Maximum Grade", decimal(grade.entry.max_score)),
         known_cell("Grade can be changed", "Yes"),
-        known.safe_column(grade.person, ("Last modified (submission)",)) or "-",
-        known.safe_column(grade.person, ("Last modified (grade)",)) or "-",
+        safe_column(grade.person, "Last modified (submission)") or "-",
+        safe_column(grade.person, "Last modified (grade)") or "-",
         _comment(grade, feedback),
     ]
 
 
 def _comment(grade: Grade, feedback: Feedback) -> str:
     """Return the comment as HTML, which Moodle expects; one of somebody else stays as it is."""
-    there = known.column(grade.person, ("Feedback comments",))
+    there = grade.person.column("Feedback comments")
     if there and not is_ours(there):
         return cell(text.one_line(there))
     return cell(html.escape(feedback.sentence(grade), quote=False))

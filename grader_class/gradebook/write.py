@@ -24,9 +24,17 @@ from grader.text import Message, msg, plain_all, translate
 from grader.text import strings as text
 from grader_class.entry import Entry
 from grader_class.find.joining import UNCLEAR
-from grader_class.gradebook import canvas, known, moodle
+from grader_class.gradebook import canvas, moodle
 from grader_class.gradebook.feedback import Feedback, has_feedback
-from grader_class.gradebook.grade import LONGEST, Grade, decimal, grades
+from grader_class.gradebook.grade import (
+    LONGEST,
+    Grade,
+    canvas_file,
+    decimal,
+    grades,
+    is_of_worksheet,
+    participant,
+)
 
 CSV, JSON_LINES, EXPORT = "gradebook.csv", "gradebook.jsonl", "export"
 MOODLE_WORKSHEET, MOODLE_GRADES = "moodle-grading-worksheet.csv", "moodle-grade-import.csv"
@@ -181,7 +189,7 @@ def notes(grades: Sequence[Grade], assignment: str) -> list[Message]:
         assignment: the heading of Canvas's column.
     """
     found = list(_of_grades(grades))
-    is_moodle = any(known.participant(grade.person) for grade in grades)
+    is_moodle = any(participant(grade.person) for grade in grades)
     is_canvas = any(map(canvas.is_known, grades))
     if is_moodle:
         found += _of_moodle(grades)
@@ -222,14 +230,14 @@ def _of_moodle(grades: Sequence[Grade]) -> Iterator[Message]:
             "number is not known. Give --roster with Moodle's grading worksheet.",
             people=_people(lacking),
         )
-    if not any(known.is_of_worksheet(grade.person) for grade in grades):
+    if not any(is_of_worksheet(grade.person) for grade in grades):
         yield msg(
             "The participant numbers are those in the names of Moodle's export. If groups have "
             "handed in, they are numbers of groups, which Moodle would take for those of students: "
             "then give --roster with Moodle's grading worksheet, or do not import them."
         )
     most = max(grade.entry.max_score for grade in grades)
-    maxima = (known.column(grade.person, ("Maximum Grade",)) for grade in grades)
+    maxima = (grade.person.column("Maximum Grade") for grade in grades)
     others = dict.fromkeys(s for s in maxima if s and _number(s) not in (None, most))
     if others:
         yield msg(
@@ -255,7 +263,7 @@ def _of_canvas(grades: Sequence[Grade], assignment: str) -> Iterator[Message]:
             assignment=assignment,
         )
     has_file = (g for g in grades if has_feedback(g.entry))
-    if without := [g for g in has_file if not known.canvas_file(g.entry.hand_in)]:
+    if without := [g for g in has_file if not canvas_file(g.entry.hand_in)]:
         yield msg(
             "Not in Canvas's feedback: {people}, whose files do not have the names that Canvas "
             "gives to downloaded ones.",

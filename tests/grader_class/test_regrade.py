@@ -14,7 +14,7 @@ from grader.judging import judge, load_recordings
 from grader.text.message import msg
 from grader_class import regrade
 from grader_class.class_file import ClassFile
-from grader_class.cli import regrading
+from grader_class.cli import grading
 from grader_class.entry import Entry, entries
 from grader_class.store import RECORDING, UNFINISHED, Store
 from tests.files import contents
@@ -50,8 +50,9 @@ def out(out, in_process):
 
 
 def call(out, rubric, *, apply=False):
-    words = Namespace(regrade=out, exercise=rubric, apply=apply, out=None, assignment="")
-    return regrading.run(words, 1, "student")
+    words = {"regrade": out, "exercise": rubric, "apply": apply, "out": None, "jobs": 1}
+    words |= {"after_due": False, "assignment": ""}
+    return grading.regrade_class(Namespace(**words))
 
 
 def rows(text):

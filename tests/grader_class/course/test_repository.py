@@ -14,7 +14,7 @@ from grader.cli import _parser, main
 from grader.exercise.loading import load_exercise
 from grader.submission.manifest import exercises_named
 from grader_class.course import repository
-from grader_class.course.kinds import KINDS
+from grader_class.course.repository import KINDS
 from grader_class.find import roster
 from tests.grader.reports.samples import FORMATS
 from tests.grader_class.course.machine import EXERCISES, SOURCE, an_error, course
