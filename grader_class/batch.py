@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from grader.system import content, files
 from grader.system import versions as system
 from grader.text import NOTHING, Message, joined, msg, tr
 from grader_class import export, grade
-from grader_class.class_file import CLASS, MACHINE, ClassFile
+from grader_class.class_file import ANOTHER_MACHINE, CLASS, MACHINE, ClassFile
 from grader_class.entry import Entry, HandIn
 from grader_class.gradebook.write import CSV
 from grader_class.gradebook.write import write as write_gradebook
@@ -64,18 +64,20 @@ class Order:
     @property
     def class_file(self) -> ClassFile:
         """The class.json of what is graded so, on this machine."""
-        secret = content.of_bytes(f"class {self.secret}".encode())[:12] if self.secret else ""
         start = f"--executable {self.executable}" if self.executable else ""
         if self.launch is not None:
             given = (f" {name}:={value}" for name, value in sorted(self.launch.given.items()))
             start = f"--launch {self.launch.file}{''.join(given)}"
         return ClassFile(
-            *(self.exercise.name, self.exercise.sha256, self.time, self.seed),
+            self.exercise.name,
+            self.exercise.sha256,
+            self.time,
+            self.seed,
             grader=system.grader_version(),
             ros=f"rclpy {system.rclpy_version()} {system.ros_distro()}".strip(),
             python=system.python_version(),
             isolation=self.isolation,
-            seed_file=secret,
+            seed_file=content.of_bytes(f"class {self.secret}".encode())[:12] if self.secret else "",
             pseudonyms=self.pseudonyms,
             start=start,
         )
@@ -104,36 +106,27 @@ class Planned:
 
 def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
     """Refuse to grade into the folder of another class; write class.json into a new one."""
-    if not (store.out / CLASS).is_file():
-        wanted.put(store.out)
-        return
-    found = ClassFile.read(store.out)
-    differences = wanted.differences(found)
-    if again == "all" and differences.keys() <= {*MACHINE, "exercise_sha256"}:
+    is_new = not (store.out / CLASS).is_file()
+    differences = {} if is_new else wanted.differences(ClassFile.read(store.out))
+    if is_new or (again == "all" and differences.keys() <= {*MACHINE, "exercise_sha256"}):
         wanted.put(store.out)
         return
     if not differences:
         return
+    advice = msg("Give another --out.")
+    if differences.keys() == {"exercise_sha256"}:
+        advice = msg(
+            "See what the new one would change: grader batch --regrade {out} --exercise ...",
+            out=str(store.out),
+        )
+    elif differences.keys() <= MACHINE:
+        advice = ANOTHER_MACHINE
     raise UsageError(
         "{out} was graded by something else ({differences}). Nothing was changed. {advice}",
         out=str(store.out),
         differences=joined(list(differences.values()), "; "),
-        advice=_advice(differences, store),
+        advice=advice,
     )
-
-
-def _advice(differences: Mapping[str, Message], store: Store) -> Message:
-    """Return what to do about a folder of another class."""
-    if differences.keys() == {"exercise_sha256"}:
-        return msg(
-            "See what the new one would change: grader batch --regrade {out} --exercise ...",
-            out=str(store.out),
-        )
-    if differences.keys() <= MACHINE:
-        return msg("Give another --out, or have everything graded by this one: --again all.")
-    if "pseudonyms" in differences:
-        return msg("Give the key that it was begun with: --pseudonyms KEY.")
-    return msg("Give another --out.")
 
 
 def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
@@ -143,10 +136,9 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
     by_key: dict[str, list[HandIn]] = {}
     trivial, done = [], []
     for hand_in, run in _with_keys(hand_ins, order):
-        if _is_done(_existing(store.student(hand_in.id)), hand_in, run, order):
+        if _is_done(store.student(hand_in.id), hand_in, run, order):
             done.append(hand_in)
-            continue
-        if run:
+        elif run:
             by_key.setdefault(run, []).append(hand_in)
         else:
             trivial.append(hand_in)
@@ -168,9 +160,8 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
     tasks = (replace(each, into=store.new_place(), isolation=level) for each in planned.tasks)
     for task, answer in work(tasks):
         place = task.into
-        is_done = answer.state == "done"
-        why = _unusable(task, order) if is_done else answer.why
-        if why or not is_done:
+        why = _unusable(task, order) if answer.state == "done" else answer.why
+        if why or answer.state != "done":
             place = store.new_place()
             for hand_in in task.hand_ins:
                 folder = place / STUDENTS / hand_in.id
@@ -212,17 +203,14 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
         yield hand_in, of_run(content, order.exercise, order.time, seed)
 
 
-def _existing(folder: Path) -> Entry | None:
-    try:
-        return Entry.read(folder)
-    except UsageError:
-        return None  # not there, not finished, or gone bad
-
-
-def _is_done(entry: Entry | None, hand_in: HandIn, run: str, order: Order) -> bool:
-    """Whether an entry is what grading would make; a grader's failure has no run to compare."""
-    if entry is None or order.again in ("all", entry.id):
+def _is_done(folder: Path, hand_in: HandIn, run: str, order: Order) -> bool:
+    """Whether a folder holds what grading would make; a grader's failure has no run to compare."""
+    if order.again in ("all", hand_in.id):
         return False
+    try:
+        entry = Entry.read(folder)
+    except UsageError:
+        return False  # not there, not finished, or gone bad
     if order.again == "failed" and entry.state == "failed":
         return False
     is_same = entry.hand_in == replace(hand_in, path=None)
@@ -238,13 +226,12 @@ def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> 
     return Task(
         run,
         tuple(everybody),
-        first.path.absolute(),
-        first.filename,
         order.exercise_path,
         order.time,
         order.seed_of(first),
-        store.run(run) if store.has(run) and not is_again else None,
-        Path(),
+        run=store.run(run) if store.has(run) and not is_again else None,
+        path=first.path.absolute(),
+        filename=first.filename,
         hides_seed=order.hides_seed,
         executable=order.executable,
         launch=order.launch,

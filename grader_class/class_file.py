@@ -15,7 +15,7 @@ from typing import Any, Self
 from grader import Exercise, NotOffered, UsageError
 from grader.exercise import json_file
 from grader.recording import Clock
-from grader.run import ADVICE, LEVELS, levels
+from grader.run import levels
 from grader.system import files
 from grader.text import Message, Text, msg
 
@@ -23,8 +23,9 @@ SCHEMA = "turtlesim-grader/class/v2"
 CLASS = "class.json"
 #: Characters of a value in a message: enough of a hash to distinguish two.
 MOST_SHOWN = 24
-#: The fields that may change when everything is graded anew.
+#: The fields that may change when everything is graded anew, and what to do about them.
 MACHINE = {"grader", "ros", "python", "isolation"}
+ANOTHER_MACHINE = msg("Give another --out, or have everything graded by this one: --again all.")
 _NAMED = {
     "exercise": msg("the exercise"),
     "exercise_sha256": msg("the exercise's rubric"),
@@ -116,7 +117,7 @@ class ClassFile:
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             raise ValueError(msg("is no class: expected the schema {schema}", schema=SCHEMA))
         found = json_file.typed(cls, {n: value for n, value in data.items() if n != "schema"})
-        if found.isolation not in ("", *LEVELS):
+        if found.isolation not in ("", *levels.LEVELS):
             raise ValueError(msg("is damaged: its isolation is {told}", told=repr(found.isolation)))
         return found
 
@@ -134,7 +135,7 @@ def begun_at(out: Path, again: str = "", least: str = "") -> str:
     if not (out / CLASS).is_file() or again == "all":
         return ""
     level = ClassFile.read(out).isolation
-    return least if level and least and _is_less(level, least) else level
+    return least if level and least and is_less(level, least) else level
 
 
 def note(out: Path, level: str) -> None:
@@ -155,12 +156,13 @@ def on_this_machine(level: str) -> str:
         return levels.here(level).level
     except NotOffered as error:
         raise UsageError(
-            "{why}. To get it: {advice}. Or give another --out, or have everything graded by "
-            "this one: --again all.",
+            "{why}. To get it: {advice}. {or_else}",
             why=error.message,
-            advice=ADVICE[level],
+            advice=levels.ADVICE[level],
+            or_else=ANOTHER_MACHINE,
         ) from None
 
 
-def _is_less(level: str, than: str) -> bool:
-    return LEVELS.index(level) > LEVELS.index(than)
+def is_less(level: str, than: str) -> bool:
+    """Whether a level of isolation protects less well than another."""
+    return levels.LEVELS.index(level) > levels.LEVELS.index(than)

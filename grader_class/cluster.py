@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader import GraderFailure, UsageError
-from grader.run import ADVICE, LEVELS, levels
+from grader.run import levels
 from grader.system import require
 from grader.text import Message, joined, msg
 from grader_class import class_file, pool
@@ -126,14 +126,14 @@ def _agreed(client: Client, terms: Terms, least: str) -> Terms:
             raise
         except Exception as error:
             raise _cannot_grade(msg("the worker at {address}", address=address), error) from None
-    level = max(offered, key=LEVELS.index)
-    if least and LEVELS.index(level) > LEVELS.index(least):
+    level = max(offered, key=levels.LEVELS.index)
+    if least and class_file.is_less(level, least):
         raise UsageError(
             "a worker of the cluster offers isolation by {level}, and none better. To get "
             "{least}: {advice}.",
             level=level,
             least=least,
-            advice=ADVICE[least],
+            advice=levels.ADVICE[least],
         )
     return replace(terms, level=level)
 

@@ -36,12 +36,12 @@ class Task:
     Attributes:
         key: of the run; see `grader_class.store`.
         hand_ins: those with this content; their paths are not serialised.
-        path: the submission; None where its run is only judged again.
-        filename: the name that it is graded by; '' for that of `path`.
         exercise: its name or path.
         time: the clock of the submission.
         seed: chooses where the varied runs start; None: the exercise's own.
         run: the folder of the run, if there is one; one that cannot be read is made anew.
+        path: the submission; None where its run is only judged again.
+        filename: the name that it is graded by; '' for that of `path`.
         into: an empty folder for the files; see `grader_class.store`.
         judge_only: whether to write results alone: no pages, no pictures.
         isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
@@ -52,13 +52,13 @@ class Task:
 
     key: str
     hand_ins: tuple[HandIn, ...]
-    path: Path | None
-    filename: str
     exercise: str
     time: Clock
     seed: int | None
     run: Path | None
-    into: Path
+    path: Path | None = None
+    filename: str = ""
+    into: Path = Path()
     judge_only: bool = False
     isolation: str = ""
     language: str = field(default_factory=current)

@@ -176,17 +176,8 @@ def _tasks(
         if entry.state == "judged":
             by_run[entry.key].append(entry)
     for key, sharing in by_run.items():
-        yield Task(
-            key=key,
-            hand_ins=tuple(entry.hand_in for entry in sharing),
-            path=None,
-            filename="",
-            exercise=exercise_path,
-            time=of_class.time,
-            seed=of_class.seed,
-            run=store.run(key),
-            into=Path(),
-        )
+        hand_ins = tuple(entry.hand_in for entry in sharing)
+        yield Task(key, hand_ins, exercise_path, of_class.time, of_class.seed, store.run(key))
 
 
 def _read(task: Task, answer: Answer, before: Entry) -> Entry | Message:

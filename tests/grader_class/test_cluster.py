@@ -170,7 +170,7 @@ def asked(monkeypatch):
 
 def a_task(terms, key="0"):
     (terms.place / key).mkdir()
-    return Task(key, (), None, "", "square", "virtual", None, None, terms.place / key)
+    return Task(key, (), "square", "virtual", None, None, into=terms.place / key)
 
 
 def test_a_task_of_which_two_workers_died_is_not_tried_again(terms, asked):

@@ -26,7 +26,7 @@ def test_only_what_may_pass_is_to_be_tried_again(monkeypatch, error, state):
 
     monkeypatch.setattr(grade, "make", make)
     monkeypatch.setattr(levels, "_only", "")
-    task = Task("a", (), Path("a.py"), "", "square", "virtual", None, None, Path("x"))
+    task = Task("a", (), "square", "virtual", None, None, Path("a.py"))
     answer = grade.done(task)
     assert answer.state == state
     assert str(error) in str(answer.message)

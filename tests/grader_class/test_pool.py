@@ -19,7 +19,7 @@ for line in sys.stdin:
 
 def tasks(count):
     return [
-        Task(str(n), (), Path("a.py"), "", "square", "virtual", None, None, Path("x"))
+        Task(str(n), (), "square", "virtual", None, None, Path("a.py"))
         for n in range(count)
     ]
 

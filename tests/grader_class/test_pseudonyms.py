@@ -58,7 +58,7 @@ def test_a_class_goes_on_with_its_key_alone(named, small_class, tmp_path):
     assert gradebook.read_bytes() == before
     key.write_text(KEY)
     code, said = batch_hidden(small_class, tmp_path)
-    assert (code, "Give the key that it was begun with" in said) == (2, True), said
+    assert (code, "the key of the pseudonyms (--pseudonyms): there" in said) == (2, True), said
     key.unlink()
     code, said = batch_hidden(small_class, tmp_path)
     assert (code, "No such file" in said, key.exists()) == (2, True, False), said

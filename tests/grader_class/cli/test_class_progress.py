@@ -40,7 +40,7 @@ def test_after_ten_runs_the_time_left_is_right_however_slow_and_however_many_are
     monkeypatch.setattr(class_progress, "Progress", seen)
     there = [_graded(store, number, tmp_path) for number in range(100)]
     missing = tuple(_graded(store, number, None) for number in range(100, 150))
-    paths = (tmp_path, "", "", "virtual", None, None, tmp_path)
+    paths = ("", "virtual", None, None, tmp_path)
     tasks = tuple(Task(each.id, (each,), *paths) for each in there)
     console = Console(file=io.StringIO(), force_terminal=True, width=120, get_time=clock)
     with class_progress.shown(console, Planned(tasks, missing, (), 0), store) as show:
