@@ -7,7 +7,6 @@
 | `unsupported_calls` | `select`, asyncio, signals; refuses other processes |
 | `time_and_chance` | `time` and `datetime`; random numbers and whatever else differs every time |
 | `rclpy_time` | puts rclpy into virtual time: wait sets, clocks, queries of the graph |
-| `executor` | rclpy's executors, faster |
 | `link` | this end of the link to the simulator: asks for time, sends and receives |
 
 Both sides of the link share `grader.run.lockstep`.

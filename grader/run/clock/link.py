@@ -161,7 +161,6 @@ class SimulatorLink(EndpointRegistry):
 
     Attributes:
         tick: the last that has begun for the program.
-        graph_epoch: how often the endpoints were connected anew.
         is_listening: whether a thread waits for what others publish.
         on_arrival: called after something may have arrived.
         on_standstill: called when no thread of the program has a deadline.
@@ -188,7 +187,6 @@ class SimulatorLink(EndpointRegistry):
         super().__init__(lambda: EPOCH_NS + scheduler.now_ns, number or 1)
         self.refuse = refuse
         self.tick = 0
-        self.graph_epoch = 0
         self.is_listening: Callable[[], bool] = lambda: False
         self.on_arrival: Callable[[], None] = lambda: None
         self.on_standstill: Callable[[], None] = lambda: None
@@ -368,7 +366,6 @@ class SimulatorLink(EndpointRegistry):
                         for kept in writer.history
                     ]
         self.count_meetings()
-        self.graph_epoch += 1
 
     def _mail_for_late(self) -> None:
         """Send readers that come late what writers keep for such."""

@@ -10,7 +10,6 @@ time; a node, without which there is no entity, costs ten times as much, and wou
 |---|---|
 | `ENTITIES` | both sides: `endpoints`, `actions`, `waitsets`, `rclpy_clocks` |
 | `PROGRAM` | the submission's side: `clock.rclpy_time`, and `observe.stuck` by their names |
-| `EXECUTOR` | `clock.executor`, where it does not stand aside |
 """
 
 from __future__ import annotations
@@ -81,16 +80,6 @@ def _has_no(module: str, owner: str, name: str) -> str:
         return f"there is no {module}.{owner}"
     found = hasattr(getattr(thing, owner) if owner else thing, name)
     return "" if found else f"{owner or module} has no {name}"
-
-
-def _sets(module: str, owner: str, *names: str) -> list[Assumption]:
-    """Assume that `__init__` of a class sets attributes."""
-    return [Assumption(f"{owner}.{n}", partial(_sets_no, module, owner, n)) for n in names]
-
-
-def _sets_no(module: str, owner: str, name: str) -> str:
-    init = getattr(_module(module), owner).__init__
-    return "" if name in init.__code__.co_names else f"{owner} has no {name}"
 
 
 def _arity(owner: str, **counts: int) -> list[Assumption]:
@@ -241,24 +230,4 @@ PROGRAM: tuple[Assumption, ...] = (
     # what `clock.rclpy_time` puts in its place
     *_arity("ClockEvent", __init__=0, wait_until_steady=2, wait_until_system=2, wait_until_ros=2),
     *_arity("ClockEvent", set=0, clear=0, is_set=0),
-)
-
-#: Of executors, nodes and callback groups.
-EXECUTOR: tuple[Assumption, ...] = (
-    *_sets("rclpy.executors", "Executor", "_tasks", "_tasks_lock", "_guard", "_sigint_gc"),
-    *_sets("rclpy.executors", "Executor", "_is_shutdown", "_context", "_nodes"),
-    *_sets("rclpy.executors", "_WorkTracker", "_num_work_executing", "_work_condition"),
-    *_has("rclpy.executors", "_WorkTracker", "__enter__", "__exit__"),
-    *_has("rclpy.executors", "Executor", "can_execute", "get_nodes", "_make_handler"),
-    *_has("rclpy.executors", "Executor", "_take_timer", "_take_subscription", "_take_client"),
-    *_has("rclpy.executors", "Executor", "_take_service", "_take_guard_condition"),
-    *_has("rclpy.executors", "Executor", "_take_waitable"),
-    *_has("rclpy.executors", "", "TimeoutObject", "timeout_sec_to_nsec"),
-    *_sets("rclpy.node", "Node", "_timers", "_subscriptions", "_guards", "_clients", "_services"),
-    *_sets("rclpy.node", "Node", "_Node__waitables"),
-    *_has("rclpy.node", "Node", "timers", "subscriptions", "guards", "clients", "services"),
-    *_has("rclpy.node", "Node", "waitables"),
-    *_sets("rclpy.callback_groups", "MutuallyExclusiveCallbackGroup", "_active_entity"),
-    *_sets("rclpy.event_handler", "EventHandler", "_ready_to_take_data"),
-    *_sets("rclpy.guard_condition", "GuardCondition", "_executor_triggered"),
 )

@@ -24,18 +24,11 @@ class Waiter:
         """`attach_clock` is called with the clock of each timer."""
         self.attach_clock = attach_clock
 
-    @property
-    def graph_epoch(self) -> int:
-        """The number of changes of the graph: after one, there may be events."""
-        return -1
-
-    @property
-    def is_alone(self) -> bool:
-        """Whether the program has but one thread."""
-        return True
-
     def before_wait(self) -> None:
         """Called before a wait set checks whether something is ready."""
+
+    def before_events(self) -> None:
+        """Called before a wait set checks whether there are events."""
 
     def found_work(self) -> None:
         """Called when a wait set has found something to do."""
@@ -173,10 +166,7 @@ class WaitSet:
     """As `_rclpy.WaitSet`, in Python.
 
     Attributes:
-        end_ns: when the waiting executor's time is out; this works like a timer.
-        is_out: whether the time was out after `wait`.
-        ready: the handles of all that was ready after `wait`, but guard conditions and events.
-        ready_guards: the guard conditions that were triggered.
+        readers: those of its entities, and of actions.
     """
 
     def __init__(self, *_: Any) -> None:
@@ -184,17 +174,15 @@ class WaitSet:
 
     def clear_entities(self) -> None:
         self.readers: list[Reader] = []
-        self.guards: list[GuardCondition] = []
-        self.timers: list[Timer] = []
-        self.end_ns = NEVER
-        self.is_out = False
-        self.ready_guards: list[GuardCondition] = []
+        self._guards: list[GuardCondition] = []
+        self._timers: list[Timer] = []
         self._events: list[EventHandle] = []
         self._readers: list[tuple[Any, Reader]] = []
         self._kinds: dict[Any, str] = {}
-        self.ready: list[Any] = []
+        #: what was ready after `wait`: entities with readers and timers
+        self._ready: list[Any] = []
+        self._ready_guards: list[GuardCondition] = []
         self._ready_events: list[bool] = []
-        self._quiet_epoch = -1
         self._has_work = False
 
     def _add(self, kind: str, handle: Any) -> int:
@@ -215,13 +203,13 @@ class WaitSet:
         return self._add("service", handle)
 
     def add_guard_condition(self, handle: Any) -> int:
-        self.guards.append(handle)
-        return len(self.guards) - 1
+        self._guards.append(handle)
+        return len(self._guards) - 1
 
     def add_timer(self, handle: Any) -> int:
-        self.timers.append(handle)
+        self._timers.append(handle)
         self._kinds[handle] = "timer"
-        return len(self.timers) - 1
+        return len(self._timers) - 1
 
     def add_event(self, handle: Any) -> int:
         self._events.append(handle)
@@ -252,57 +240,33 @@ class WaitSet:
     def get_ready_entities(self, kind: str) -> list[int]:
         """Return the addresses of what was ready after `wait`."""
         if kind == "guard_condition":
-            return [guard.pointer for guard in self.ready_guards]
-        return [handle.pointer for handle in self.ready if self._kinds[handle] == kind]
+            return [guard.pointer for guard in self._ready_guards]
+        return [handle.pointer for handle in self._ready if self._kinds[handle] == kind]
 
     def is_ready(self, kind: str, index: int) -> bool:
         """Whether an event was ready after `wait`; rclpy asks by index for nothing else."""
-        return kind == "event" and index < len(self._ready_events) and self._ready_events[index]
-
-    def has_events(self) -> bool:
-        """Whether any event was ready after `wait`."""
-        return any(self._ready_events)
+        return kind == "event" and self._ready_events[index]
 
     def _collect(self) -> bool:
-        ready = self.ready = []
-        for handle, reader in self._readers:
-            if reader.items:
-                ready.append(handle)
-        for timer in self.timers:
-            if not timer.is_gone and timer.is_timer_ready():
-                ready.append(timer)
-        guards = self.ready_guards = []
-        for guard in self.guards:
-            if guard.is_triggered:
-                guard.is_triggered = False
-                guards.append(guard)
-        self._ready_events = self._ask_for_events() if self._events else []
-        self.is_out = self.end_ns < NEVER and WAITER.deadline(0) >= self.end_ns
+        """Find what is ready; return whether anything is."""
+        self._ready = [handle for handle, reader in self._readers if reader.items]
+        self._ready += [each for each in self._timers if not each.is_gone and each.is_timer_ready()]
+        self._ready_guards = [guard for guard in self._guards if guard.is_triggered]
+        for guard in self._ready_guards:
+            guard.is_triggered = False
+        if self._events:
+            WAITER.before_events()
+        self._ready_events = [event.is_due() for event in self._events]
         self._has_work = (
-            bool(ready)
-            or self.is_out
+            bool(self._ready)
             or True in self._ready_events
             # those of actions
             or (len(self.readers) > len(self._readers) and any(i.items for i in self.readers))
         )
-        return self._has_work or bool(guards)
-
-    def _ask_for_events(self) -> list[bool]:
-        """Return for each event whether it is due; empty where none is."""
-        epoch = WAITER.graph_epoch
-        if self._quiet_epoch == epoch:
-            return []
-        due = [event.is_due() for event in self._events]
-        if not any(due):
-            self._quiet_epoch = epoch
-            return []
-        return due
+        return self._has_work or bool(self._ready_guards)
 
     def _next_timer(self) -> int:
         """Return when the first timer is due."""
-        first_ns = self.end_ns
         now_ns = WAITER.deadline(0)
-        for timer in self.timers:
-            if not timer.is_gone and (left_ns := timer.time_until_next_call()) is not None:
-                first_ns = min(first_ns, now_ns + max(0, left_ns))
-        return first_ns
+        left_ns = (each.time_until_next_call() for each in self._timers if not each.is_gone)
+        return min((now_ns + max(0, left) for left in left_ns if left is not None), default=NEVER)

@@ -7,7 +7,6 @@ import pytest
 
 from grader.recording.subject import Start
 from grader.run import virtual_time
-from grader.run.clock import executor
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.opening import open_submission
@@ -142,13 +141,6 @@ def test_misbehaviour_ends_by_itself_and_is_named_and_shown_as_at_a_desk(recorde
     assert (f"{name}.py" in recording.output) >= bool(shown)
     assert recording.output.count("Your node is stuck here") <= 1
     assert "grader/run" not in recording.output
-
-
-@pytest.mark.applies(executor.known() is not None, reason="stands aside with other rclpy")
-def test_a_known_executor_waits_in_our_code(recorded):
-    output = recorded("misbehaving/spins_in_callback").output
-    assert "in wait_for_ready_callbacks" in output
-    assert "in _wait_for_ready_callbacks" not in output
 
 
 @pytest.mark.more("a run in each time; test_faults tells whose an exception is")

@@ -6,14 +6,14 @@ import threading
 import pytest
 import rclpy.executors
 
-from grader.run.clock import executor
+from grader.run.clock import rclpy_time
 from grader.run.observe import stuck
 from grader.run.observe.files import Frame, SubmissionFiles
 
 
 def test_a_thread_that_is_stuck_is_shown_without_our_frames():
     frames = sys._current_frames()[threading.get_ident()]
-    thread = [Frame(str(executor.__file__), 1, "ours"), *SubmissionFiles("/").stack(frames)]
+    thread = [Frame(str(rclpy_time.__file__), 1, "ours"), *SubmissionFiles("/").stack(frames)]
     text = stuck.explain("callback", thread, 1.5)
     assert "Your node is stuck here, at 1.50 s" in text
     assert "in test_a_thread_that_is_stuck_is_shown_without_our_frames" in text
@@ -31,7 +31,7 @@ def test_executors_that_refuse_a_spin_within_a_spin_do_not_any_more(monkeypatch)
             self._is_spinning = True
 
     monkeypatch.setattr(rclpy.executors, "Executor", Executor)
-    executor.allow_nested_spins()
+    rclpy_time.allow_nested_spins()
     spun = Executor()
     spun._enter_spin()
     spun._enter_spin()
