@@ -47,7 +47,7 @@ from grader.exercise import (
     put_artifacts,
 )
 from grader.reports import Report, render
-from grader.run import fork_servers, levels, started_process
+from grader.run import levels, started_process
 from grader.submission import Submission
 from grader.system import files, scratch, strict_json
 from grader.text import NOTHING, Message, msg, plain, use
@@ -71,13 +71,8 @@ _STATES: dict[type[GraderError], Ending] = {
 }
 
 
-def serve(servers: str) -> None:
-    """Do the tasks on standard input, one a line, until it ends.
-
-    Args:
-        servers: `fork_servers.described` of those that this process is given.
-    """
-    fork_servers.take(fork_servers.inherited(servers))
+def serve() -> None:
+    """Do the tasks on standard input, one a line, until it ends."""
     # what anything prints by mistake must not be read as an answer
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)

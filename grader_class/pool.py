@@ -20,9 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from grader import GraderFailure
 from grader.recording import Clock
-from grader.run import Branch, ServerLost, fork_servers
 from grader.submission import LaunchAsked
 from grader.system import strict_json
 from grader.text import NOTHING, Message, Text, current, msg
@@ -99,7 +97,7 @@ _TRIES = 2
 _COMMAND = (
     *("-P", "-c"),
     "import sys; sys.argv[1] in sys.path or sys.path.insert(0, sys.argv[1]); "
-    "from grader_class import grade; grade.serve(sys.argv[2])",
+    "from grader_class import grade; grade.serve()",
     str(Path(__file__).parents[1]),
 )
 
@@ -189,7 +187,7 @@ class Process:
         """Return the line that the process answers; empty if it ends instead."""
         with self._lock:
             if self._process is None and not self.is_over:
-                self._process = start(runs=task.path is not None and task.run is None)
+                self._process = start()
         process = self._process
         if process is None or process.stdin is None or process.stdout is None:
             return b""
@@ -225,25 +223,12 @@ class Process:
         return msg("exit code {code}", code=str(code))
 
 
-def start(*, runs: bool = False) -> subprocess.Popen[bytes]:
-    """Start a worker with the modules of this grader; Ctrl-C in a terminal does not reach it.
-
-    Args:
-        runs: whether it gets branches of this process's fork servers, which share their memory;
-            without them, it starts its own for the first run.
-    """
-    branches: dict[str, Branch] = {}
-    with suppress(ServerLost, GraderFailure, OSError):
-        branches = fork_servers.branches() if runs else {}
-    try:
-        return subprocess.Popen(
-            [sys.executable, *_COMMAND, fork_servers.described(branches)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env=os.environ | _MEMORY,
-            pass_fds=[fd for each in branches.values() for fd in each.descriptors()],
-            start_new_session=True,
-        )
-    finally:
-        for each in branches.values():
-            each.close()
+def start() -> subprocess.Popen[bytes]:
+    """Start a worker with the modules of this grader; Ctrl-C in a terminal does not reach it."""
+    return subprocess.Popen(
+        [sys.executable, *_COMMAND],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=os.environ | _MEMORY,
+        start_new_session=True,
+    )

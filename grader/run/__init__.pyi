@@ -1,9 +1,6 @@
-from grader.run import fork_servers as fork_servers
 from grader.run.opening import marks_of as marks_of
 from grader.run.processes import cores as cores
 from grader.run.processes import levels as levels
 from grader.run.processes import started_process as started_process
-from grader.run.processes.fork_server import Branch as Branch
-from grader.run.processes.fork_server import ServerLost as ServerLost
 from grader.run.processes.levels import ADVICE as ADVICE
 from grader.run.processes.levels import LEVELS as LEVELS

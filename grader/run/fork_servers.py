@@ -13,11 +13,10 @@ from __future__ import annotations
 import atexit
 import json
 import os
-import socket
 import sys
 import threading
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from pathlib import Path
 
 from grader.run.environment import (
@@ -25,7 +24,7 @@ from grader.run.environment import (
     simulator_environment,
     virtual_environment,
 )
-from grader.run.processes.fork_server import Branch, ForkServer, ServerLost
+from grader.run.processes.fork_server import ForkServer, ServerLost
 
 #: What runs as the simulator's process in virtual time.
 MODULE = "grader.run.simulator.virtual_main"
@@ -129,36 +128,6 @@ def server(side: str) -> ForkServer | None:
         except OSError:
             _losses[side] += 1
         return _servers.get(side)
-
-
-def branches() -> dict[str, Branch]:
-    """Return a branch of each for another process of this grader, which then may `take` them.
-
-    Raises:
-        ServerLost: one of them does not work.
-    """
-    found = {side: server(side) for side in (SIMULATOR, STUDENT)}
-    return {side: each.branch() for side, each in found.items() if each is not None}
-
-
-def described(found: Mapping[str, Branch]) -> str:
-    """Return branches as an argument of a process that inherits their descriptors."""
-    return json.dumps({side: [e.socket.fileno(), e.pid, e.pidfd] for side, e in found.items()})
-
-
-def inherited(words: str) -> dict[str, Branch]:
-    """Return the branches that `described` has described to this process."""
-    return {
-        side: Branch(socket.socket(fileno=fd), pid, pidfd)
-        for side, (fd, pid, pidfd) in json.loads(words).items()
-    }
-
-
-def take(found: Mapping[str, Branch]) -> None:
-    """Use these servers in this process, which has none yet and the environment of theirs."""
-    with _lock:
-        for side, branch in found.items():
-            _servers[side] = ForkServer(command(side), _environment(side), branch=branch)
 
 
 def close() -> None:

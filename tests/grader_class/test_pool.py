@@ -106,7 +106,7 @@ def test_what_makes_tasks_may_fail_and_that_is_raised(monkeypatch):
 def test_no_worker_outlives_who_asks(monkeypatch):
     started = []
     start = pool.start
-    monkeypatch.setattr(pool, "start", lambda **_: started.append(start()) or started[-1])
+    monkeypatch.setattr(pool, "start", lambda: started.append(start()) or started[-1])
     workers_that(monkeypatch, 'task["key"] != "0" and __import__("time").sleep(600)')
     for _ in pool.work(tasks(3), 1, PATIENT_S):
         break

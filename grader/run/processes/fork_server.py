@@ -12,7 +12,6 @@ import errno
 import json
 import os
 import select
-import signal
 import socket
 import subprocess
 import sys
@@ -91,53 +90,6 @@ class Child(NamedTuple):
     output: int
 
 
-class Branch:
-    """A server that another one has forked; of what `subprocess.Popen` is for others it has some.
-
-    Attributes:
-        socket: over which it is asked.
-        pid: its process id.
-        pidfd: a descriptor of it; -1 where the system has none.
-    """
-
-    stdout = None
-
-    def __init__(self, socket: socket.socket, pid: int, pidfd: int) -> None:
-        self.socket, self.pid, self.pidfd = socket, pid, pidfd
-        self.returncode: int | None = None
-
-    def descriptors(self) -> list[int]:
-        """Return those by which a process reaches it."""
-        return [fd for fd in (self.socket.fileno(), self.pidfd) if fd >= 0]
-
-    def close(self) -> None:
-        """Forget it; whoever else has its socket goes on with it."""
-        self.socket.close()
-        if self.pidfd >= 0:
-            os.close(self.pidfd)
-        self.pidfd = -1
-
-    def kill(self) -> None:
-        with suppress(ProcessLookupError):
-            if self.pidfd >= 0:
-                signal.pidfd_send_signal(self.pidfd, signal.SIGKILL)
-            else:  # until its socket is closed, its number is its own
-                os.kill(self.pid, signal.SIGKILL)
-
-    def poll(self) -> int | None:
-        """0 where it has ended, else None."""
-        return self.wait(0.0)
-
-    def wait(self, timeout_s: float = PATIENCE_S) -> int | None:
-        """Wait for its end, where that can be noticed."""
-        if self.returncode is None:
-            if self.pidfd >= 0 and not select.select([self.pidfd], [], [], timeout_s)[0]:
-                return None
-            self.returncode = 0
-            self.close()
-        return self.returncode
-
-
 class ForkServer:
     """A process that forks itself for others; any thread may ask it."""
 
@@ -147,7 +99,6 @@ class ForkServer:
         env: Mapping[str, str],
         *more: str,
         executes: bool = False,
-        branch: Branch | None = None,
     ) -> None:
         """Start it; the first request waits until it is ready.
 
@@ -156,7 +107,6 @@ class ForkServer:
             env: its environment variables; its children get their own.
             more: arguments that follow those of `serve`.
             executes: whether its children execute their command.
-            branch: a server of this command that runs already; None: it is started.
         """
         self.command, self.env, self._executes = tuple(command), dict(env), executes
         self.is_lost = False
@@ -164,12 +114,8 @@ class ForkServer:
         self.forks = 0
         self._lock = threading.Lock()
         self._preloaded: frozenset[str] | None = None
-        self._process: subprocess.Popen[bytes] | Branch
-        if branch is not None:
-            self._process, self._socket = branch, branch.socket
-            self._socket.settimeout(PATIENCE_S)
-            return
-        self._socket, theirs = _pair()
+        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._socket.settimeout(PATIENCE_S)
         with theirs:
             words = (FORK_SERVER, str(theirs.fileno()), *more)
             self._process = subprocess.Popen(
@@ -182,20 +128,6 @@ class ForkServer:
                 stderr=subprocess.STDOUT,
                 start_new_session=True,  # Ctrl-C is not for it
             )
-
-    def branch(self) -> Branch:
-        """Fork this server for another process: a server that has loaded the same.
-
-        Raises:
-            ServerLost: there is none.
-        """
-        ours, theirs = _pair()
-        with ExitStack() as held, theirs, self._lock:
-            held.callback(ours.close)
-            self._await_ready()
-            made = Branch(ours, *self._ask(fork_server_main.BRANCH, [theirs.fileno()]))
-            held.pop_all()
-        return made
 
     @property
     def pid(self) -> int:
@@ -233,8 +165,7 @@ class ForkServer:
             with self._lock:
                 self._await_ready()
                 fds = (printed, reported, *command.namespaces.values(), *command.fds)
-                what = b" ".join((fork_server_main.ORDER, command.needs.encode()))
-                pid, pidfd = self._ask(what, [ordered, *fds])
+                pid, pidfd = self._ask(command.needs, [ordered, *fds])
                 self.forks += 1
             ours.pop_all()
         return Child(pid, pidfd, ProcessReport(report), output)
@@ -260,8 +191,6 @@ class ForkServer:
         self._lock = threading.Lock()  # a thread of the parent's may have held it
         self._hang_up()
         self._process.returncode = 0
-        if isinstance(self._process, Branch):
-            self._process.close()
 
     def has_ended(self) -> bool:
         """Whether nothing is left of it."""
@@ -278,13 +207,13 @@ class ForkServer:
             self._preloaded = frozenset(json.loads(data))
         return self._preloaded
 
-    def _ask(self, what: bytes, fds: list[int]) -> tuple[int, int]:
+    def _ask(self, needs: str, fds: list[int]) -> tuple[int, int]:
         """Have the server fork; the process id of the child, and a pidfd of it or -1."""
         if len(fds) > fork_server_main.MOST_FDS:
             why = f"{len(fds)} descriptors are more than {fork_server_main.MOST_FDS}"
             raise ServerLost(Refusal(errno.E2BIG, "", why))
         with self._exchanging():
-            socket.send_fds(self._socket, [what], fds)
+            socket.send_fds(self._socket, [json.dumps(needs).encode()], fds)
         try:
             data, got = self._receive()
         except ServerLost as lost:
@@ -322,13 +251,6 @@ class ForkServer:
         """Close the socket; not while another thread waits for an answer: it would never come."""
         self.is_lost = True
         self._socket.close()
-
-
-def _pair() -> tuple[socket.socket, socket.socket]:
-    """Return both ends of a server's socket."""
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    ours.settimeout(PATIENCE_S)
-    return ours, theirs
 
 
 def cold_server(env: Mapping[str, str]) -> ForkServer:

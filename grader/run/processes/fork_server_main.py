@@ -5,11 +5,10 @@
 The grader's side of this is `.fork_server`. Started as above it has imported nothing beforehand,
 and its children execute their command; one of `grader.run.fork_servers` has imported what runs
 need, and its children go on by themselves, as if the command had been executed. It has one thread
-and two of ROS's that sleep. A request comes over a socket (SOCK_SEQPACKET) with descriptors, the
-first of which holds a `ForkOrder`, or asks for a branch, another server like this one; the answer
-is a process id and, where the system has such, a pidfd. It ends with the grader, whose end closes
-the socket, and its children end with it, but no branch. If the grader only stops asking, it ends
-when the last of its children has.
+and two of ROS's that sleep. A request comes over a socket (SOCK_SEQPACKET): what the command needs,
+with descriptors, the first of which holds a `ForkOrder`; the answer is a process id and, where the
+system has such, a pidfd. It ends with the grader, whose end closes the socket, and its children end
+with it. If the grader only stops asking, it ends when the last of its children has.
 
 Each process has a report, a pipe to the grader with lines of JSON. Each line is an object of one
 key: `refused`, why it did not become what was ordered (`refusal`); `over`, its exit code, negative
@@ -50,8 +49,6 @@ from grader.system import linux
 MARK = "TURTLESIM_GRADER_PROCESS"
 #: Its value in a server: as long as any other, so that a child can write its own over it.
 NO_MARK = "0" * 32
-#: What is asked for: a process, or a fork of the server itself, for the socket that comes with it.
-ORDER, BRANCH = b"order", b"branch"
 #: The longest packet [bytes], and the most descriptors that come with one.
 LIMIT_BYTES = 1 << 16
 MOST_FDS = 64
@@ -140,19 +137,9 @@ def serve(number: str, preloaded: Iterable[str], load: Callable[[str], object] =
             elif events & select.POLLHUP:
                 os._exit(0)  # the grader is gone
             elif (request := _receive(grader))[1]:
-                (what, _, needs), fds = request[0].partition(b" "), request[1]
+                needs, fds = json.loads(request[0]), request[1]
                 if needs:
-                    load(needs.decode())
-                if what == BRANCH:
-                    child = _fork(grader)
-                    if child == 0:
-                        grader.detach()  # it is closed with all else
-                        return _be_branch(fds[0], preloaded, load)
-                    for fd in fds:
-                        os.close(fd)
-                    if child is not None:
-                        _answer_with_child(grader, child)
-                    continue
+                    load(needs)
                 report = fds.pop(2)
                 child = _fork(grader)
                 if child == 0:
@@ -183,14 +170,13 @@ def _wake_at_ends() -> int:
 def _report_ends(reports: dict[int, int]) -> None:
     with suppress(ChildProcessError):
         while (ended := os.waitpid(-1, os.WNOHANG))[0]:
-            report = reports.pop(ended[0], None)
-            if report is not None:  # else it was a branch
-                supervisor.report_fact(report, over=os.waitstatus_to_exitcode(ended[1]))
-                os.close(report)
+            report = reports.pop(ended[0])
+            supervisor.report_fact(report, over=os.waitstatus_to_exitcode(ended[1]))
+            os.close(report)
 
 
 def _receive(grader: socket.socket) -> tuple[bytes, list[int]]:
-    """Receive what is asked for and its descriptors; none where the grader asks no more."""
+    """Receive what a command needs, and descriptors; none where the grader asks no more."""
     try:
         return socket.recv_fds(grader, LIMIT_BYTES, MOST_FDS)[:2]
     except ConnectionError:
@@ -230,13 +216,6 @@ def _answer(grader: socket.socket, **fact: object) -> None:
 
 
 # In a child -----------------------------------------------------------------------------------
-
-
-def _be_branch(number: int, preloaded: Iterable[str], load: Callable[[str], object]) -> list[str]:
-    """Be a server as this one, but for another process, and without what this one has begun."""
-    signal.set_wakeup_fd(-1)
-    linux.close_descriptors({0, 1, 2, number})
-    return serve(str(number), preloaded, load)
 
 
 def _be_child(server: int, report: int, ordered: int, *fds: int) -> list[str]:
