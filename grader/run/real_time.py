@@ -17,10 +17,19 @@ from grader.recording.recording import Recording
 from grader.run import compiling, fork_servers, handover, run_context
 from grader.run.environment import student_environment
 from grader.run.evidence import EvidencePage
-from grader.run.finish import SimulatorLost, not_run, outcome, record
+from grader.run.finish import (
+    ProgramEnd,
+    RunningProgram,
+    SimulatorLost,
+    ending_of,
+    lost,
+    not_run,
+    observations_of,
+    outcome,
+    record,
+)
 from grader.run.handover import Plan
 from grader.run.limits import FIRST_NODE_S
-from grader.run.programs import ProgramEnd, RunningProgram, ending_of, lost, observations_of
 from grader.run.run_context import RunContext
 from grader.run.simulator_process import (
     Audience,

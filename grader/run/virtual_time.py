@@ -21,19 +21,21 @@ from grader.recording.recording import Outcome, Recording
 from grader.run import fork_servers, handover, real_time, run_context
 from grader.run.environment import virtual_environment
 from grader.run.evidence import EvidencePage
-from grader.run.finish import SimulatorLost, outcome, record
-from grader.run.handover import Plan
-from grader.run.limits import END_S, SIMULATOR_S, CpuBudget, Patience
-from grader.run.processes import cores
-from grader.run.processes.started_process import SubmissionProcess
-from grader.run.programs import (
+from grader.run.finish import (
     ProgramEnd,
     RunningProgram,
+    SimulatorLost,
     blamed,
     ending_of,
     lost,
     observations_of,
+    outcome,
+    record,
 )
+from grader.run.handover import Plan
+from grader.run.limits import END_S, SIMULATOR_S, CpuBudget, Patience
+from grader.run.processes import cores
+from grader.run.processes.started_process import SubmissionProcess
 from grader.run.real_time import Progress
 from grader.run.run_context import RunContext
 from grader.run.simulator_process import (

@@ -16,13 +16,13 @@ import rclpy.experimental
 import rclpy.node
 import rclpy.task
 import rclpy.timer
+from rcl_interfaces.msg import Log
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.clock.link import SimulatorLink
 from grader.run.clock.scheduler import Runner, Scheduler
-from grader.run.lockstep import actions, endpoints, faults, graph, rclpy_clocks, waitsets
-from grader.run.lockstep.protocol import NEVER
-from grader.run.lockstep.rclpy_clocks import RclpyClocks
+from grader.run.lockstep import actions, endpoints, faults, graph, waitsets
+from grader.run.lockstep.endpoints import serialized
 from grader.run.lockstep.waitsets import Waiter, WaitSet
 from grader.text.message import msg
 
@@ -46,12 +46,11 @@ def install(
         compares_stamps: whether a node's clock returns another time each time it is asked.
         on_deadlock: called once, when nothing can ever happen any more.
     """
-    unpaid_ns = (lambda: scheduler.unpaid_ns) if compares_stamps else (lambda: 0)
-    clocks = rclpy_clocks.install(lambda: scheduler.now_ns, scheduler.charge, unpaid_ns)
-    scheduler.clocks.append(clocks.set_now)
     scheduler.advance = link.advance
     _rclpy.ClockEvent = clock_event_class(scheduler)
-    waitsets.install(VirtualWaiter(scheduler, link, clocks, on_deadlock))
+    waiter = VirtualWaiter(scheduler, link, on_deadlock, compares_stamps=compares_stamps)
+    scheduler.on_moved = waiter.set_now
+    waitsets.install(waiter)
     endpoints.install(link)
     actions.install()
     _guard_entities()
@@ -76,11 +75,13 @@ class VirtualWaiter(Waiter):
         self,
         scheduler: Scheduler,
         link: SimulatorLink,
-        clocks: RclpyClocks,
         on_deadlock: Callable[[], None],
+        *,
+        compares_stamps: bool,
     ) -> None:
-        super().__init__(clocks.attach)
+        super().__init__(lambda: scheduler.now_ns)
         self._scheduler = scheduler
+        self._compares_stamps = compares_stamps
         self._link = link
         self._on_deadlock: Callable[[], None] | None = on_deadlock
         self._waiting: list[tuple[WaitSet, Runner]] = []
@@ -119,9 +120,11 @@ class VirtualWaiter(Waiter):
         finally:
             self._waiting.remove(entry)
 
-    def deadline(self, timeout_ns: int) -> int:
-        """Return when a time-out from now ends; a negative one never does."""
-        return NEVER if timeout_ns < 0 else min(NEVER, self._scheduler.now_ns + timeout_ns)
+    def asked_ns(self) -> int:
+        """Charge for the question; where stamps are compared, each answer is another."""
+        scheduler = self._scheduler
+        scheduler.charge()
+        return scheduler.now_ns + (scheduler.unpaid_ns if self._compares_stamps else 0)
 
     def poke(self, _: object) -> None:
         """Wake all waiting threads: they are few."""
@@ -261,3 +264,27 @@ def _replace_events_executor() -> None:
     module = sys.modules.get("rclpy.experimental.events_executor")
     if module is not None:
         setattr(module, EventsExecutor.__name__, EventsExecutor)
+
+
+def publish_logs(link: SimulatorLink) -> None:
+    """Have loggers publish on /rosout, too: what rclpy's C++ publishes, nobody hears here."""
+    writer = graph.log_writer("/")
+    writer.is_hidden = True  # the graph shows that of each node
+    link.add(writer)
+    log = _rclpy.rclpy_logging_rcutils_log
+    level_of = type(Log().level)
+
+    def logged(severity: Any, name: str, text: str, function: str, file: str, line: int) -> None:
+        log(severity, name, text, function, file, line)
+        publish(int(severity), name, text, function, line)
+
+    @faults.guarded
+    def publish(severity: int, name: str, text: str, function: str, line: int) -> None:
+        level = bytes([severity]) if level_of is bytes else severity
+        # without the file: it is a copy's
+        message = Log(level=level, name=name, msg=text, function=function, line=line)
+        message.stamp.sec, message.stamp.nanosec = divmod(link.now_ns(), 1_000_000_000)
+        link.connect()
+        link.publish(writer, serialized(message))
+
+    _rclpy.rclpy_logging_rcutils_log = logged

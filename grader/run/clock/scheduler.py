@@ -55,9 +55,9 @@ class Scheduler:
         #: has the simulator go on: sets the time, at most to a deadline, and wakes runners
         self.advance: Callable[[int], None]
         #: called with the new time whenever it moves
-        self.clocks: list[Callable[[int], None]] = []
+        self.on_moved: Callable[[int], None] = lambda _: None
         #: called before time moves: something from outside Python may have woken a runner
-        self.pollers: list[Callable[[], None]] = []
+        self.poll: Callable[[], None] = lambda: None
         #: called where a thread that we did not start wants to block
         self.on_unknown_thread: Callable[[], None] = _no_unknown_threads
         #: called in a thread that has waited, with how long [s]
@@ -166,8 +166,7 @@ class Scheduler:
     def set_now(self, now_ns: int) -> None:
         """Move time on, and wake those whose deadline has come."""
         self.now_ns = now_ns
-        for set_now in self.clocks:
-            set_now(now_ns)
+        self.on_moved(now_ns)
         alarms = self._alarms
         while alarms and alarms[0][0] <= now_ns:
             _, serial, runner = heapq.heappop(alarms)
@@ -200,8 +199,7 @@ class Scheduler:
             if self.interrupted:
                 self.interrupted = False
                 break
-            for poll in self.pollers:
-                poll()
+            self.poll()
             if not me.ready:
                 self.advance(deadline_ns)
         me.ready = True
@@ -233,8 +231,7 @@ class Scheduler:
             self.interrupted = False
             self.wake(self.main)
             return
-        for poll in self.pollers:
-            poll()
+        self.poll()
         if self._queue:
             return
         alarms = self._alarms

@@ -1,7 +1,7 @@
 """Makes the surroundings of a program the same in each run: time, chance, its user.
 
 Time is virtual in `time`, `datetime` and the kernel's usage of a process; rclpy's clocks are in
-`lockstep.rclpy_clocks`. Processor time is virtual, too: a program has computed for as long as it
+`lockstep.waitsets`. Processor time is virtual, too: a program has computed for as long as it
 has run. So a loop that waits for it ends, and prints the same in every run.
 """
 

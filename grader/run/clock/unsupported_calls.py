@@ -71,7 +71,7 @@ def replace_select(scheduler: Scheduler) -> None:
                 waiting.remove(entry)
         return found
 
-    scheduler.pollers.append(wake_ready)
+    scheduler.poll = wake_ready
     for kind in (selectors.EpollSelector, selectors.PollSelector, selectors.SelectSelector):
         _replace_selector(kind, wait)
     real_select = select.select

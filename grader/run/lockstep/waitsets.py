@@ -1,28 +1,48 @@
-"""rclpy's wait sets, timers, guards, events: they read our readers, and wait in virtual time.
+"""rclpy's wait sets, timers, clocks, guards, events: they read our readers, in virtual time.
 
 Used by both sides of the link; the simulator never waits.
 """
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep.faults import pass_on
-from grader.run.lockstep.protocol import NEVER
+from grader.run.lockstep.protocol import BOOT_NS, EPOCH_NS, NEVER
 from grader.run.lockstep.registry import Endpoint, Reader
 
-_Timer, _EventHandle = _rclpy.Timer, _rclpy.EventHandle
+_Timer, _EventHandle, _Clock = _rclpy.Timer, _rclpy.EventHandle, _rclpy.Clock
 
 
 class Waiter:
     """How a process waits. This base class never waits: the simulator's wait sets only poll."""
 
-    def __init__(self, attach_clock: Callable[[Any], None]) -> None:
-        """`attach_clock` is called with the clock of each timer."""
-        self.attach_clock = attach_clock
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        """`now_ns` returns the time from the start of the run [ns]."""
+        self.now_ns = now_ns
+        self._clocks: list[weakref.ref[Clock]] = []
+
+    def attach_clock(self, clock: Clock) -> None:
+        """Have the clock of a timer move with the time from now on."""
+        if not clock.is_attached:
+            clock.is_attached = True
+            self._clocks.append(weakref.ref(clock, self._clocks.remove))
+            clock.set_now(self.now_ns())
+
+    def set_now(self, now_ns: int) -> None:
+        """Move the attached clocks to this time."""
+        for reference in self._clocks:
+            clock = reference()
+            if clock is not None:
+                clock.set_now(now_ns)
+
+    def asked_ns(self) -> int:
+        """Return the time for a clock that is asked for it [ns]."""
+        return self.now_ns()
 
     def before_wait(self) -> None:
         """Called before a wait set checks whether something is ready."""
@@ -41,8 +61,8 @@ class Waiter:
         raise AssertionError("the simulator never waits for its node")
 
     def deadline(self, timeout_ns: int) -> int:
-        """Return when a time-out from now ends."""
-        return 0
+        """Return when a time-out from now ends; a negative one never does."""
+        return NEVER if timeout_ns < 0 else min(NEVER, self.now_ns() + timeout_ns)
 
     def poke(self, cause: object) -> None:
         """Called when something that a wait set may hold has changed."""
@@ -55,7 +75,7 @@ def install(waiter: Waiter) -> None:
     """Put the classes of this module into rclpy's extension module."""
     global WAITER
     WAITER = waiter
-    for kind in (WaitSet, GuardCondition, Timer, EventHandle):
+    for kind in (WaitSet, GuardCondition, Timer, Clock, EventHandle):
         setattr(_rclpy, kind.__name__, kind)
 
 
@@ -67,6 +87,52 @@ class GuardCondition(_rclpy.GuardCondition):
     def trigger_guard_condition(self) -> None:
         self.is_triggered = True
         WAITER.poke(self)
+
+
+class Clock(_rclpy.Clock):
+    """A clock of any type: underneath, a ROS clock whose time is set by us."""
+
+    def __init__(self, kind: int) -> None:
+        kinds = _rclpy.ClockType
+        _Clock.__init__(self, int(kinds.ROS_TIME))
+        _Clock.set_ros_time_override_is_enabled(self, True)
+        self.kind = kinds(int(kind))
+        self.offset_ns = BOOT_NS if self.kind == kinds.STEADY_TIME else EPOCH_NS
+        self.is_attached = False
+        # use_sim_time: then the time is what comes on /clock
+        self.is_overridden = False
+        self.override_ns = 0
+
+    def set_now(self, now_ns: int) -> None:
+        if not self.is_overridden:
+            self._set(self.offset_ns + now_ns)
+
+    def _set(self, time_ns: int) -> None:
+        point = _rclpy.rcl_time_point_t(time_ns, int(_rclpy.ClockType.ROS_TIME))
+        _Clock.set_ros_time_override(self, point)
+
+    def get_now(self) -> Any:
+        time_ns = self.offset_ns + WAITER.asked_ns()
+        shown_ns = self.override_ns if self.is_overridden else time_ns
+        return _rclpy.rcl_time_point_t(shown_ns, int(self.kind))
+
+    def get_ros_time_override_is_enabled(self) -> bool:
+        return self.is_overridden
+
+    def set_ros_time_override_is_enabled(self, enabled: bool) -> None:
+        self.is_overridden = enabled
+        self._set(self.override_ns if enabled else self.offset_ns + WAITER.now_ns())
+
+    def set_ros_time_override(self, time_point: Any) -> None:
+        self.override_ns = time_point.nanoseconds
+        if self.is_overridden:
+            self._set(self.override_ns)
+
+    def add_clock_callback(self, *_: object) -> None:
+        """Our clocks jump at every tick, where real ones flow."""
+
+    def remove_clock_callback(self, *_: object) -> None:
+        """Nothing was added."""
 
 
 class Timer(_rclpy.Timer):

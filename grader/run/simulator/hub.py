@@ -34,7 +34,7 @@ from grader.errors import SceneFailure
 from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.limits import Patience
-from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
+from grader.run.lockstep import actions, endpoints, waitsets
 from grader.run.lockstep.protocol import (
     EPOCH_NS,
     NEVER,
@@ -154,8 +154,8 @@ class Hub:
         self._share_core = share_core
         #: the time that all programs have reached, and that of the scene, whole ticks
         self._time_ns = self.now_ns = 0
-        self._clocks = rclpy_clocks.install(lambda: self.now_ns, lambda: None)
-        waitsets.install(waitsets.Waiter(self._clocks.attach))
+        self._waiter = waitsets.Waiter(lambda: self.now_ns)
+        waitsets.install(self._waiter)
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, links[0][0].flag)
         endpoints.install(self._registry)
         actions.install()
@@ -419,7 +419,7 @@ class Hub:
                 self._count_tick()
                 reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
                 self._reason = expect_reason(self._scene.name, reason)
-        self._clocks.set_now(self.now_ns)
+        self._waiter.set_now(self.now_ns)
         used = [p for p in self._foresight.parcels if p.time_ns <= self.now_ns]
         self._foresight.forget()
         for each in self._alive():
@@ -428,7 +428,7 @@ class Hub:
 
     def _make_tick(self) -> None:
         self._count_tick()
-        self._clocks.set_now(self.now_ns)
+        self._waiter.set_now(self.now_ns)
         if self._cast is not None:
             self._cast.act()
         with scene_in_time(self._scene.name):

@@ -134,7 +134,7 @@ def install(
     """Put rclpy into virtual time, and then have a witness observe it; return the link."""
     import rclpy.publisher
 
-    from grader.run.clock import rclpy_time, rosout
+    from grader.run.clock import rclpy_time
     from grader.run.clock.link import SimulatorLink
     from grader.run.lockstep import endpoints
 
@@ -151,7 +151,7 @@ def install(
     rclpy_time.install(scheduler, link, compares_stamps=compares_stamps, on_deadlock=on_deadlock)
     if is_recorded:
         link.is_recorded = True
-        rosout.install(link)
+        rclpy_time.publish_logs(link)
     link.on_over = lambda: witness.ending.over(main)
     scheduler.on_waited = witness.waited
     loading.accept_numbers(rclpy.publisher)
