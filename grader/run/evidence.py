@@ -26,7 +26,7 @@ from grader.recording.observations import (
     RanFile,
     SourceLine,
 )
-from grader.run.observe import account, stuck
+from grader.run.observe import account, ending
 from grader.run.observe.files import Frame, SubmissionFiles
 from grader.submission.start import Submission
 from grader.system import extensions, linux, strict_json
@@ -210,11 +210,11 @@ def _ending(
 ) -> dict[str, Any]:
     """Return how a process has ended, or where it got stuck; nothing where no dump shows it."""
     if fatal:
-        last = stuck.last_line(threads[0]) if threads else None
+        last = ending.last_line(threads[0]) if threads else None
         place = files.row_of_frame(last) if last else None
         return {"raised": {"type": fatal, "text": "", "time_s": ended_s, "place": place}}
     if computes:
-        found = stuck.computing(threads)
+        found = ending.computing(threads)
     else:
-        found = stuck.waiting(threads) or (stuck.standing(threads[-1]) if threads else None)
+        found = ending.waiting(threads) or (ending.standing(threads[-1]) if threads else None)
     return {"stop": found.row(files, ended_s)} if found else {}

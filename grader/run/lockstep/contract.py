@@ -9,7 +9,7 @@ time; a node, without which there is no entity, costs ten times as much, and wou
 | group | used by |
 |---|---|
 | `ENTITIES` | both sides: `endpoints`, `actions`, `waitsets` |
-| `PROGRAM` | the submission's side: `clock.rclpy_time`, and `observe.stuck` by their names |
+| `PROGRAM` | the submission's side: `clock.rclpy_time`, and `observe.ending` by their names |
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@
 | `hooks` | has rclpy's objects call the witness |
 | `lines` | which lines have run |
 | `files` | the submission's files, and their lines in a stack or a traceback |
-| `stuck` | where a program is stuck: a deadlock, a loop, an `__init__` |
+| `ending` | how it has ended, or where it is stuck: a deadlock, a loop, an `__init__` |
 
-`grader.run.evidence` reads the page on the grader's side, with `account`, `files` and `stuck`.
+`grader.run.evidence` reads the page on the grader's side, with `account`, `files` and `ending`.
 """

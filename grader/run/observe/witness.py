@@ -14,7 +14,7 @@ from types import CodeType, FrameType
 from typing import Any
 
 from grader.run.lockstep import faults
-from grader.run.observe import stuck
+from grader.run.observe import ending
 from grader.run.observe.account import ProcessAccount, quietly
 from grader.run.observe.ending import EndWitness, error_row
 from grader.run.observe.files import LONGEST, Row, SubmissionFiles
@@ -289,7 +289,7 @@ class Witness:
             if row is not None:
                 row["longest_s"] = max(row["longest_s"], lasted_s)
         if isinstance(error, Exception) and type(error).__name__ not in NO_ERRORS:
-            last = stuck.last_line(self._files.trace(error))
+            last = ending.last_line(self._files.trace(error))
             if last is not None:
                 row = error_row(error, self._files.row_of_frame(last), self._now_s())
                 self._count(self._caught, (row["type"], last.file, last.line), row, MOST_CAUGHT)

@@ -7,14 +7,14 @@ import pytest
 import rclpy.executors
 
 from grader.run.clock import rclpy_time
-from grader.run.observe import stuck
+from grader.run.observe import ending
 from grader.run.observe.files import Frame, SubmissionFiles
 
 
 def test_a_thread_that_is_stuck_is_shown_without_our_frames():
     frames = sys._current_frames()[threading.get_ident()]
     thread = [Frame(str(rclpy_time.__file__), 1, "ours"), *SubmissionFiles("/").stack(frames)]
-    text = stuck.explain("callback", thread, 1.5)
+    text = ending.explain("callback", thread, 1.5)
     assert "Your node is stuck here, at 1.50 s" in text
     assert "in test_a_thread_that_is_stuck_is_shown_without_our_frames" in text
     assert "in ours" not in text
@@ -54,7 +54,7 @@ x = 2
 
 @pytest.mark.parametrize(("line", "found"), [(7, [3, 2]), (3, [3, 2]), (2, [2]), (8, []), (10, [])])
 def test_the_loops_round_a_line_are_found_by_indentation(line, found):
-    assert stuck.loops_around(NESTED, line) == found
+    assert ending.loops_around(NESTED, line) == found
 
 
 SPIN = Frame("/x/rclpy/executors.py", 9, "Executor.spin_once")
@@ -84,5 +84,5 @@ def at(line: int, function: str = "drive") -> Frame:
     ],
 )
 def test_where_a_main_thread_is_at_the_end_is_told_unless_it_just_spins(frames, found):
-    at = stuck.standing(frames)
+    at = ending.standing(frames)
     assert (at and (at.kind, at.frame.line)) == found
