@@ -79,15 +79,12 @@ def shadows(folder: Path, names: Collection[str]) -> bool:
         if seen > MOST_FILES:
             return True
         # "numpy.py", "numpy.cpython-311-x86_64-linux-gnu.so", but not resource/, a mere marker
-        if any(file.partition(".")[0] in names and _is_module(file) for file in files):
+        modules = (file for file in files if file.endswith((".py", ".pyc", ".so")))
+        if any(file.partition(".")[0] in names for file in modules):
             return True
         if any(name in names and (Path(place) / name / "__init__.py").exists() for name in folders):
             return True
     return False
-
-
-def _is_module(file: str) -> bool:
-    return file.endswith((".py", ".pyc", ".so"))
 
 
 def command(side: str) -> list[str]:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Final
@@ -38,8 +38,6 @@ from grader.submission.trace import FAILED, PackageTrace
 from grader.system import linux
 from grader.text.message import Message, msg
 
-#: Called with the simulated time [s], of which none passes here.
-Progress = Callable[[float], None]
 #: The program that examines a package, from `ROOT` on.
 EXAMINER: Final = "grader/submission/examining/main.py"
 #: How often the process is checked for being stopped [s], and how many checks together decide.
@@ -51,8 +49,8 @@ _LOST: Final = msg(
 )
 
 
-def run(submission: Submission, plan: Plan, progress: Progress | None = None) -> Recording:
-    """Inspect a submission once, as its only run."""
+def run(submission: Submission, plan: Plan, progress: object = None) -> Recording:
+    """Inspect a submission once, as its only run, in which no time passes."""
     order = {"package": submission.asked, "inspectors": inspector.places(plan.inspections)}
     found, ending = _inspected(submission, order, plan.budget)
     trace = load_subject(plan.scene).untouched(None) if found is None else found.trace

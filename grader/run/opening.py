@@ -64,7 +64,7 @@ def open_submission(
             found, copy = _evaluated(path, scratch, found, request, CpuBudget(cpu_s))
         else:
             copy = copy_privately(path, found.root, scratch)
-        yield _in_private(found, copy)
+        yield replace(found.with_paths(copy.of), copy=copy)
 
 
 def marks_of(path: Path) -> Marks:
@@ -97,11 +97,6 @@ def _evaluated(
         copy = copy_privately(path, found.root, scratch)
     copy = install(copy, inspection.set_ups)
     return replace(found, notes=notes, spent_s=budget.spent_s), copy
-
-
-def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
-    """Return a submission with its paths in a private copy."""
-    return replace(submission.with_paths(copy.of), copy=copy)
 
 
 def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:

@@ -178,7 +178,7 @@ class _Programs:
     def have_ended(self) -> bool:
         """Whether all that could be started were, and have ended."""
         for number, each in self.running.items():
-            if number not in self._ended and (code := each.process.poll()) is not None:
+            if number not in self._ended and (code := each.process.wait(0.0)) is not None:
                 self._ended[number] = code, time.monotonic() - self.began_s
         programs = enumerate(self._submission.programs)
         left = (p for number, p in programs if number not in self.running)

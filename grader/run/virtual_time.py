@@ -54,6 +54,8 @@ from grader.text.message import NOTHING, Message, msg
 WAITS_FOR_EVER = msg("every thread of the node waits for something that will not come")
 STUCK = msg("the node waits for something that can no longer happen")
 STOPPED = msg("the node's process was stopped (SIGSTOP), and nobody let it go on")
+STALLED = msg("the node used {seconds} s of processor time without waiting for ROS")
+SLOW = msg("the node used more than {seconds} s of processor time")
 FLOODING = msg(
     "the node sent so much that the simulator used more than {seconds} s of processor time"
 )
@@ -163,7 +165,10 @@ def _try(
         for its, told, code in how_each_ended
     ]
     ends = [
-        ProgramEnd(how, code, told["reached_s"], _has_failed(told, code))
+        ProgramEnd(
+            *(how, code, told["reached_s"]),
+            has_failed=bool(code) or told["silence"] not in ("", "gone"),
+        )
         for (how, _), (_, told, code) in zip(judged, how_each_ended, strict=True)
     ]
     late = [flags for how, flags in judged if how == "not_run"]
@@ -243,10 +248,6 @@ def _never_started(program: Program, beside: Sequence[Program]) -> Message:
     return NEVER_ENDED.given(program=program.name, other=beside[program.after].name)
 
 
-def _has_failed(ended: dict[str, Any], exit_code: int | None) -> bool:
-    return bool(exit_code) or ended["silence"] not in ("", "gone")
-
-
 def command(
     submission: Submission,
     introduction: Introduction,
@@ -303,20 +304,12 @@ def _judge(
         is_done = at_rest or (at_rest is None and waits == "for ever")
         flag = WAITS_FOR_EVER if waits == "for ever" else STUCK
         return ("finished" if is_done else "stalled"), ([] if is_done else [flag])
-    if silence == "stalled":
-        used_s = patience.stall_cpu_s
-        why = msg(
-            "the node used {seconds} s of processor time without waiting for ROS",
-            seconds=f"{used_s:.0f}",
-        )
-        return ("finished" if at_rest else "stalled"), [why]
-    if silence == "stopped":
-        return ("finished" if at_rest else "stalled"), [STOPPED]
+    if silence in ("stalled", "stopped"):
+        why = STALLED.given(seconds=f"{patience.stall_cpu_s:.0f}")
+        flag = why if silence == "stalled" else STOPPED
+        return ("finished" if at_rest else "stalled"), [flag]
     if silence == "slow":
-        used = f"{patience.run_cpu_s:.0f}"
-        return "time_limit", [
-            msg("the node used more than {seconds} s of processor time", seconds=used)
-        ]
+        return "time_limit", [SLOW.given(seconds=f"{patience.run_cpu_s:.0f}")]
     if silence == "flooding":
         return "killed", [FLOODING.given(seconds=f"{patience.simulator_cpu_s:.0f}")]
     if silence == "broken":

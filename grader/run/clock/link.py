@@ -37,7 +37,6 @@ from grader.run.lockstep.protocol import (
     Parcel,
     ProtocolError,
     Reply,
-    State,
     Table,
     decode,
     encode,
@@ -264,7 +263,7 @@ class SimulatorLink(EndpointRegistry):
         if removed:
             self.remove_others(removed)
             self._connect_anew()
-        if packet.state == State.OVER:
+        if packet.is_over:
             self.on_over()
             real.leave(0)
         self._mail_for_late()

@@ -14,8 +14,7 @@ from contextlib import suppress
 from typing import Any
 
 from grader.run.clock.scheduler import Runner, Scheduler
-from grader.run.clock.unsupported_calls import Unsupported
-from grader.run.lockstep.faults import as_python_does
+from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.protocol import NEVER
 from grader.run.lockstep.real import get_ident
 
@@ -166,7 +165,7 @@ def install(scheduler: Scheduler) -> None:
     """Replace the primitives in this interpreter.
 
     Raises:
-        Unsupported: this Python has other ones.
+        AttributeError: this Python has other ones.
     """
     global SCHEDULER
     SCHEDULER = scheduler
@@ -186,12 +185,12 @@ def install(scheduler: Scheduler) -> None:
     else:
         _replace(threading, "_start_new_thread", _start_new_thread)
         _replace(threading, "_set_sentinel", _set_sentinel)
-    _replace(queue, "SimpleQueue", _replaced(queue, "_PySimpleQueue"))
+    _replace(queue, "SimpleQueue", pass_on(getattr, queue, "_PySimpleQueue"))
 
 
 def join_all() -> None:
     """Wait for all threads but daemons, as the interpreter does at its end."""
-    for call in reversed(_replaced(threading, "_threading_atexits")):
+    for call in reversed(threading._threading_atexits):  # type: ignore[attr-defined]
         call()
     for thread in threading.enumerate():
         if thread is not threading.main_thread() and not thread.daemon:
@@ -199,14 +198,8 @@ def join_all() -> None:
 
 
 def _replace(module: Any, name: str, new: object) -> None:
-    _replaced(module, name)
+    pass_on(getattr, module, name)
     setattr(module, name, new)
-
-
-def _replaced(module: Any, name: str) -> Any:
-    if not hasattr(module, name):
-        raise Unsupported(f"this Python has no {module.__name__}.{name}")
-    return getattr(module, name)
 
 
 def _start_new_thread(

@@ -39,10 +39,6 @@ _OTHER_PROCESS = {
 _HARMLESS = {"cc", "clear", "gcc", "ld", "ldconfig", "objdump", "uname"}
 
 
-class Unsupported(Exception):
-    """Virtual time cannot follow; the text completes "the submission ..."."""
-
-
 # Files, sockets and pipes ---------------------------------------------------------------------
 
 

@@ -127,15 +127,12 @@ class ActionClient(_Action, _rclpy.ActionClient):
         )
 
     def take_feedback(self, _: type) -> Any:
-        """Return the oldest feedback, or None."""
         return pop(self.feedback, id)[1]
 
     def take_status(self, _: type) -> Any:
-        """Return the oldest status, or None."""
         return pop(self.status, id)[1]
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Add our readers to a wait set."""
         wait_set.add_readers(self.readers)
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:
@@ -206,7 +203,6 @@ class ActionServer(_Action, _rclpy.ActionServer):
         return _ActionServer.expire_goals(self, most)
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Add our readers to a wait set."""
         wait_set.add_readers([*self.requests.values()])
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:

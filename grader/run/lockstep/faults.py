@@ -64,15 +64,15 @@ def whose(error: BaseException) -> str:
     return f"{type(error).__name__} in {Path(file).name}, line {trace.tb_lineno}"
 
 
-def failed(what: str) -> Message:
-    """Return the sentence for a result's flags; `what` as from `whose`."""
-    return msg("virtual time itself failed ({where})", where=what)
+def failed(error: BaseException) -> Message:
+    """Return the sentence for a result's flags."""
+    return msg("virtual time itself failed ({where})", where=whose(error) or repr(error))
 
 
 def report(error: BaseException) -> None:
     """Call `on_fault` if the exception is ours."""
-    if what := whose(error):
-        on_fault(failed(what))
+    if whose(error):
+        on_fault(failed(error))
 
 
 def guarded(function: _Function) -> _Function:

@@ -77,13 +77,6 @@ class ProtocolError(Exception):
 MOST_SENT, MOST_SENT_BYTES = 100_000, 2_000_000_000
 
 
-class State(IntEnum):
-    """The state of the run in a `Reply`."""
-
-    RUNNING = 0
-    OVER = 1
-
-
 class Kind(IntEnum):
     """What a `Note` is about."""
 
@@ -179,6 +172,7 @@ class Reply:
 
     Attributes:
         now_ns: the time.
+        is_over: whether the run is.
         foreseen: the tick up to which the messages are those that will be sent, if the student's
             side sends nothing meanwhile.
         until_ns: the program may let time move by itself before this.
@@ -186,7 +180,7 @@ class Reply:
     """
 
     now_ns: int
-    state: State
+    is_over: bool
     foreseen: int
     until_ns: int = NEVER
     parcels: Parcels = field(default_factory=list)
@@ -214,8 +208,8 @@ def encode(packet: Packet) -> bytes:
     match packet:
         case Advance(target_ns, listens, reached, now_ns, has_mailed):
             return _HEAD.pack(b"A", target_ns, listens, reached, now_ns, has_mailed)
-        case Reply(now_ns, state, foreseen, until_ns, parcels):
-            return _HEAD.pack(b"R", now_ns, state, foreseen, until_ns, False) + _parcels(parcels)
+        case Reply(now_ns, is_over, foreseen, until_ns, parcels):
+            return _HEAD.pack(b"R", now_ns, is_over, foreseen, until_ns, False) + _parcels(parcels)
         case Mail(parcels):
             return _HEAD.pack(b"M", 0, 0, 0, 0, False) + _parcels(parcels)
         case Note(kind, remark):
@@ -240,7 +234,7 @@ def decode(data: bytes) -> Packet:
             case b"A":
                 return Advance(number, bool(other), further, last, flag)
             case b"R":
-                return Reply(number, State(other), further, last, _read_parcels(data))
+                return Reply(number, bool(other), further, last, _read_parcels(data))
             case b"M":
                 return Mail(_read_parcels(data))
     except Exception as error:

@@ -86,10 +86,6 @@ def deadlock(threads: Sequence[Thread]) -> tuple[str, Thread] | None:
     return None
 
 
-def is_spinning(thread: Thread) -> bool:
-    return any(frame.name == "spin" and frame.library in SPINS for frame in thread)
-
-
 def explain(kind: str, thread: Thread, time_s: float) -> str:
     """Return the message that is printed for the author of a submission with a stuck thread."""
     shown = [
@@ -152,7 +148,7 @@ def standing(thread: Thread) -> Stuck | None:
     if at < 0:
         return None
     inside = thread[:at]
-    spins = is_spinning(inside)
+    spins = any(each.name == "spin" and each.library in SPINS for each in inside)
     inits = (n for n, each in enumerate(thread) if each.lines is not None)
     init = max((n for n in inits if thread[n].name == "__init__"), default=-1)
     if init >= 0 and not any(map(_runs_callback, thread)):

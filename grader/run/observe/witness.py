@@ -42,10 +42,7 @@ _EVERY_NODE = frozenset(
 )
 #: Functions of rclpy's with which a program makes an end.
 _MAKERS = (
-    "create_timer",
-    "create_publisher",
-    "create_subscription",
-    "create_client",
+    *("create_timer", "create_publisher", "create_subscription", "create_client"),
     "create_lifecycle_publisher",
 )
 

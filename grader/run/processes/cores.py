@@ -22,7 +22,7 @@ def share() -> float:
 
 
 def _quotas() -> Iterator[float]:
-    """Yield the quotas of this process's control groups, of version 2 and of 1 [cores]."""
+    """Yield the quotas of this process's control groups [cores]; of version 1 they are not read."""
     with suppress(OSError, ValueError, ZeroDivisionError):
         group = _CGROUPS.joinpath(*_control_group().split("/"))
         for folder in (group, *group.parents):
@@ -30,13 +30,6 @@ def _quotas() -> Iterator[float]:
                 quota, period = (folder / "cpu.max").read_text().split()
                 if quota != "max":
                     yield int(quota) / int(period)
-    with suppress(OSError, ValueError, ZeroDivisionError):
-        quota_us, period_us = (
-            int((_CGROUPS / "cpu" / f"cpu.cfs_{word}_us").read_text())
-            for word in ("quota", "period")
-        )
-        if quota_us > 0:
-            yield quota_us / period_us
 
 
 def _control_group() -> str:

@@ -145,12 +145,8 @@ class StartedProcess:
     def pid(self) -> int:
         return self._child.pid
 
-    def poll(self) -> int | None:
-        """The exit code, negative for a signal, or None while it runs."""
-        return self.wait(0.0)
-
     def wait(self, timeout_s: float) -> int | None:
-        """Wait for its end; None if it still runs then.
+        """Wait for its end; return its exit code, negative for a signal, None if it still runs.
 
         Raises:
             NotConfined: it could not be confined, or started.

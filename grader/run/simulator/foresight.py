@@ -53,11 +53,7 @@ class Foresight:
         is_heard_here = any(writer.local for writer in writers)
         if not forecast.ticks or is_heard_here or self._registry.others_are_read(writers):
             return
-        read = [
-            (index, writer.number, writer.sent)
-            for index, writer in enumerate(writers)
-            if writer.remote
-        ]
+        read = [(i, each.number, each.sent) for i, each in enumerate(writers) if each.remote]
         self._forecast, self._writers = forecast, writers
         self.end = tick + len(forecast.ticks)
         self.parcels = [

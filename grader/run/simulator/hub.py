@@ -43,7 +43,6 @@ from grader.run.lockstep.protocol import (
     Advance,
     Parcels,
     Reply,
-    State,
     Table,
 )
 from grader.run.lockstep.registry import Writer
@@ -202,7 +201,7 @@ class Hub:
                 self._make_tick()
                 self._distribute()
         for member in self._alive():
-            member.link.send(Reply(self._time_ns, State.OVER, self._tick))
+            member.link.send(Reply(self._time_ns, True, self._tick))
         self._finish_alone()
         if self._feed is not None:
             self._feed.close()
@@ -226,7 +225,9 @@ class Hub:
     def _start(self, member: LinkedProgram) -> None:
         """Let a program run for the first time."""
         member.is_new, member.news, member.is_awake = False, [], False
-        member.link.introduce(self._introduction())
+        known = (*self._registry.own.values(), *self._registry.others.values())
+        table = Table(tuple(each.info() for each in known), now_ns=self._time_ns)
+        member.link.introduce(table)
         self._hear(member)
 
     def _alive(self) -> list[LinkedProgram]:
@@ -295,7 +296,7 @@ class Hub:
             parcels += (p for p in self._foresight.parcels if self._gets(member, p.endpoint))
         foreseen = max(tick, self._foresight.end)
         member.link.note_start()
-        reply = Reply(self._time_ns, State.RUNNING, foreseen, member.until_ns, parcels)
+        reply = Reply(self._time_ns, False, foreseen, member.until_ns, parcels)
         member.link.send(reply)
         self._hear(member)
         member.vain += tick == self._tick
@@ -346,10 +347,6 @@ class Hub:
             self._was_at_rest = self._simulation.is_at_rest
 
     # Who is there -----------------------------------------------------------------------------
-
-    def _introduction(self) -> Table:
-        known = (*self._registry.own.values(), *self._registry.others.values())
-        return Table(tuple(each.info() for each in known), now_ns=self._time_ns)
 
     def _note(self, member: LinkedProgram, table: Table) -> None:
         """Note what a program has, and has no more."""

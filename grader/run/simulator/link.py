@@ -188,7 +188,7 @@ class StudentLink:
                 case Table() | Advance():
                     return packet
                 case _:
-                    self.break_off(msg("its process sent what only a simulator says"))
+                    self.break_off(NONSENSE)
         return None
 
     def flag(self, remark: Message) -> None:

@@ -246,16 +246,12 @@ class WallWire:
     def tap(self, topic: str, kind: str, message: Any) -> None:
         """Record what the program publishes on a topic with a type, as well as it is offered."""
         offers = [each.qos_profile for each in self.node.get_publishers_info_by_topic(topic)]
-        reliable, lasting = QoSReliabilityPolicy.RELIABLE, QoSDurabilityPolicy.TRANSIENT_LOCAL
-        qos = QoSProfile(
-            depth=1000,
-            reliability=reliable
-            if all(each.reliability == reliable for each in offers)
-            else QoSReliabilityPolicy.BEST_EFFORT,
-            durability=lasting
-            if all(each.durability == lasting for each in offers)
-            else QoSDurabilityPolicy.VOLATILE,
-        )
+        qos = QoSProfile(depth=1000)  # reliable and volatile
+        if any(each.reliability != QoSReliabilityPolicy.RELIABLE for each in offers):
+            qos.reliability = QoSReliabilityPolicy.BEST_EFFORT
+        lasting = QoSDurabilityPolicy.TRANSIENT_LOCAL
+        if all(each.durability == lasting for each in offers):
+            qos.durability = lasting
         try:
             made = self.node.create_subscription(message, topic, print, qos, raw=True)
         except rclpy_implementation.RCLError:  # a peer has another type there

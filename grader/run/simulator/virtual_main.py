@@ -23,11 +23,11 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import cache
-from pathlib import Path
 
+from grader.run.lockstep import faults
 from grader.run.processes import FORK_SERVER
 from grader.run.simulator.process import send_message
-from grader.text.message import Message, msg
+from grader.text.message import Message
 
 IN_REAL_TIME = "grader.run.simulator.real_time"
 
@@ -50,7 +50,7 @@ def main(argv: list[str]) -> int:
         return hub.main(argv)
     except Exception as error:
         traceback.print_exc()
-        return _refuse(argv, msg("virtual time itself failed ({where})", where=_where(error)))
+        return _refuse(argv, faults.failed(error))
 
 
 def serve_runs(words: Sequence[str]) -> list[str]:
@@ -79,11 +79,6 @@ def serve_runs(words: Sequence[str]) -> list[str]:
     endpoints.import_messages(json.loads(messages))
     command = fork_server_main.serve(number, (), load)
     return command[command.index("-m") + 1 :]
-
-
-def _where(error: Exception) -> str:
-    frame = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__} in {Path(frame.filename).name}, line {frame.lineno}"
 
 
 def _refuse(argv: list[str], why: Message) -> int:

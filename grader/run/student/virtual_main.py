@@ -41,7 +41,7 @@ from grader.run.observe import hooks  # noqa: E402
 from grader.run.observe.witness import Witness  # noqa: E402
 from grader.run.processes import FORK_SERVER  # noqa: E402
 from grader.run.student import loading  # noqa: E402
-from grader.text.message import NOTHING, Message, msg  # noqa: E402
+from grader.text.message import NOTHING, Message  # noqa: E402
 
 if TYPE_CHECKING:  # which imports rclpy
     from grader.run.clock.link import SimulatorLink
@@ -77,7 +77,7 @@ def main() -> None:
         unsupported_calls.replace_signals(scheduler, refuse)
         link = install(scheduler, connection, int(page), refuse, witness, introduction)
     except Exception as error:
-        give_up(Kind.FAILED, broken(error))
+        give_up(Kind.FAILED, faults.failed(error))
 
     connect = faults.guarded(link.connect)
 
@@ -119,7 +119,7 @@ def prepare(scheduler: Scheduler) -> tuple[Message, Callable[[], object]]:
 
         endpoints.import_uncompiled()
     except Exception as error:
-        return broken(error), state
+        return faults.failed(error), state
     return NOTHING, state
 
 
@@ -173,13 +173,6 @@ def is_met(kind: str, entity: Any) -> Callable[[], bool]:
     handle = entity._client_handle if kind == "action_client" else entity.handle
     endpoint = handle.endpoints[0]
     return lambda: endpoint.matches > 0
-
-
-def broken(error: Exception) -> Message:
-    """Return why virtual time does not work here."""
-    if isinstance(error, unsupported_calls.Unsupported):
-        return msg("virtual time does not work here: {lack}", lack=str(error))
-    return faults.failed(faults.whose(error) or repr(error))
 
 
 def become_one_of_many(

@@ -14,11 +14,7 @@ def groups(tmp_path, monkeypatch):
     monkeypatch.setattr(cores, "_MEMBERSHIP", tmp_path / "own")
     (tmp_path / "own").write_text("1:cpu:/\n0::/slice/ours\n")
     (tmp_path / "slice" / "ours").mkdir(parents=True)
-    (tmp_path / "cpu").mkdir()
     return tmp_path
-
-
-V1 = "cpu/cpu.cfs_period_us"
 
 
 @pytest.mark.parametrize(
@@ -28,8 +24,6 @@ V1 = "cpu/cpu.cfs_period_us"
         ({"slice/ours/cpu.max": "max 100000", "slice/cpu.max": "max 100000"}, 8),
         ({"slice/ours/cpu.max": "50000 100000", "slice/cpu.max": "max 100000"}, 0.5),
         ({"slice/ours/cpu.max": "max 100000", "slice/cpu.max": "150000 100000"}, 1.5),
-        ({"cpu/cpu.cfs_quota_us": "-1", V1: "100000"}, 8),
-        ({"cpu/cpu.cfs_quota_us": "200000", V1: "100000"}, 2),
     ],
 )
 def test_quotas_of_ours_and_of_what_we_are_in_count(groups, files, share):

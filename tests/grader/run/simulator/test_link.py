@@ -20,7 +20,6 @@ from grader.run.lockstep.protocol import (
     Note,
     Parcel,
     Reply,
-    State,
     Table,
     encode,
 )
@@ -51,9 +50,7 @@ def mailbox(heard: StudentLink, theirs: socket.socket) -> socket.socket:
     return socket.socket(fileno=fd)
 
 
-@pytest.mark.parametrize(
-    "data", [b"?", b"A", b"T{}", encode(Reply(0, State.OVER, 0)), b"\xff" * 1000]
-)
+@pytest.mark.parametrize("data", [b"?", b"A", b"T{}", encode(Reply(0, True, 0)), b"\xff" * 1000])
 def test_nonsense_ends_the_conversation(listen, theirs, data):
     heard = listen()
     theirs.send(data)
