@@ -2,7 +2,7 @@
 
 from logging import getLogger
 
-from launch import _core, actions, conditions, events, substitutions, utilities
+from launch import _core, actions, events, substitutions, utilities
 from launch._core import (
     Action,
     Condition,
@@ -13,6 +13,7 @@ from launch._core import (
     LaunchIntrospector,
     LaunchService,
     Substitution,
+    conditions,
     module,
     unknown,
 )
@@ -29,6 +30,12 @@ launch_description_sources = module(
     _core.InvalidPythonLaunchFileError,
     _core.PythonLaunchDescriptionSource,
 )
+for _name, _source in (
+    ("launch_xml", _core.XMLLaunchDescriptionSource),
+    ("launch_yaml", _core.YAMLLaunchDescriptionSource),
+):
+    _sources = module(f"{_name}.launch_description_sources", _source)
+    module(_name, launch_description_sources=_sources)
 logging = module("launch.logging", get_logger=getLogger)
 __all__ = [
     "Action",

@@ -13,12 +13,12 @@ from launch._core import (
     LaunchContext,
     Substitution,
     TextSubstitution,
+    evaluate_condition_expression,
     exported,
     normalize_to_list_of_substitutions,
     text_of,
     unknown,
 )
-from launch.conditions import evaluate_condition_expression
 
 
 class SubstitutionFailure(RuntimeError):
