@@ -34,8 +34,8 @@ from grader.run.processes import cores
 from grader.run.simulator_process import Audience
 from grader.scenes.scene import Scene
 from grader.submission.private_copy import missing_neighbours
+from grader.submission.program_source import is_among
 from grader.submission.reader import Marks
-from grader.submission.roles import is_among
 from grader.submission.start import Submission
 from grader.system import content
 from grader.system import versions as system

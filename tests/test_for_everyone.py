@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from grader.exercise.loading import load_exercise
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.json_file import ErrorResult
 from grader.reports import ErrorReport
 from grader.reports import read as read_report
 from grader.reports.page import html

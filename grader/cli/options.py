@@ -214,16 +214,16 @@ def hides_seed(args: argparse.Namespace) -> bool:
 def prepare(args: argparse.Namespace) -> None:
     """Remove an old file of --error-json."""
     if args.error_json is not None:
-        from grader.exercise.result.error import FAMILY
+        from grader.exercise.result.json_file import ERROR_FAMILY
 
-        files.check_writable(args.error_json, FAMILY, inputs(args))
+        files.check_writable(args.error_json, ERROR_FAMILY, inputs(args))
         files.withdraw(args.error_json)
 
 
 def write(error: GraderError, args: argparse.Namespace) -> None:
     """Write an error to the file of --error-json, if there is one."""
     if args.error_json is not None:
-        from grader.exercise.result.error import ErrorResult
+        from grader.exercise.result.json_file import ErrorResult
 
         ErrorResult.of(error, _max_score(args)).write(args.error_json)
 

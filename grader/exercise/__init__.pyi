@@ -5,7 +5,7 @@ from grader.exercise.result import json_file as json_file
 from grader.exercise.result.diagnosis import Diagnoser as Diagnoser
 from grader.exercise.result.diagnosis import Diagnosis as Diagnosis
 from grader.exercise.result.diagnosis import costliest as costliest
-from grader.exercise.result.error import ErrorResult as ErrorResult
+from grader.exercise.result.json_file import ErrorResult as ErrorResult
 from grader.exercise.result.result import PAGE as PAGE
 from grader.exercise.result.result import RESULT as RESULT
 from grader.exercise.result.result import ROUNDING as ROUNDING
@@ -15,9 +15,9 @@ from grader.exercise.result.result import artifacts as artifacts
 from grader.exercise.result.result import put_artifacts as put_artifacts
 from grader.exercise.result.visible import View as View
 from grader.exercise.result.visible import is_hidden as is_hidden
+from grader.exercise.sentences import UNKNOWN as UNKNOWN
 from grader.exercise.sentences import error_first as error_first
 from grader.exercise.sentences import how_it_ended as how_it_ended
 from grader.exercise.sentences import not_followed as not_followed
-from grader.exercise.unknown import UNKNOWN as UNKNOWN
-from grader.exercise.unknown import not_judged as not_judged
-from grader.exercise.unknown import unless_unknown as unless_unknown
+from grader.exercise.sentences import not_judged as not_judged
+from grader.exercise.sentences import unless_unknown as unless_unknown

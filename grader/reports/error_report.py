@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.json_file import ErrorResult
 from grader.reports.wording import points
 from grader.text import strings as text
 from grader.text.message import joined, msg

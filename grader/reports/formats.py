@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader.errors import UsageError
-from grader.exercise.result import error, json_file
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result import json_file
+from grader.exercise.result.json_file import ErrorResult
 from grader.exercise.result.result import Result
 from grader.exercise.result.visible import View
 from grader.reports.beside import Beside
@@ -57,7 +57,7 @@ def read(path: Path, checks: Sequence[str] = (), view: View = "student") -> Repo
         UsageError: the file cannot be read or is neither.
     """
     data = json_file.read(path)
-    if isinstance(data, dict) and str(data.get("schema")).startswith(error.FAMILY):
+    if isinstance(data, dict) and str(data.get("schema")).startswith(json_file.ERROR_FAMILY):
         failed = json_file.made(ErrorResult.from_json, path, data)
         return ErrorReport(failed, path.parent, checks, path)
     result = json_file.made(Result.from_json, path, data)

@@ -15,9 +15,9 @@ from typing import Final
 
 from grader.submission import safe_files
 from grader.submission.folder import SubmissionFolder
-from grader.submission.imports import read_imports
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.program import EntryPoint, Program
+from grader.submission.program_source import read_imports
 from grader.submission.set_ups import PackageFolder
 from grader.text.message import Message, msg
 from grader.text.strings import listed, shown

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 
 from grader.errors import SubmissionError
 from grader.submission.folder import SubmissionFolder, files_below, is_passed_by
-from grader.submission.imports import read_imports
 from grader.submission.interfaces import TWICE
 from grader.submission.program import Program, Script
+from grader.submission.program_source import is_among, read_imports, roles_in
 from grader.submission.python_source import read_source
 from grader.submission.request import USUAL_NAME
-from grader.submission.roles import is_among, roles_in
 from grader.submission.set_ups import Executable, PackageFolder, read_package
 from grader.text.message import Message, msg, msg_many
 from grader.text.strings import listed, nearest, shown
@@ -69,7 +68,9 @@ class Packages:
             if len(fitting) == 1:
                 return fitting[0]
             names = [script.name for _, script in fitting]
-            raise self._several(names) if len(set(names)) > 1 else self._twice(every)
+            if len(set(names)) > 1:
+                raise several_programs(self.submitted, names)
+            raise self._twice(every)
         return every[0] if every else None
 
     def program(self, package: PackageFolder, executable: Executable, number: int = 1) -> Program:
@@ -163,14 +164,6 @@ class Packages:
             where=where,
         )
 
-    def _several(self, names: list[str]) -> SubmissionError:
-        return SubmissionError(
-            "{name} has several programs: {names}. {advice}",
-            name=self.submitted.name,
-            names=listed(names),
-            advice=self.submitted.request.advice(),
-        )
-
 
 def find_packages(submitted: SubmissionFolder, set_ups: Sequence[SetUp]) -> Packages:
     """Read the folders with set-up files; not those below a folder that has a console script."""
@@ -218,6 +211,18 @@ def no_such_executable(
         name=submitted.name,
         executable=shown(executable),
         names=listed(names),
+    )
+
+
+def several_programs(
+    submitted: SubmissionFolder, names: Iterable[str], ending: str = ""
+) -> SubmissionError:
+    """The error that one has to be chosen; `ending`: of the name of a file."""
+    return SubmissionError(
+        "{name} has several programs to start: {names}. {advice}",
+        name=submitted.name,
+        names=listed(names),
+        advice=submitted.request.advice(ending),
     )
 
 

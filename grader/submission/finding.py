@@ -28,6 +28,7 @@ from grader.submission.entry_points import (
     find_packages,
     no_such_executable,
     not_started,
+    several_programs,
 )
 from grader.submission.examining.packages import is_launch_file
 from grader.submission.folder import (
@@ -47,10 +48,10 @@ from grader.submission.launching import (
     undeclared,
 )
 from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.manifest import read_manifest
 from grader.submission.private_copy import copy_folder
 from grader.submission.program import EntryPoint, Program, Script
 from grader.submission.python_source import read_source
-from grader.submission.refusals import no_python
 from grader.submission.request import LaunchAsked, Request
 from grader.submission.set_ups import (
     MOST,
@@ -58,8 +59,8 @@ from grader.submission.set_ups import (
     Unevaluated,
 )
 from grader.submission.start import Submission
-from grader.submission.unpacking import opened
-from grader.text.message import Message, joined, msg
+from grader.submission.unpacking import CPP, ONLY_PYTHON, PACKAGE, opened
+from grader.text.message import Message, Text, joined, msg, msg_many
 from grader.text.strings import listed, nearest, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -119,6 +120,37 @@ def find_evaluated(
     return replace(found, notes=(*undeclared(inspection, request.launch), *found.notes))
 
 
+def find_whole(path: Path, package: str | None, scratch: Path) -> Submission:
+    """Find the packages of a submission that is not started.
+
+    Args:
+        package: chooses among them, by name.
+        scratch: an empty folder, for what has to be unpacked.
+    """
+    submitted, files, _ = opened(path, Request(package, is_started=False), scratch)
+    name = submitted.name
+    folders = sorted(
+        {file.parent for file in files if file.name in (MANIFEST, CMAKE, *SETUP_FILES)}
+    )
+    if not folders:
+        wanted = msg("ROS 2 package: no package.xml, setup.py or CMakeLists.txt")
+        raise _nothing(submitted, files, wanted, PACKAGE)
+    manifests = (read_manifest(each / MANIFEST) for each in folders if (each / MANIFEST).is_file())
+    names = sorted({shown(each.name) for each in manifests if each is not None and each.name})
+    if package is not None and package not in names:
+        meant = nearest(package, names) or names
+        raise SubmissionError(
+            "{name} has no package {package}; there is: {names}.",
+            name=name,
+            package=shown(package),
+            names=listed(meant) or msg("none"),
+        )
+    found = msg("a package without {file}", file=MANIFEST)
+    if names:
+        found = msg_many("the package {names}", "packages {names}", len(names), names=listed(names))
+    return Submission(name, submitted.base, (), found, asked=package or "")
+
+
 def _found(
     submitted: SubmissionFolder,
     files: list[Path],
@@ -165,7 +197,9 @@ def _among(
         return _from_programs(submitted, packages, started, scratch)
     candidates = [file for file in files if may_be_node(file)]
     if not candidates:
-        raise no_python(submitted, files)
+        is_cpp = any(file.suffix.lower() in CPP or file.name == CMAKE for file in files)
+        wanted = msg("Python file that could be the node")
+        raise _nothing(submitted, files, wanted, ONLY_PYTHON if is_cpp else HAND_IN)
     sources = {file: read_source(file) for file in candidates}
     starting = [f for f, read in sources.items() if read.has_guard or read.has_main] or candidates
     several = executable is None and len(_usual(submitted, starting)) > 1
@@ -180,6 +214,20 @@ def _among(
     found = _from_file(submitted, chosen)
     more = [*(_unbuilt(submitted, chosen) or found.notes), *not_started(others)]
     return replace(found, notes=tuple(more))
+
+
+def _nothing(
+    submitted: SubmissionFolder, files: list[Path], wanted: Message, hand_in: Message
+) -> SubmissionError:
+    """The error that there is nothing to start or to look at, with what there is."""
+    names = [submitted.called(file) for file in files]
+    return SubmissionError(
+        "{name} holds no {wanted} (it holds: {names}). {hand_in}",
+        name=submitted.name,
+        wanted=wanted,
+        names=listed(names) or msg("only folders that are not searched"),
+        hand_in=hand_in,
+    )
 
 
 def _no_launch_files(submitted: SubmissionFolder, launch: LaunchAsked) -> SubmissionError:
@@ -339,12 +387,7 @@ def _only(submitted: SubmissionFolder, candidates: list[Path]) -> Path:
     else:
         chosen = _usual(submitted, candidates)
     if len(chosen) > 1:
-        raise SubmissionError(
-            "{name} has several Python files to start: {names}. {advice}",
-            name=submitted.name,
-            names=listed(map(submitted.called, chosen)),
-            advice=submitted.request.advice(".py"),
-        )
+        raise several_programs(submitted, map(submitted.called, chosen), ".py")
     return chosen[0]
 
 
@@ -365,16 +408,12 @@ def _no_script(
     called = submitted.called(package.folder / "setup.py")
     text = (read_bounded(package.folder / "setup.py") or b"").decode("utf-8", "replace")
     words = {*re.findall(r"['\"](\w*script\w*)['\"]", text)} - {"console_scripts"}
+    expected: Text = example(module, module.rpartition(".")[2])
     if meant := nearest("console_scripts", sorted(words)):
-        return msg(
-            "{file} names no console script, so that `ros2 run` finds nothing to start. Expected "
-            "in its entry_points: 'console_scripts' instead of '{found}'",
-            file=called,
-            found=shown(meant[0]),
-        )
+        expected = msg("'console_scripts' instead of '{found}'", found=shown(meant[0]))
     return msg(
         "{file} names no console script, so that `ros2 run` finds nothing to "
-        "start. Expected in its entry_points: {example}",
+        "start. Expected in its entry_points: {expected}",
         file=called,
-        example=example(module, module.rpartition(".")[2]),
+        expected=expected,
     )

@@ -11,8 +11,8 @@ from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import CMAKE, SubmissionFolder
 from grader.submission.program import WITH_THE_LAUNCH, Program, Script
+from grader.submission.program_source import is_among
 from grader.submission.request import LaunchAsked
-from grader.submission.roles import is_among
 from grader.text.message import Message, joined, msg
 from grader.text.strings import listed, shown
 

@@ -7,9 +7,11 @@ JSON, and reaches nothing else.
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
@@ -19,15 +21,13 @@ from typing import TYPE_CHECKING, Final, Self
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.recording.recording import OwnInterfaces
 from grader.recording.subject import Role
-from grader.submission import folder, python_source, whole
-from grader.submission.finding import find, find_evaluated, may_be_node
-from grader.submission.imports import read_imports
+from grader.submission import folder, python_source
+from grader.submission.finding import find, find_evaluated, find_whole, may_be_node
 from grader.submission.interfaces import completed, undeclared
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
-from grader.submission.refusals import readable
+from grader.submission.program_source import read_imports, roles_in
 from grader.submission.request import Request
-from grader.submission.roles import roles_in
 from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Imports, Submission
 from grader.submission.unpacking import opened
@@ -136,7 +136,7 @@ def _some(modules: dict[str, str]) -> dict[str, str]:
 
 
 def read(path: Path, request: Request, scratch: Path) -> Submission | Unevaluated:
-    """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
+    """Read a submission; see `finding.find`, or `find_whole` for one that is not started.
 
     Raises:
         SubmissionError: as there, or it takes more than the limits.
@@ -147,7 +147,7 @@ def read(path: Path, request: Request, scratch: Path) -> Submission | Unevaluate
     def found() -> Submission | Unevaluated:
         with readable(path):
             if not request.is_started:
-                return whole.find(path, request.executable, scratch)
+                return find_whole(path, request.executable, scratch)
             started = find(path, request, scratch)
         if isinstance(started, Unevaluated):
             return started
@@ -266,6 +266,26 @@ def _marks(path: Path, scratch: Path) -> Marks:
     roles = [] if exercises else sorted(roles_in(programs))
     roles = [each for each in roles if len(each.name) <= _MAX_NAME]
     return Marks(_some(exercises), names, len(programs), tuple(roles[:_MAX_MODULES]))
+
+
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Turn an OSError of one file of the submission into a SubmissionError."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in folder.UNREADABLE:
+            raise
+        base, culprit = path.resolve(), Path(error.filename or path)
+        advice = msg("Check its permissions, and hand it in again.")
+        if error.errno == errno.ENAMETOOLONG:
+            advice = msg("Shorten its name, and hand it in again.")
+        raise SubmissionError(
+            "{file} cannot be read: {why}. {advice}",
+            file=shown(culprit.relative_to(base) if base in culprit.parents else path),
+            why=str(error.strerror),
+            advice=advice,
+        ) from error
 
 
 def _answer(found: Callable[[], Submission | Unevaluated], name: str) -> _Answer:

@@ -7,13 +7,15 @@ limit.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from grader.errors import SubmissionError
+from grader.errors import SubmissionError, UsageError
 from grader.submission.folder import (
     CMAKE,
     HAND_IN,
+    MAX_ENTRIES,
     SubmissionFolder,
     entries_of,
     files_below,
@@ -21,15 +23,19 @@ from grader.submission.folder import (
     is_source,
     top_of,
 )
-from grader.submission.refusals import CPP, PACKAGE, advice, missing
 from grader.submission.request import Request
 from grader.submission.safe_members import Budget
-from grader.text.strings import listed, shown
+from grader.text.message import Message, msg
+from grader.text.strings import listed, nearest, shown
 
 #: A zip of a course's server, in it the student's own, in that a zip once more by mistake.
 MAX_LEVELS: Final = 3
 
 _ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
+_OTHER_ARCHIVES: Final = {".gz", ".bz2", ".tbz2", ".xz", ".txz", ".zst", ".rar", ".7z"}
+CPP: Final = {".cpp", ".cc", ".cxx", ".c", ".hpp", ".h"}
+ONLY_PYTHON: Final = msg("Only Python can be graded. {hand_in}", hand_in=HAND_IN)
+PACKAGE: Final = msg("Hand in the folder of your ROS 2 package, or a .zip of it.")
 
 
 class Opened(NamedTuple):
@@ -62,12 +68,12 @@ def opened(path: Path, request: Request, scratch: Path) -> Opened:
     """
     name = shown(path.name or path.resolve().name)
     if not path.exists():
-        raise missing(path)
+        raise _missing(path)
     if not path.is_dir() and not is_archive(path):
         raise SubmissionError(
             "{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice}",
             name=name,
-            advice=advice(path) if request.is_started else PACKAGE,
+            advice=_advice(path) if request.is_started else PACKAGE,
         )
     budget, inside = Budget(), tuple[str, ...]()
     base = path.resolve() if path.is_dir() else _unpacked(path, scratch, budget)
@@ -116,3 +122,38 @@ def _unpacked(archive: Path, scratch: Path, budget: Budget) -> Path:
     place.mkdir()
     unpack(archive, place, budget)
     return place
+
+
+def _advice(path: Path) -> Message:
+    """Say what to hand in instead of a file of this kind."""
+    kind = path.suffix.lower()
+    if kind == ".py":
+        return msg(
+            "Python imports no {suffix}: call it {name}.py.",
+            suffix=shown(path.suffix),
+            name=shown(path.stem),
+        )
+    if kind in _OTHER_ARCHIVES:
+        return msg("Unpack it, and pack the same as a .zip.")
+    if kind == ".ipynb":
+        return msg("Save the notebook as a Python file (.py), and hand in that.")
+    return ONLY_PYTHON if kind in CPP else HAND_IN
+
+
+def _missing(path: Path) -> UsageError:
+    """The error that there is no such path."""
+    folder = path.parent
+    if not folder.is_dir():
+        return UsageError(
+            "{path} does not exist: there is no folder {folder}.",
+            path=shown(path),
+            folder=shown(folder),
+        )
+    there = islice((entry.name for entry in folder.iterdir()), MAX_ENTRIES)
+    meant = nearest(path.name, sorted(there))
+    advice = (
+        msg("Did you mean {names}?", names=listed(meant))
+        if meant
+        else msg("Check the name and the folder.")
+    )
+    return UsageError("{path} does not exist. {advice}", path=shown(path), advice=advice)

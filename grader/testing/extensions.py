@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grader.errors import UsageError
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.json_file import ErrorResult
 from grader.exercise.result.result import Result, RunSummary
 from grader.exercise.verdict import Verdict
 from grader.recording import bag

@@ -1,20 +1,28 @@
-"""Reads and writes the files of this package: JSON that follows a schema beside the module."""
+"""Reads and writes the files of this package: JSON that follows a schema beside the module.
+
+The error file `turtlesim-grader/error/v1` takes the place of a result where there is none.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
-from grader.errors import UsageError
-from grader.system import strict_json
+from grader.errors import GraderError, UsageError, Whose
+from grader.system import files, strict_json
 from grader.system.files import read_ours
 from grader.system.strict_json import Made
 from grader.text.message import Message, joined, msg, plain_text, reason
+from grader.text.strings import plain
 
 #: No file of ours is longer [bytes].
 MOST_BYTES = 2**26
+#: What the schemas of all versions of the error file begin with.
+ERROR_FAMILY = "turtlesim-grader/error/"
+ERROR_SCHEMA = f"{ERROR_FAMILY}v1"
 
 
 def validate(data: object, name: str, version: str) -> None:
@@ -103,3 +111,39 @@ def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
         return make(data)
     except ValueError as error:
         raise UsageError(joined([str(path), reason(error)], " ")) from None
+
+
+@dataclass(frozen=True)
+class ErrorResult:
+    """Why there is no result.
+
+    Attributes:
+        whose: whose turn it is. The submission has earned nothing where it is the student's;
+            otherwise nothing is known about it.
+        message: what was found, what was expected, what to do.
+        max_score: the exercise's points; None where it could not be loaded, or was not asked for.
+    """
+
+    whose: Whose
+    message: Message
+    max_score: float | None = None
+
+    @classmethod
+    def of(cls, error: GraderError, max_score: float | None) -> Self:
+        """Make the error of an exception."""
+        return cls(error.whose, error.message.map_texts(plain), max_score)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the error as its file has it."""
+        return {"schema": ERROR_SCHEMA, **with_phrases(self)}
+
+    @classmethod
+    def from_json(cls, data: Any) -> Self:
+        """Parse the error of a file."""
+        validate(data, "error", ERROR_SCHEMA)
+        values = {name: data[name] for name in ("whose", "message", "max_score")}
+        return typed(cls, values, data.get("phrases"))
+
+    def write(self, path: Path) -> None:
+        """Write the error file."""
+        files.write(path, text(self.to_json()))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.unknown import unless_unknown
+from grader.exercise.sentences import unless_unknown
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recordings
 from grader.scenes.cast.trace import CastTrace

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Final
 
 from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder
-from grader.submission.examining import commands, external, known
+from grader.submission.examining import commands, known
 from grader.submission.examining.launch_time import LaunchTime
 from grader.submission.examining.layout import Workspace
 from grader.submission.examining.steps import LIMITS, NotKnown, end_of, it
@@ -378,7 +378,7 @@ class LaunchRecord:
             return self.command(["xacro", model], "fail")
 
         share = get_package_share_directory
-        for node in external.nodes_of(package, file, arguments, share, expand):
+        for node in known.nodes_of(package, file, arguments, share, expand):
             self.node(node)
 
     def add_external(self, package: str, name: str) -> None:

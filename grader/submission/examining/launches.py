@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any, Final
 
-from grader.submission.examining import external, known
+from grader.submission.examining import known
 from grader.submission.examining.launch_record import SUFFIXES, LaunchRecord
 from grader.submission.examining.layout import DOUBLES, Installed, Workspace
 from grader.submission.examining.packages import is_description
@@ -121,7 +121,7 @@ class _Unknown:
             from launch import _core
 
             if (made := _core.submodule(name)) is not None:
-                return external.spec_of(made)
+                return known.spec_of(made)
             what = msg("imports {name}, which the grader does not have", name=name)
             raise NotKnown(it(what))
-        return external.module(name)
+        return known.module(name)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.exercise.unknown import unless_unknown
+from grader.exercise.sentences import unless_unknown
 from grader.exercise.verdict import Finding
 from grader.exercises.talker_listener.checks import launch
 from grader.recording.recording import Recording, Recordings, Run

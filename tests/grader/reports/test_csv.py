@@ -3,7 +3,7 @@ import io
 
 import pytest
 
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.json_file import ErrorResult
 from grader.reports import csv, read
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 
 from grader.errors import UsageError
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.json_file import ErrorResult
 from grader.reports import ErrorReport, read, render
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import FORMATS

@@ -8,7 +8,7 @@ from grader import judging
 from grader.cli import main
 from grader.errors import SubmissionError
 from grader.exercise.loading import load_exercise
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.json_file import ErrorResult
 from grader.recording.recording import Recordings
 from grader.reports import ErrorReport, Report, render
 from grader.text.message import msg

@@ -6,7 +6,7 @@ from grader.errors import SubmissionError
 from grader.recording.subject import Role
 from grader.run.opening import open_submission
 from grader.submission.program import EntryPoint
-from grader.submission.roles import roles_in
+from grader.submission.program_source import roles_in
 from tests.files import lay
 from tests.grader.submission.copies import GUARDED, NODE, below, found_in, refused
 
@@ -55,7 +55,7 @@ OTHERS = "class Node: ...\ndef Main(): ...\n"
 @pytest.mark.parametrize(
     ("files", "executable", "words"),
     [
-        (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "programs: a, b"),
+        (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "programs to start: a, b"),
         (package("spiral", f"a = {TARGET}", f"b = {TARGET}"), None, "--executable NAME"),
         (SPIRAL, "spirral", "no program spirral; it has: turtle_controller"),
         # a module is never taken from elsewhere
@@ -188,7 +188,7 @@ def test_of_several_scripts_the_one_that_has_what_the_exercise_names_is_started(
         with open_submission(tmp_path, **asked) as submission:
             assert submission.programs[0].executable == started
     else:
-        said = f"several programs: {', '.join(scripts)}. Expected one called talker"
+        said = f"several programs to start: {', '.join(scripts)}. Expected one called talker"
         with pytest.raises(SubmissionError, match=said), open_submission(tmp_path, **asked):
             pass
 

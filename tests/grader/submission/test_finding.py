@@ -7,7 +7,7 @@ import pytest
 from grader.errors import SubmissionError
 from grader.submission.answer import Inspection, SetUp, SetUpFacts
 from grader.submission.finding import find, find_evaluated
-from grader.submission.refusals import readable
+from grader.submission.reader import readable
 from grader.submission.request import Request
 from grader.submission.set_ups import Unevaluated
 from tests.files import lay

@@ -115,7 +115,7 @@ def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path):
 
 def test_several_files_to_start_are_listed(tmp_path):
     lay(tmp_path, {"a.py": GUARDED, "b.py": NODE, "helper.py": "X = 1\n"})
-    assert "several Python files to start: a.py, b.py. " in refused(tmp_path)
+    assert "several programs to start: a.py, b.py. " in refused(tmp_path)
     assert "no program c; it has: a.py, b.py" in refused(tmp_path, "c")
 
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from grader.submission.imports import read_imports
 from grader.submission.program import EntryPoint, Program, Script
+from grader.submission.program_source import read_imports
 from grader.submission.start import Imports
 from tests.files import lay
 

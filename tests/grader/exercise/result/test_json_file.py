@@ -3,7 +3,7 @@ import json
 import pytest
 
 from grader.errors import ExerciseError, SubmissionError
-from grader.exercise.result.error import ErrorResult
+from grader.exercise.result.json_file import ErrorResult
 from grader.system.strict_json import first_error
 
 ERROR = {
