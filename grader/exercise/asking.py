@@ -9,11 +9,10 @@ from __future__ import annotations
 import json
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.verdict import Finding, wrong_with
+from grader.exercise.verdict import Finding, as_json
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 from grader.system import limited, strict_json
 from grader.system.limited import LimitHit, WorkLimits
@@ -139,10 +138,10 @@ def _run(
     except BaseException as error:  # SystemExit too: a check must not end the others unjudged
         return {"say": "raised", "text": describe(function, error)}
     is_alone = isinstance(recordings, NominalAlone)
-    wrong = wrong_with(finding, 1 if is_alone else len(list(recordings)))
-    if wrong:
-        return {"say": "wrong", "text": wrong}
-    data = strict_json.to_json(replace(finding, share=float(finding.share)), strict_json.OURS)
+    try:
+        data = as_json(finding, 1 if is_alone else len(list(recordings)))
+    except (TypeError, ValueError) as error:
+        return {"say": "wrong", "text": str(error)}
     return {"say": "finding", "finding": data}
 
 

@@ -9,37 +9,29 @@ import json
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, dataclass, field, fields
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from grader.errors import ExerciseError
 from grader.exercise import places, policies
 from grader.exercise.cases import RunCase, read_cases
 from grader.exercise.check import Checks
-from grader.exercise.exercise import (
-    CPU,
-    INSPECTIONS,
-    INSPECTS,
-    PER_STUDENT,
-    Exercise,
-    Variation,
-    VariedRuns,
-)
+from grader.exercise.exercise import INSPECTIONS, INSPECTS, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
+from grader.exercise.policies import Amount, amount
 from grader.recording.recording import MOST_PROGRAMS
 from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
 from grader.system import content, extensions
 from grader.system.extensions import SCENES
-from grader.system.yaml_file import Mistake, check_known, expect, is_amount
-from grader.text.message import authored, msg
+from grader.system.yaml_file import Mistake, check_known, decoded, expect
+from grader.text.message import authored
 
 #: Where nothing is started, no time passes that could be limited.
 NO_LIMITS = Limits(0.0, 0.0, 0.0)
-LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
 MOST_RUNS = 100
 #: Says which hand-ins that name no exercise are for this one.
@@ -55,13 +47,60 @@ LONGEST_INTERFACES = 40_000
 #: What is expected of what is exchanged: each is a check.
 EXPECT = "expect"
 RUNS = "runs"
-#: A turtle that drives so many times as fast crosses the window in a tick or two.
-MOST_FACTOR = 100
-VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 #: Of an exercise, a program, a package.
 NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 #: A program's name, or a pattern of it: '*talker*'.
 _PROGRAM = re.compile(r"[A-Za-z0-9_*][\w.*-]*")
+
+
+def _a_program(name: str) -> str:
+    if not _PROGRAM.fullmatch(name):
+        raise ValueError(f"expected the name of a console script, found {name!r:.80}")
+    return name
+
+
+def _above_zero(number: float) -> float:
+    if not amount(number):
+        raise ValueError("expected a number above 0, found 0")
+    return float(number)
+
+
+_Program = Annotated[str, _a_program]
+_AboveZero = Annotated[float, _above_zero]
+
+
+@dataclass(frozen=True)
+class _Limits:
+    """`limits`, as `Limits` has them."""
+
+    first_motion_s: _AboveZero
+    rest_s: Amount
+    total_s: _AboveZero
+
+
+@dataclass(frozen=True)
+class _Fits:
+    """`fits`: see `Exercise`."""
+
+    files: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Plain:
+    """Keys of exercise.yaml whose values an exercise has as they are; see `Exercise`.
+
+    Attributes:
+        program: the only one of `programs`.
+    """
+
+    task: str = ""
+    looks_at_package: bool = False
+    inspections: tuple[str, ...] = ()
+    cpu_s: _AboveZero = math.inf
+    program: _Program | None = None
+    programs: tuple[_Program, ...] = ()
+    fits: _Fits = field(default_factory=_Fits)
+    varied_runs: VariedRuns = field(default_factory=VariedRuns)
 
 
 def build(data: dict[str, Any], place: Place) -> Exercise:
@@ -69,14 +108,11 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     scene, subject = _subject(data.get("scene", DEFAULT_SCENE))
     setting = _setting(data.get("setting"), subject, place)
     interfaces = _interfaces(data.get(INTERFACES), place)
-    limits = _limits(data) if isinstance(subject, Scene) else _without_clock(data, scene)
-    _check_words(data, scene, subject)
-    varied = _varied(data)
-    if isinstance(subject, Scene):
-        _check_varied(varied, subject, scene)
-    tolerances = data.get("tolerances") or {}
-    is_dict = isinstance(tolerances, dict)
-    expect(is_dict, ("tolerances",), "expected names with values, found {found}", tolerances)
+    named = {key.name for key in fields(_Plain)}
+    given = {key: value for key, value in data.items() if key in named and value is not None}
+    plain: _Plain = decoded(_Plain, given)
+    limits = _limits(data, plain, subject, scene)
+    tolerances = decoded(Mapping[str, Any], data.get("tolerances") or {}, "tolerances")
     cases = read_cases(data, interfaces, limits.total_s, has_cast=subject.has_cast)
     checks, heard = _checks(data, place, cases, interfaces, limits.total_s)
     cases = [each.hearing(heard) for each in cases]
@@ -87,27 +123,27 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     return Exercise(
         name=data["exercise"],
         limits=limits,
-        varied=varied,
+        varied=plain.varied_runs,
         points=points,
         tolerances=tolerances,
         checks=checks,
         scene=scene,
         setting=setting,
-        looks_at_package=data.get(INSPECTS, False),
-        inspections=_inspections(data, scene, subject),
-        cpu_s=_cpu_s(data.get(CPU)),
-        programs=_programs(data),
+        looks_at_package=plain.looks_at_package,
+        inspections=_inspections(plain, scene, subject),
+        cpu_s=plain.cpu_s,
+        programs=_programs(plain),
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, {SETTING: setting, **interfaces}, place.folder),
         visible=policies.visible(data.get("visible"), checks, points),
         late=policies.late(data.get("late"), round(sum(points.values()), 2)),
-        fits=_fits(data.get(FITS) or {}),
+        fits=plain.fits.files,
         interfaces=interfaces,
         cases=tuple(cases),
         is_to_end=any("exits" in each for each in data.get(EXPECT, {}).values()),
         title=authored(str(data["title"])),
-        task=authored(data.get("task", "")),
+        task=authored(plain.task),
     )
 
 
@@ -124,30 +160,16 @@ def _subject(name: object) -> tuple[str, Subject]:
     return name, load_subject(name)
 
 
-def _limits(data: Mapping[str, Any]) -> Limits:
-    if "limits" not in data:
-        raise Mistake((), "it has no 'limits'")
-    limits = _numbers(data, "limits", dict.fromkeys(LIMITS, 1.0))
-    missing = [key for key in LIMITS if key not in limits]
-    if missing:
-        raise Mistake(
-            ("limits",),
-            "{missing} is missing; there must be {limits}",
-            missing=missing[0],
-            limits=", ".join(LIMITS),
-        )
-    for key in ("first_motion_s", "total_s"):
-        if not limits[key]:
-            raise Mistake(("limits", key), "expected a number above 0, found 0")
-    return Limits(**{key: float(value) for key, value in limits.items()})
-
-
-def _without_clock(data: Mapping[str, Any], scene: str) -> Limits:
-    for part in ("limits", "varied_runs"):
-        if data.get(part):
-            raise Mistake(
-                (part,), "nothing is started in the scene {scene}: leave it out", scene=repr(scene)
-            )
+def _limits(data: Mapping[str, Any], plain: _Plain, subject: Subject, scene: str) -> Limits:
+    """Read when a run ends; check that its scene has such runs."""
+    if isinstance(subject, Scene):
+        limits = decoded(_Limits, data.get("limits"), "limits")
+        _check_varied(plain.varied_runs, subject, scene)
+        return Limits(**asdict(limits))
+    for key in ("limits", "varied_runs", INSPECTS):
+        if data.get(key):
+            what = "nothing is started in the scene {scene}: leave it out"
+            raise Mistake((key,), what, scene=repr(scene))
     return NO_LIMITS
 
 
@@ -164,12 +186,10 @@ def _sha256(data: Mapping[str, Any], texts: Mapping[str, str], folder: Path) -> 
 
 def _setting(where: Any, subject: Subject, place: Place) -> str:
     """Read the file that a scene is set up with; '' for none."""
-    is_file = where is None or isinstance(where, str)
-    expect(is_file, (SETTING,), "expected a file beside exercise.yaml, found {found}", where)
     setting = ""
     if where is not None:
         try:
-            setting = (place.folder / where).read_text(encoding="utf-8")
+            setting = (place.folder / str(where)).read_text(encoding="utf-8")
         except (OSError, ValueError) as error:
             raise Mistake(
                 (SETTING,), "cannot read {where}: {error}", where=where, error=str(error)
@@ -231,85 +251,23 @@ def _checks(
     return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s)
 
 
-def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
-    """Refuse a task, a program or a switch of another type."""
-    task, inspects = data.get("task", ""), data.get(INSPECTS, False)
-    expect(isinstance(task, str), ("task",), "expected a text, found {found}", task)
-    expect(
-        isinstance(inspects, bool), (INSPECTS,), "expected true or false, found {found}", inspects
-    )
-    if inspects and not isinstance(subject, Scene):
-        raise Mistake(
-            (INSPECTS,), "the scene {scene} does nothing else: leave it out", scene=repr(scene)
-        )
-
-
-def _programs(data: Mapping[str, Any]) -> tuple[str, ...]:
-    """Read the names of the console scripts that are started together, or of the one."""
-    one = data.get("program", "")
-    fits = isinstance(one, str) and (not one or _PROGRAM.fullmatch(one))
-    expect(fits, ("program",), "expected the name of a console script, found {found}", one)
-    several = data.get("programs", [one] if one else [])
-    fits = isinstance(several, list) and len({*map(str, several)}) == len(several) <= MOST_PROGRAMS
-    fits = fits and all(isinstance(each, str) and _PROGRAM.fullmatch(each) for each in several)
+def _programs(plain: _Plain) -> tuple[str, ...]:
+    """Return the names of the console scripts that are started together, or of the one."""
+    several = plain.programs
+    fits = len({*several}) == len(several) <= MOST_PROGRAMS
     what = "expected names of console scripts, each once, at most {n}; found {found}"
     expect(fits, ("programs",), what, several, n=MOST_PROGRAMS)
-    if one and "programs" in data:
+    if plain.program and several:
         raise Mistake(("programs",), "there is `program` already: leave one of them out")
-    return tuple(several)
+    return (plain.program,) if plain.program else several
 
 
-def _inspections(data: Mapping[str, Any], scene: str, subject: Subject) -> tuple[str, ...]:
+def _inspections(plain: _Plain, scene: str, subject: Subject) -> tuple[str, ...]:
     """The names of the inspectors that examine packages."""
-    given = data.get(INSPECTIONS, [])
-    known = extensions.points(extensions.INSPECTIONS)
-    is_known = isinstance(given, list) and all(isinstance(n, str) and n in known for n in given)
-    what = "expected a list of some of {names}, found {found}"
-    expect(is_known, (INSPECTIONS,), what, given, names=", ".join(known) or "none")
-    if given and isinstance(subject, Scene) and not data.get(INSPECTS, False):
+    check_known(plain.inspections, extensions.points(extensions.INSPECTIONS), (INSPECTIONS,))
+    if plain.inspections and isinstance(subject, Scene) and not plain.looks_at_package:
         raise Mistake((INSPECTIONS,), "no package is examined here without looks_at_package: true")
-    return tuple(given)
-
-
-def _cpu_s(given: Any) -> float:
-    if given is None:
-        return math.inf
-    is_above = is_amount(given) and bool(given)
-    expect(is_above, (CPU,), "expected a number above 0, found {found}", given)
-    return float(given)
-
-
-def _varied(data: Mapping[str, Any]) -> VariedRuns:
-    part = "varied_runs"
-    given = data.get(part) or {}
-    if not isinstance(given, dict):
-        return VariedRuns(**_numbers(data, part, VARIED))
-    numbers = {key: value for key, value in given.items() if key not in (PER_STUDENT, RUNS)}
-    switch = given.get(PER_STUDENT, False)
-    is_one = isinstance(switch, bool)
-    expect(is_one, (part, PER_STUDENT), "expected true or false, found {found}", switch)
-    runs = given.get(RUNS, [])
-    is_list = isinstance(runs, list) and all(isinstance(run, dict) for run in runs)
-    expect(is_list, (part, RUNS), "expected a list of ranges, found {found}", runs)
-    varied = VariedRuns(**_numbers({part: numbers}, part, VARIED))
-    return replace(varied, per_student=switch, runs=tuple(map(_variation, runs)))
-
-
-def _variation(given: Mapping[str, Any]) -> Variation:
-    """Read how a varied run differs: its start, and the ranges of its factors."""
-    at = ("varied_runs", RUNS)
-    check_known(given, ("start", "speed", "turn"), at)
-    start = given.get("start", "elsewhere")
-    is_start = start in ("elsewhere", "same")
-    expect(is_start, (*at, "start"), "expected elsewhere or same, found {found}", start)
-    for key in given.keys() - {"start"}:
-        value = given[key]
-        is_range = isinstance(value, list) and len(value) == 2 and all(map(is_amount, value))
-        fits = is_range and 0 < value[0] <= value[1] <= MOST_FACTOR
-        what = "expected two numbers, above 0, the lower first, such as [0.8, 0.9]; found {found}"
-        expect(fits, (*at, key), what, value)
-    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in given.items()}
-    return Variation(**values)
+    return plain.inspections
 
 
 def _check_varied(varied: VariedRuns, subject: Scene, scene: str) -> None:
@@ -342,20 +300,6 @@ def _check_varied(varied: VariedRuns, subject: Scene, scene: str) -> None:
         )
 
 
-def _numbers(data: Mapping[str, Any], part: str, examples: Mapping[str, float]) -> dict[str, Any]:
-    """A part of an exercise.yaml that holds numbers; whole ones where the example is whole."""
-    given = data.get(part) or {}
-    is_dict = isinstance(given, dict)
-    expect(is_dict, (part,), "expected names with numbers, found {found}", given)
-    check_known(given, examples, (part,))
-    for key, value in given.items():
-        is_whole = isinstance(examples[key], int)
-        fits = is_amount(value) and (not is_whole or value == int(value))
-        what = msg("a whole number") if is_whole else msg("a number")
-        expect(fits, (part, key), "expected {what} from 0, found {found}", value, what=what)
-    return {k: int(v) if isinstance(examples[k], int) else v for k, v in given.items()}
-
-
 def _starter(where: object, place: Place) -> Path | None:
     if where is None:
         return None
@@ -383,22 +327,11 @@ def _starter(where: object, place: Place) -> Path | None:
     return folder
 
 
-def _fits(given: Any) -> tuple[str, ...]:
-    expect(isinstance(given, dict), (FITS,), "expected names with lists, found {found}", given)
-    check_known(given, ("files",), (FITS,))
-    value = given.get("files", [])
-    is_list = isinstance(value, list) and all(isinstance(each, str) for each in value)
-    expect(is_list, (FITS, "files"), "expected a list of texts, found {found}", value)
-    return tuple(value)
-
-
 def _points(points: Any, checks: Checks) -> dict[str, float]:
     if not isinstance(points, dict) or not points:
         raise Mistake(("points",), "expected check names with points")
     check_known(points, [check.name for check in checks], ("points",), are_checks=True)
-    for check, value in points.items():
-        at = ("points", check)
-        expect(is_amount(value), at, "expected a number from 0, found {found}", value)
-    if not any(points.values()):
+    worth = {check: decoded(Amount, value, "points", check) for check, value in points.items()}
+    if not any(worth.values()):
         raise Mistake(("points",), "all are 0")
-    return {check: float(value) for check, value in points.items()}
+    return worth

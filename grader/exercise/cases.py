@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from grader.recording.subject import Endpoint, Role
-from grader.system.yaml_file import Mistake, expect
+from grader.system.yaml_file import Mistake, decoded, expect
 from grader.text.message import msg
 
 #: Scripted peers, topics that are recorded besides, arguments of the program; the cases.
@@ -143,7 +143,5 @@ def _cast(
 
 
 def _texts(data: Mapping[str, Any], key: str, at: tuple[str, ...]) -> tuple[str, ...]:
-    given = data.get(key, [])
-    is_list = isinstance(given, list) and all(isinstance(each, str) for each in given)
-    expect(is_list, (*at, key), "expected a list of texts, found {found}", given)
-    return tuple(given)
+    texts: tuple[str, ...] = decoded(tuple[str, ...], data.get(key, []), *at, key)
+    return texts

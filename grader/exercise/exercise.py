@@ -13,7 +13,7 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal, TypedDict
+from typing import Annotated, Any, Literal, TypedDict
 
 from grader.errors import ExerciseError
 from grader.exercise.cases import RunCase
@@ -22,6 +22,7 @@ from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
 from grader.recording.subject import Endpoint, Role, Start, Subject, load_subject
 from grader.scenes.scene import Limits, Scene
+from grader.system.strict_json import not_negative
 from grader.text.message import NOTHING, Message
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
@@ -46,7 +47,17 @@ class Opening(TypedDict, total=False):
     roles: tuple[Role, ...]
 
 
-Range = tuple[float, float]
+#: A turtle that drives so many times as fast crosses the window in a tick or two.
+MOST_FACTOR = 100
+
+
+def _a_range(ends: tuple[float, float]) -> tuple[float, float]:
+    if not 0 < ends[0] <= ends[1] <= MOST_FACTOR:
+        raise ValueError(f"expected two numbers above 0, the lower first, found {list(ends)}")
+    return ends
+
+
+Range = Annotated[tuple[float, float], _a_range]
 
 #: The package around a starter that is a program, and what stands in its files for names.
 _AROUND = Path(__file__).with_name("starter")
@@ -79,10 +90,10 @@ class VariedRuns:
             said of runs beyond `count` is not used.
     """
 
-    count: int = 0
-    seed: int = 0
-    nearest_m: float = 0.0
-    farthest_m: float = 0.0
+    count: Annotated[int, not_negative] = 0
+    seed: Annotated[int, not_negative] = 0
+    nearest_m: Annotated[float, not_negative] = 0.0
+    farthest_m: Annotated[float, not_negative] = 0.0
     per_student: bool = False
     runs: tuple[Variation, ...] = ()
 

@@ -13,14 +13,15 @@ from typing import Any
 
 from grader.errors import ExerciseError
 from grader.exercise import cases, places
-from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, RUNS, build
-from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, PER_STUDENT, Exercise
+from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, build
+from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.translated import read_translations, translate
 from grader.system.yaml_file import (
     Mistake,
     YamlFile,
     check_known,
+    decoded,
     did_you_mean,
     expect,
     is_amount,
@@ -196,21 +197,18 @@ def _read(path: Path) -> YamlFile:
 
 
 def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
-    """Merge edited values into the original; every key must exist there, with a like value."""
+    """Merge edited values into the original; tolerances must exist there, with like values."""
     merged = {**original, **edited}
     for part in ("limits", "tolerances", "varied_runs"):
-        if part not in merged:
-            continue
-        known, given = original.get(part) or {}, edited.get(part, {})
-        is_dict = isinstance(given, dict)
-        expect(is_dict, (part,), "expected names with numbers, found {found}", given)
-        # a switch and a list, which no original has to have
-        values = {key: value for key, value in given.items() if key not in (PER_STUDENT, RUNS)}
-        check_known(values, known, (part,))
-        for key, value in values.items():
-            example, fits = repr(known[key]), _alike(value, known[key])
-            expect(fits, (part, key), "expected e.g. {known}, found {found}", value, known=example)
-        merged[part] = {**known, **given}
+        if isinstance(edited.get(part), dict):
+            merged[part] = {**(original.get(part) or {}), **edited[part]}
+    known = original.get("tolerances") or {}
+    tolerances = decoded(Mapping[Any, Any], edited.get("tolerances", {}), "tolerances")
+    check_known(tolerances, known, ("tolerances",))
+    for key, value in tolerances.items():
+        at, example = ("tolerances", key), repr(known[key])
+        fits = _alike(value, known[key])
+        expect(fits, at, "expected e.g. {known}, found {found}", value, known=example)
     return merged
 
 

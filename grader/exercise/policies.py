@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from typing import Any, get_args
+from typing import Annotated, Any
 
 from grader.exercise.check import Checks
 from grader.exercise.verdict import Visible
-from grader.system.yaml_file import Mistake, check_known, expect, is_amount
-from grader.text.message import msg
+from grader.system.strict_json import not_negative
+from grader.system.yaml_file import Mistake, check_known, decoded
 
 _DAY = timedelta(days=1)
+
+
+def amount(number: Any) -> float:
+    """For `Annotated`: a number from 0."""
+    return float(not_negative(number))
+
+
+Amount = Annotated[float, amount]
 
 
 @dataclass(frozen=True)
@@ -45,9 +54,9 @@ class LatePolicy:
     """
 
     due: datetime
-    grace_min: float
-    per_day: float
-    most: float
+    grace_min: Amount = 0.0
+    per_day: Amount = 0.0
+    most: Amount = math.inf
 
     def deduction(self, at: datetime) -> Late:
         """Return what a submission at some time costs."""
@@ -62,8 +71,6 @@ class LatePolicy:
 
 # The keys of exercise.yaml ------------------------------------------------------------------------
 
-VISIBLE = get_args(Visible)
-LATE = ("due", "grace_min", "per_day", "most")
 _EXAMPLE = "2026-11-30T23:59:00+01:00"
 #: Of two checks the one with the higher number is shown later, or never.
 _SHOWN: Mapping[Visible, int] = {"now": 0, "points_only": 0, "after_due": 1, "never": 2}
@@ -75,22 +82,11 @@ def visible(given: object, checks: Checks, points: Mapping[str, float]) -> dict[
     Raises:
         Mistake: a name or a value is none, or a check would reveal one that is not shown yet.
     """
-    if given is None:
-        return {}
-    at, listed = ("visible",), ", ".join(VISIBLE)
-    if not isinstance(given, dict):
-        raise Mistake(
-            at,
-            "expected check names, each with one of {visible}; found {given}",
-            visible=listed,
-            given=repr(given),
-        )
-    check_known(given, [check.name for check in checks], at, are_checks=True)
-    for name, value in given.items():
-        fits, here = value in VISIBLE, (*at, name)
-        expect(fits, here, "expected one of {visible}; found {found}", value, visible=listed)
-    _check_order(given, checks, points)
-    return dict(given)
+    found = decoded(Mapping[str, Any], given or {}, "visible")
+    check_known(found, [check.name for check in checks], ("visible",), are_checks=True)
+    seen = {name: decoded(Visible, value, "visible", name) for name, value in found.items()}
+    _check_order(seen, checks, points)
+    return seen
 
 
 def _check_order(given: Mapping[str, Visible], checks: Checks, points: Mapping[str, float]) -> None:
@@ -120,23 +116,10 @@ def late(given: object, max_score: float) -> LatePolicy | None:
     """
     if given is None:
         return None
-    if not isinstance(given, dict) or "due" not in given:
-        example = f"due: {_EXAMPLE}, per_day: 10"
-        raise Mistake(
-            ("late",), "expected at least when it is due, e.g. {{{example}}}", example=example
-        )
-    check_known(given, LATE, ("late",))
-    for key, value in given.items():
-        if key != "due" and not is_amount(value):
-            raise Mistake(
-                ("late", key),
-                "expected a number of {what} from 0, e.g. 10; found {value}",
-                what=msg("minutes") if key == "grace_min" else msg("points"),
-                value=repr(value),
-            )
-    amounts: dict[str, Any] = {"grace_min": 0, "per_day": 0, "most": max_score, **given}
-    amounts = {key: float(value) for key, value in amounts.items() if key != "due"}
-    return LatePolicy(_due(given["due"]), **amounts)
+    if isinstance(given, dict) and "due" in given:
+        given = {"most": max_score, **given, "due": _due(given["due"]).isoformat()}
+    policy: LatePolicy = decoded(LatePolicy, given, "late")
+    return policy
 
 
 def _due(given: object) -> datetime:

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from numbers import Real
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from grader.system.strict_json import SPARSE
+from grader.system.strict_json import OURS, SPARSE, from_json, not_negative, to_json
 from grader.text.message import NOTHING, Message, plain_text
 
 Status = Literal["passed", "failed", "not_judged"]
 #: What students see of a check: all of it; all of it, when the exercise is over, and until then
 #: nothing; title, verdict and points; nothing.
 Visible = Literal["now", "after_due", "points_only", "never"]
+
+
+def _a_share(number: float) -> float:
+    if not -1e-9 <= number <= 1 + 1e-9:
+        raise ValueError(f"expected a number from 0 to 1, found {number!r}")
+    return number
 
 
 @dataclass(frozen=True)
@@ -29,12 +34,12 @@ class Evidence:
         tick: when, as the scene counts its steps; None where it counts none.
     """
 
-    time_s: float
+    time_s: Annotated[float, not_negative]
     note: Message
     x: float | None = field(default=None, metadata=SPARSE)
     y: float | None = field(default=None, metadata=SPARSE)
-    run: int = 0
-    tick: int | None = field(default=None, metadata=SPARSE)
+    run: Annotated[int, not_negative] = 0
+    tick: Annotated[int, not_negative] | None = field(default=None, metadata=SPARSE)
 
     def __post_init__(self) -> None:
         """Convert a plain text to a message."""
@@ -81,7 +86,7 @@ class Finding:
         expected: what curves should be like, for their plots; it decides nothing.
     """
 
-    share: float
+    share: Annotated[float, _a_share]
     rationale: Message
     help: Message = NOTHING
     evidence: tuple[Evidence, ...] = ()
@@ -142,64 +147,21 @@ def _convert_texts(made: object, *names: str) -> None:
             object.__setattr__(made, name, plain_text(text))
 
 
-def wrong_with(finding: object, runs: int) -> str:
-    """Say why what a check returned is no finding about so many runs; '' if it is one."""
+def as_json(finding: object, runs: int) -> Any:
+    """Return what a check returned as JSON, which `from_json` makes a `Finding` of.
+
+    Raises:
+        TypeError, ValueError: it is no finding about so many runs.
+    """
     if not isinstance(finding, Finding):
-        return f"returns a {type(finding).__name__}; expected a Finding"
-    if wrong := _wrong_with_fields(finding):
-        return wrong
-    for part, kind in (("evidence", Evidence), ("expected", Expected)):
-        items = getattr(finding, part)
-        if not isinstance(items, tuple):
-            return f"{part}: expected a tuple, found a {type(items).__name__}"
-        for item in items:
-            if not isinstance(item, kind):
-                return f"{part}: expected {kind.__name__}, found a {type(item).__name__}"
-            if wrong := _wrong_with_fields(item):
-                return f"{part}: {wrong}"
-    for item in finding.evidence:
+        raise TypeError(f"returns a {type(finding).__name__}; expected a Finding")
+    # numbers of numpy become Python's; no others are JSON's than finite ones
+    data = json.loads(json.dumps(to_json(finding, OURS), default=float, allow_nan=False))
+    for item in from_json(Finding, data, OURS).evidence:
         if (item.x is None) != (item.y is None):
-            return f"evidence: expected both x and y, or none, found {item.x!r} and {item.y!r}"
+            raise ValueError(
+                f"evidence: expected x and y, or none, found {item.x!r} and {item.y!r}"
+            )
         if item.run >= runs:
-            return f"evidence: there is no run {item.run}; there are {runs}, from 0 on"
-    return ""
-
-
-def _wrong_with_fields(made: Finding | Evidence | Expected) -> str:
-    for name, (wanted, fits) in _FIELDS.items():
-        value = getattr(made, name, None)
-        if hasattr(made, name) and not fits(value):
-            return f"{name}: expected {wanted}, found {value!r}"
-    return ""
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
-
-
-def _is_finite(value: Any) -> bool:  # JSON has no other numbers
-    return isinstance(value, int | float) and _is_number(value) and math.isfinite(value)
-
-
-def _is_whole(value: Any) -> bool:
-    return type(value) is int and value >= 0
-
-
-def _is_pair(value: Any) -> bool:
-    is_pair = isinstance(value, tuple) and len(value) == 2
-    return value is None or (is_pair and all(map(_is_finite, value)))
-
-
-_FINITE = "a finite number"
-_TEXT = ("a text", lambda v: isinstance(v, Message))
-#: Field of a finding, or of what is in it -> what it has to be, in words and as a function.
-_FIELDS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
-    "share": ("a number from 0 to 1", lambda v: _is_number(v) and -1e-9 <= float(v) <= 1 + 1e-9),
-    **dict.fromkeys(("rationale", "help", "note", "curve", "text"), _TEXT),
-    "judged": ("True or False", lambda v: type(v) is bool),
-    "tick": ("a whole number from 0", lambda v: v is None or _is_whole(v)),
-    "run": ("a whole number from 0", _is_whole),
-    "time_s": (_FINITE, lambda v: _is_finite(v) and v >= 0),
-    **dict.fromkeys(("x", "y"), (_FINITE, lambda v: v is None or _is_finite(v))),
-    **dict.fromkeys(("within", "beyond"), ("two finite numbers", _is_pair)),
-}
+            raise ValueError(f"evidence: there is no run {item.run}; there are {runs}, from 0 on")
+    return data

@@ -13,9 +13,12 @@ from typing import Any
 import yaml
 
 from grader.errors import ExerciseError
+from grader.system import strict_json
 from grader.text.message import Message, joined, msg
 from grader.text.strings import nearest
 
+#: A file of data is an author's: its texts may be long.
+_BOUNDS = strict_json.OURS._replace(entries=5000)
 #: The keys that lead to a value in a file.
 Keys = tuple[str, ...]
 
@@ -142,6 +145,21 @@ def expect(fits: object, keys: Keys, wanted: str, found: object, **values: Any) 
     """
     if not fits:
         raise Mistake(keys, wanted, found=repr(found), **values)
+
+
+def decoded(kind: Any, value: Any, *keys: str) -> Any:
+    """Decode the value at some keys by annotations; see `strict_json`.
+
+    Raises:
+        Mistake: it does not fit; its keys lead to the part that does not.
+    """
+    try:
+        return strict_json.from_json(kind, value, _BOUNDS)
+    except ValueError as error:
+        what = str(error)
+    while isinstance(value, dict) and (key := what.partition(": ")[0]) in value:
+        keys, value, what = (*keys, key), value[key], what.partition(": ")[2]
+    raise Mistake(keys, msg("{what}", what=what))
 
 
 def check_known(

@@ -9,10 +9,8 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from grader.exercise.comparing import is_number, is_range
 from grader.scenes.cast import script
-from grader.system import strict_json
-from grader.system.strict_json import OURS, not_negative
-from grader.system.yaml_file import Mistake, expect
-from grader.text.message import msg
+from grader.system.strict_json import not_negative
+from grader.system.yaml_file import decoded, expect
 
 #: The names that a template may use; None for any: fields that are only known in the run.
 Names = Mapping[str, Set[str] | None]
@@ -309,10 +307,7 @@ def parse(values: Any, at: tuple[str, ...]) -> Expectation:
     kinds = [kind for kind in KINDS if isinstance(values, dict) and kind in values]
     what = "expected one of {kinds}, found {found}"
     expect(bool(kinds), at, what, values, kinds=", ".join(KINDS))
-    try:
-        made: Expectation = strict_json.from_json(KINDS[kinds[0]], values, OURS)
-    except ValueError as error:
-        raise Mistake(at, msg("{what}", what=str(error))) from None
+    made: Expectation = decoded(KINDS[kinds[0]], values, *at)
     for key, known in made.names.items():
         if key == "log" and not (getattr(made, "each", "") or getattr(made, "heard", "")):
             known = set()

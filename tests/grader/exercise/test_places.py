@@ -120,10 +120,13 @@ def test_a_mistake_in_its_code_is_told_with_the_file(tmp_path, checks, words):
     [
         ({"exercise": "square"}, "'square' is the name of an installed exercise"),
         ({"exercise": ["a"]}, "exercise: expected a name such as my_exercise, found ['a']"),
-        ({"limits": {"rest_s": 1}}, "limits: first_motion_s is missing"),
-        ({"limits": {"rest_s": "x"}}, "limits: rest_s: expected a number from 0, found 'x'"),
-        ({"varied_runs": [1]}, "varied_runs: expected names with numbers"),
-        ({"tolerances": [1]}, "tolerances: expected names with values"),
+        (
+            {"limits": {"rest_s": 1}},
+            "rest_s, total_s, found {'rest_s': 1}",
+        ),
+        ({"limits": 5}, "limits: expected an object of first_motion_s, rest_s, total_s, found 5"),
+        ({"varied_runs": [1]}, "varied_runs: expected an object of count, seed"),
+        ({"tolerances": [1]}, "tolerances: expected an object, found [1]"),
         ({"points": {"fly": 1}}, "points: no check is named 'fly'; there are moves"),
         ({"scene": "moon"}, f"scene: expected one of {SCENES}, found 'moon'"),
         ({"points": None}, "has no 'points'"),

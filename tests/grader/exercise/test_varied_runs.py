@@ -35,10 +35,16 @@ def test_the_seed_draws_factors_from_the_ranges_and_the_place_of_the_nominal_run
 @pytest.mark.parametrize(
     ("runs", "words"),
     [
-        ("fast", "varied_runs: runs: expected a list of ranges"),
-        ([{"fast": 1}], "varied_runs: runs: unknown 'fast'"),
-        ([{"start": "home"}], "varied_runs: runs: start: expected elsewhere or same"),
-        ([{"speed": 2}], "varied_runs: runs: speed: expected two numbers"),
+        ("fast", "varied_runs: runs: expected a list of 5000 at most"),
+        (
+            [{"fast": 1}],
+            "varied_runs: runs: expected an object of start, speed, turn, found",
+        ),
+        (
+            [{"start": "home"}],
+            "varied_runs: runs: start: expected one of elsewhere, same",
+        ),
+        ([{"speed": 2}], "varied_runs: runs: speed: expected a list of 5000"),
         ([{"turn": [0.9, 0.8]}], "varied_runs: runs: turn: expected two numbers"),
         ([{"turn": [0, 1]}], "varied_runs: runs: turn: expected two numbers"),
     ],
