@@ -30,11 +30,10 @@ from grader.submission.safe_members import (
     ListTooLong,
     Member,
     Report,
-    TooMuch,
     refuse,
     write,
 )
-from grader.text.message import NOTHING, Message, as_message, msg, plain_text
+from grader.text.message import NOTHING, Message, as_message, msg, reason
 from grader.text.strings import shown
 
 # damage as an OSError: bz2's and gzip's have no number, EINVAL is a position before the file's
@@ -72,15 +71,8 @@ def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -
             "{name} is empty (0 bytes). {pack_again}", name=name, pack_again=PACK_AGAIN
         )
     if size > budget.limits.most_bytes:
-        raise TooMuch(
-            "{name} has more than {max_bytes:g} MB, the limit for a submission. "
-            "Leave out recordings, videos and virtual environments, and pack it "
-            "again.",
-            name=name,
-            max_bytes=budget.limits.most_bytes / 1e6,
-        )
+        raise budget.too_large(name)
     is_zip = archive.suffix.lower() == ".zip"
-    kind = "zip" if is_zip else "tar"
     try:
         with (
             _opened_zip(archive, budget.limits)
@@ -88,38 +80,17 @@ def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -
             else _opened_tar(archive, into.with_suffix(".tar"), budget.limits)
         ) as members:
             write(name, members, into, budget, report)
-    except ListTooLong as error:
-        raise SubmissionError(
-            "{name} lists too many files, or too long names: {error}. {pack_again}",
-            name=name,
-            error=error.args[0],
-            pack_again=PACK_AGAIN,
-        ) from error
-    except NotImplementedError as error:
-        raise SubmissionError(
-            "{name} is packed in a way that cannot be read here ({why}). {pack_again}",
-            name=name,
-            why=shown(str(error)),
-            pack_again=PACK_AGAIN,
-        ) from error
-    except DAMAGED as error:
-        raise _damaged(
-            name, kind, as_message(shown(str(error))) or msg("it ends too early")
-        ) from error
-    except OSError as error:
-        if error.errno not in _DAMAGED_ERRNOS:
+    except (ListTooLong, NotImplementedError, *DAMAGED, OSError) as error:
+        if isinstance(error, OSError) and error.errno not in _DAMAGED_ERRNOS:
             raise
-        raise _damaged(name, kind, plain_text(shown(error.strerror or str(error)))) from error
-
-
-def _damaged(name: str, kind: str, why: Message) -> SubmissionError:
-    return SubmissionError(
-        "{name} cannot be unpacked as a {kind} file: {why}. {pack_again}",
-        name=name,
-        kind=kind,
-        why=why,
-        pack_again=PACK_AGAIN,
-    )
+        text = getattr(error, "strerror", None) or reason(error)
+        raise SubmissionError(
+            "{name} cannot be unpacked as a {kind} file: {why}. {pack_again}",
+            name=name,
+            kind="zip" if is_zip else "tar",
+            why=as_message(text).map_texts(shown) or msg("it ends too early"),
+            pack_again=PACK_AGAIN,
+        ) from error
 
 
 # Its members, read without trusting its headers ------------------------------------------------

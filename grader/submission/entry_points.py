@@ -270,21 +270,11 @@ def _no_module(
     nodes = (file for file in found if file.name not in ("setup.py", "__init__.py"))
     others = [submitted.called(file) for file in nodes]
     meant = list(dict.fromkeys(nearest(wanted, others) + same_name))
-    as_text = expected.with_name(f"{expected.name}.txt")
-    if as_text.is_file():
-        return SubmissionError(
-            "{starts}, but there is no file {wanted}. There is {found}: rename it to {name}, "
-            "without .txt.",
-            starts=_starts(submitted, script),
-            wanted=wanted,
-            found=submitted.called(as_text),
-            name=expected.name,
-        )
-    there = (
-        msg("Near: {names}.", names=listed(meant))
-        if meant
-        else msg("Python files: {names}.", names=listed(others) or msg("none"))
-    )
+    there = msg("Python files: {names}.", names=listed(others) or msg("none"))
+    if (as_text := expected.with_name(f"{expected.name}.txt")).is_file():
+        there = msg("Near: {names}.", names=submitted.called(as_text))
+    elif meant:
+        there = msg("Near: {names}.", names=listed(meant))
     return SubmissionError(
         "{starts}, but there is no file {wanted}. {there} Correct the entry "
         "point, or the name or place of the file.",

@@ -243,17 +243,13 @@ def _wrong_order_or_files(
         if is_inside and file.is_file():
             continue
         names = sorted(other.name for other in file.parent.glob("*")) if is_inside else []
-        if near := nearest(PurePath(each).name, names):
-            yield msg(
-                "{file} lists {path}, and there is no such file, only {near}. Correct the name.",
-                **words,
-                path=shown(each),
-                near=shown(near[0]),
-            )
+        near = nearest(PurePath(each).name, names)
+        only = msg(", only {near}", near=shown(near[0])) if near else NOTHING
         yield msg(
-            "{file} lists {path}, and there is no such file. Correct its name.",
+            "{file} lists {path}, and there is no such file{only}. Correct its name.",
             **words,
             path=shown(each),
+            only=only,
         )
 
 

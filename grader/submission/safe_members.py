@@ -145,13 +145,16 @@ class Budget:
         """
         self._bytes_left -= count
         if self._bytes_left < 0:
-            raise TooMuch(
-                "{name} unpacks to more than {all_bytes:g} MB, the limit for a "
-                "submission. Leave out recordings, videos and virtual environments, and"
-                " pack it again.",
-                name=name,
-                all_bytes=self.limits.most_bytes / 1e6,
-            )
+            raise self.too_large(name)
+
+    def too_large(self, name: str) -> TooMuch:
+        """The refusal of an archive of this name, which has more bytes, packed or unpacked."""
+        return TooMuch(
+            "{name} holds more than {all_bytes:g} MB, the limit for a submission. Leave out "
+            "recordings, videos and virtual environments, and pack it again.",
+            name=name,
+            all_bytes=self.limits.most_bytes / 1e6,
+        )
 
     def count_files(self, name: str, count: int) -> None:
         """Count files that an archive holds.

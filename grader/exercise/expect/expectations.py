@@ -279,22 +279,18 @@ class ExpectedExit(Expectation):
 
 #: The key that an entry is known by -> its class.
 KINDS: Final[Mapping[str, type[Expectation]]] = {
-    **{
-        "node": ExpectedNode,
-        "topic": ExpectedTopic,
-        "log": ExpectedLog,
-        "call": ExpectedAnswer,
-        "served": ExpectedRequest,
-        "goal": ExpectedOutcome,
-    },
-    **{
-        "sends": ExpectedGoal,
-        "got": ExpectedReceipt,
-        "parameter": ExpectedParameters,
-        "transform": ExpectedTransform,
-        "interface": ExpectedInterface,
-        "exits": ExpectedExit,
-    },
+    "node": ExpectedNode,
+    "topic": ExpectedTopic,
+    "log": ExpectedLog,
+    "call": ExpectedAnswer,
+    "served": ExpectedRequest,
+    "goal": ExpectedOutcome,
+    "sends": ExpectedGoal,
+    "got": ExpectedReceipt,
+    "parameter": ExpectedParameters,
+    "transform": ExpectedTransform,
+    "interface": ExpectedInterface,
+    "exits": ExpectedExit,
 }
 
 

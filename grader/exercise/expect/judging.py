@@ -43,8 +43,8 @@ PART: Final = 0.5
 STEPS_FOR_ALL: Final = 2_000_000
 #: In real time, how much later something may be [s], and how far a rate may be off.
 REAL_LATE_S, REAL_RATE = 1.0, 0.3
-_DURABILITY: Final = {"transient_local": 1, "volatile": 2}
-_RELIABILITY: Final = {"reliable": 1, "best_effort": 2}
+_DURABILITY: Final = {1: "transient_local", 2: "volatile"}
+_RELIABILITY: Final = {1: "reliable", 2: "best_effort"}
 _LEVELS: Final = {"debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 #: So many lines are compared with one that is missing; so many characters of a name are shown.
 SEARCHED, LONGEST_NAME = 100, 200
@@ -203,6 +203,13 @@ def _no_such(name: str, events: Sequence[Event], none: Message, some: Message) -
     return Lacks(some.given(name=name, names=listed(names)), help_)
 
 
+def _of_type(name: str, found: str, right: str, call: str) -> Lacks:
+    return Lacks(
+        msg("{name} has the type {found}, expected {type}.", name=name, found=found, type=right),
+        msg("Look at what {call} gets.", call=call),
+    )
+
+
 def _topic(trace: CastTrace, wanted: e.ExpectedTopic, _: Recording) -> Message:
     topic = absolute(wanted.topic)
     writers = _endpoints(trace, "topic", writes=True)
@@ -216,11 +223,7 @@ def _topic(trace: CastTrace, wanted: e.ExpectedTopic, _: Recording) -> Message:
         )
     kinds = sorted({event["type"] for event in own})
     if wanted.type and wanted.type not in kinds:
-        raise Lacks(
-            msg("{topic} has the type {found}, expected {type}.",
-                topic=topic, found=kinds[0], type=wanted.type),
-            msg("Look at what create_publisher gets."),
-        )  # fmt: skip
+        raise _of_type(topic, kinds[0], wanted.type, "create_publisher")
     messages = [m for m in trace.sent(topic) if wanted.begin <= m.time_ns / 1e9 <= wanted.end]
     if 2 < len(messages) < wanted.count.at_least:
         _expect_rate(trace, wanted, topic, messages, 0.0)
@@ -335,17 +338,17 @@ def _expect_quality(
 ) -> None:
     help_ = msg("Look at the QoSProfile of the publisher.")
     for event in own:
-        for name, codes in (("reliability", _RELIABILITY), ("durability", _DURABILITY)):
+        offered = {
+            "reliability": _RELIABILITY.get(event["reliability"], "?"),
+            "durability": _DURABILITY.get(event["durability"], "?"),
+            "depth": event["depth"] or wanted.depth,  # 0: DDS does not tell it
+        }
+        for name, found in offered.items():
             right = getattr(wanted, name)
-            if right and event[name] != codes[right]:
-                found = next((word for word, code in codes.items() if code == event[name]), "?")
-                text = msg("{topic} has the {name} {found}, expected {right}.")
+            if right and found != right:
                 values = {"topic": topic, "name": name, "found": found, "right": right}
-                raise Lacks(text.given(**values), help_, None, share)
-        if wanted.depth and event["depth"] not in (0, wanted.depth):  # DDS does not tell it
-            text = msg("{topic} has the depth {found}, expected {right}.")
-            values = {"topic": topic, "found": event["depth"], "right": wanted.depth}
-            raise Lacks(text.given(**values), help_, None, share)
+                text = msg("{topic} has the {name} {found}, expected {right}.", **values)
+                raise Lacks(text, help_, None, share)
 
 
 def _got(trace: CastTrace, wanted: e.ExpectedReceipt, _: Recording) -> Message:
@@ -524,11 +527,7 @@ def no_service(trace: CastTrace, service: str, kind: str) -> Lacks:
     servers = _endpoints(trace, "request", writes=False)
     own = [event["type"] for event in servers if event["channel"] == f"request {service}"]
     if own:
-        return Lacks(
-            msg("{service} has the type {found}, expected {type}.",
-                service=service, found=own[0], type=kind),
-            msg("Look at what create_service gets."),
-        )  # fmt: skip
+        return _of_type(service, own[0], kind, "create_service")
     return _no_such(
         service,
         servers,
@@ -754,15 +753,16 @@ def _exits(trace: CastTrace, wanted: e.ExpectedExit, recording: Recording) -> Me
 
 
 _JUDGES: Final[Mapping[type, Callable[[CastTrace, Any, Recording], Message]]] = {
-    **{
-        e.ExpectedNode: _node,
-        e.ExpectedInterface: _interface,
-        e.ExpectedTopic: _topic,
-        e.ExpectedLog: _log,
-        e.ExpectedReceipt: _got,
-        e.ExpectedAnswer: _call,
-        e.ExpectedRequest: _served,
-    },
-    **{e.ExpectedOutcome: _goal, e.ExpectedGoal: _sends, e.ExpectedParameters: _parameter},
-    **{e.ExpectedTransform: _transform, e.ExpectedExit: _exits},
+    e.ExpectedNode: _node,
+    e.ExpectedInterface: _interface,
+    e.ExpectedTopic: _topic,
+    e.ExpectedLog: _log,
+    e.ExpectedReceipt: _got,
+    e.ExpectedAnswer: _call,
+    e.ExpectedRequest: _served,
+    e.ExpectedOutcome: _goal,
+    e.ExpectedGoal: _sends,
+    e.ExpectedParameters: _parameter,
+    e.ExpectedTransform: _transform,
+    e.ExpectedExit: _exits,
 }

@@ -52,15 +52,9 @@ FOLLOWED: Final = (
     *("PushROSNamespace", "PushRosNamespace", "PushEnvironment", "PopEnvironment"),
     *("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable"),
     *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetEnvironment"),
-    *(
-        "ROSTimer",
-        "UnregisterEventHandler",
-        "ResetLaunchConfigurations",
-        "SetLaunchConfiguration",
-        "SetParameter",
-    ),
-    *("SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime", "TimerAction"),
-    "UnsetLaunchConfiguration",
+    *("ROSTimer", "UnregisterEventHandler", "ResetLaunchConfigurations", "SetLaunchConfiguration"),
+    *("SetParameter", "SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime"),
+    *("TimerAction", "UnsetLaunchConfiguration"),
 )
 #: Where a context has the launch file that is evaluated.
 _FILE: Final = "file_that_is_evaluated"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import errno
 import os
 import re
@@ -21,6 +20,7 @@ from grader.submission.examining.packages import SourcePackage
 from grader.submission.examining.setup_call import evaluate
 from grader.submission.examining.steps import Ended, attempt, it
 from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.python_source import read_source
 from grader.submission.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
 from grader.text.message import NOTHING, Message, msg
 
@@ -242,24 +242,11 @@ def _of(path: Path, file: str, function: str) -> tuple[Message, str, bool]:
         text = safe_files.read(path, 1_000_000).decode("utf-8-sig", "replace")
     except OSError:
         return msg("{file} cannot be read", file=file), file, False
-    says = "JointState" in text or "joint_states" in text
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return msg("{file} does not parse", file=file), file, says
-    names: set[str] = set()
-    for node in ast.walk(tree):
-        match node:
-            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
-                names.add(node.name)
-            case ast.Assign():
-                names.update(each.id for each in node.targets if isinstance(each, ast.Name))
-            case ast.Import() | ast.ImportFrom():
-                names.update(alias.asname or alias.name for alias in node.names)
+    says, source = "JointState" in text or "joint_states" in text, read_source(path)
     first = function.split(".")[0]
-    if first in names:
-        return NOTHING, file, says
-    return msg("{file} has no {name}", file=file, name=first), file, says
+    if source.surely_lacks(first):
+        return msg("{file} has no {name}", file=file, name=first), file, says
+    return NOTHING if source.parses else msg("{file} does not parse", file=file), file, says
 
 
 @dataclass(frozen=True)

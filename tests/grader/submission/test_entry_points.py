@@ -64,7 +64,7 @@ OTHERS = "class Node: ...\ndef Main(): ...\n"
             package("spiral", "x = spiral.turtle_controler:main"),
             *(None, "no file spiral/turtle_controler.py. Near: spiral/turtle_controller.py."),
         ),
-        (TEXT, None, "turtle_controller.py.txt: rename it to turtle_controller.py, without .txt."),
+        (TEXT, None, "Near: spiral/turtle_controller.py.txt."),
         (
             SPIRAL | {"spiral/turtle_controller.py": OTHERS},
             *(None, "turtle_controller.py defines no function main (it defines: Main, Node)"),

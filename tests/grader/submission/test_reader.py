@@ -157,7 +157,7 @@ def test_600_000_members_are_refused_before_any_is_looked_at(tmp_path):
     archive.write_bytes(entry * 600_000 + end)
     assert opened(archive) == (
         "refused",
-        "a.zip lists too many files, or too long names: its list has more than 6 MB. Pack your .py "
+        "a.zip cannot be unpacked as a zip file: its list has more than 6 MB. Pack your .py "
         "file or package folder into a new .zip and hand that in.",
     )
 
