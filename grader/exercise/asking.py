@@ -28,10 +28,6 @@ LIMITS = WorkLimits(cpu_s=60.0, wall_s=180.0)
 class NoFinding(Exception):
     """A check raised an exception, or returned no finding; the text says what and where."""
 
-    def __init__(self, text: str, *, was_raised: bool) -> None:
-        super().__init__(text)
-        self.was_raised = was_raised
-
 
 class NotReached(Exception):
     """A check has no finding since one, `by`, exceeded a limit; `what` goes on from its name."""
@@ -69,8 +65,8 @@ class Answers:
                 raise NotOver
             case "limit":
                 raise NotReached(Message.parse(answer["text"]), name)
-            case "raised" | "wrong":
-                raise NoFinding(answer["text"], was_raised=answer["say"] == "raised")
+            case "wrong":
+                raise NoFinding(answer["text"])
         raise self.not_reached
 
 
@@ -136,12 +132,12 @@ def _run(
     except RecursionError:
         return {"say": "limit", "text": limited.TOO_DEEP.serialise()}
     except BaseException as error:  # SystemExit too: a check must not end the others unjudged
-        return {"say": "raised", "text": describe(function, error)}
+        return {"say": "wrong", "text": describe(function, error)}
     is_alone = isinstance(recordings, NominalAlone)
     try:
         data = as_json(finding, 1 if is_alone else len(list(recordings)))
     except (TypeError, ValueError) as error:
-        return {"say": "wrong", "text": str(error)}
+        return {"say": "wrong", "text": f"{Path(function.__code__.co_filename).name}: {error}"}
     return {"say": "finding", "finding": data}
 
 

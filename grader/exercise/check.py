@@ -10,7 +10,6 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from grader.errors import CheckFailed
@@ -221,7 +220,11 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
             ),
         )
     except NoFinding as error:
-        raise CheckFailed(_failure(check, error)) from error
+        raise CheckFailed(
+            "the check {check!r} failed itself, so nothing was judged: {error}",
+            check=check.name,
+            error=str(error),
+        ) from error
     if not finding.judged:
         return not_judged(finding.rationale, finding.help)
     share = min(max(float(finding.share), 0.0), 1.0)
@@ -234,21 +237,6 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
         help=NOTHING if passed else finding.help,
         evidence=finding.evidence,
         expected=finding.expected,
-    )
-
-
-def _failure(check: Check, error: NoFinding) -> Message:
-    if error.was_raised:
-        return msg(
-            "the check {check!r} failed itself, so nothing was judged: {error}",
-            check=check.name,
-            error=str(error),
-        )
-    return msg(
-        "the check {check!r} returned what it should not, so nothing was judged: {file}: {error}",
-        check=check.name,
-        file=Path(check.function.__code__.co_filename).name,
-        error=str(error),
     )
 
 

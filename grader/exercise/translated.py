@@ -21,7 +21,7 @@ from typing import Any
 
 from grader.errors import ExerciseError
 from grader.exercise.exercise import Exercise
-from grader.system.yaml_file import Keys, Mistake, YamlFile, check_known, expect, read_yaml
+from grader.system.yaml_file import Keys, YamlFile, check_known, decoded, expect, read_yaml
 from grader.text.translations import ENGLISH, LANGUAGES
 
 OF_ALL = ("title", "task")
@@ -83,24 +83,16 @@ def _of_check(given: object, at: Keys) -> dict[str, str]:
 
 def _named(given: object, at: Keys, known: Collection[str]) -> Mapping[str, Any]:
     """Return the mapping at some keys, each name of which has to be known."""
-    if given is None:
-        return {}
-    if not isinstance(given, dict):
-        raise Mistake(
-            at,
-            "expected some of {names}, each with its text; found {found}",
-            names=", ".join(known),
-            found=repr(given),
-        )
-    check_known(given, known, at)
-    return given
+    texts: dict[str, Any] = decoded(Mapping[str, Any], {} if given is None else given, *at)
+    check_known(texts, known, at)
+    return texts
 
 
 def _texts(given: object, at: Keys, known: Collection[str]) -> dict[str, str]:
     return {name: _text(value, (*at, name)) for name, value in _named(given, at, known).items()}
 
 
-def _text(given: Any, at: Keys) -> str:
-    is_text = isinstance(given, str) and given.strip()
-    expect(is_text, at, "expected a text, found {found}", given)
-    return str(given)
+def _text(given: object, at: Keys) -> str:
+    text: str = decoded(str, given, *at)
+    expect(text.strip(), at, "expected a text, found {found}", given)
+    return text

@@ -246,10 +246,7 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
             try:
                 finding = answered(name)
             except NoFinding as error:
-                text = error.args[0]
-                faults.append(
-                    Fault(name, msg("raises {error}", error=text) if error.was_raised else text)
-                )
+                faults.append(Fault(name, plain_text(str(error))))
                 return Finding(0, plain_text("The check found nothing."))
             except NotReached as hit:
                 is_whole = False

@@ -88,8 +88,8 @@ def test_a_verdict_takes_the_words_of_its_title_with_it(tmp_path):
 @pytest.mark.parametrize(
     ("texts", "words"),
     [
-        ("French", ": expected some of title, task, checks, tolerances, each with its text; found"),
-        (["x"], ": expected some of title, task, checks, tolerances"),
+        ("French", ": expected an object, found 'French'"),
+        (["x"], ": expected an object, found"),
         ({"titel": "x"}, ": unknown 'titel'; did you mean 'title'?"),
         ({"title": 3}, ", line 1: title: expected a text, found 3"),
         ({"title": " "}, ", line 1: title: expected a text, found ' '"),

@@ -347,14 +347,23 @@ class InvalidPythonLaunchFileError(Exception):
     pass
 
 
-class PythonLaunchDescriptionSource(LaunchDescriptionSource):
+class _FileSource(LaunchDescriptionSource):
+    kind = "interpreted launch file"
+
     def __init__(self, launch_file_path: Any) -> None:
-        super().__init__(None, launch_file_path, "interpreted python launch file")
+        super().__init__(None, launch_file_path, self.kind)
 
 
-class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
-    def __init__(self, launch_file_path: Any) -> None:
-        super().__init__(None, launch_file_path, "interpreted frontend launch file")
+class AnyLaunchDescriptionSource(_FileSource):
+    pass
+
+
+class PythonLaunchDescriptionSource(_FileSource):
+    kind = "interpreted python launch file"
+
+
+class FrontendLaunchDescriptionSource(_FileSource):
+    kind = "interpreted frontend launch file"
 
 
 class XMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
@@ -363,11 +372,6 @@ class XMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
 
 class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
     pass
-
-
-class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    def __init__(self, launch_file_path: Any) -> None:
-        super().__init__(None, launch_file_path, "interpreted launch file")
 
 
 class LaunchService:
