@@ -15,7 +15,7 @@ from grader.errors import ExerciseError
 from grader.exercise import cases, places
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, build
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, Exercise
-from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
+from grader.exercise.places import DESCRIPTION, Place, names
 from grader.exercise.translated import read_translations, translate
 from grader.system.yaml_file import (
     Mistake,
@@ -66,19 +66,10 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
     path = Path(name_or_path)
     if path.suffix in SUFFIXES:
         return _from_file(path)
-    if isinstance(name_or_path, str) and places.is_installed(name_or_path):
-        return _from_place(places.installed(name_or_path))
-    if path.is_dir():
+    is_named = isinstance(name_or_path, str) and places.is_installed(name_or_path)
+    if path.is_dir() and not is_named:
         return _from_place(places.in_folder(path))
-    raise ExerciseError(
-        "there is no exercise {name_or_path}; there are: {names}. Another one"
-        " is given as the path of its folder, with {description} and {checks}; "
-        "an edited copy as the path of its {description}.",
-        name_or_path=repr(str(name_or_path)),
-        names=", ".join(names()),
-        description=DESCRIPTION,
-        checks=CHECKS,
-    )
+    return _from_place(places.installed(str(name_or_path)))
 
 
 def _from_place(place: Place) -> Exercise:

@@ -79,7 +79,13 @@ def installed(name: str) -> Place:
     if found:
         return _of_entry_point(found[0])
     raise ExerciseError(
-        "there is no exercise {name}; there are: {names}", name=repr(name), names=", ".join(names())
+        "there is no exercise {name_or_path}; there are: {names}. Another one"
+        " is given as the path of its folder, with {description} and {checks}; "
+        "an edited copy as the path of its {description}.",
+        name_or_path=repr(name),
+        names=", ".join(names()),
+        description=DESCRIPTION,
+        checks=CHECKS,
     )
 
 

@@ -164,23 +164,18 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
             "Time is simulated: the same program gets the same verdict every time, on any machine.",
             **times,
         )
-    elif limits.rest_s:
-        text = tr(
-            "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
-            "seconds at most. The run ends before that when the {thing} has moved and then rested "
-            "for {rest_s:g} s, when nothing has moved in the first {first_s:g} s, or when your "
-            "node ends. Time is simulated: the same program gets the same verdict every time, on "
-            "any machine.",
+    else:
+        rests = msg(
+            "when the {thing} has moved and then rested for {rest_s:g} s, ",
             thing=thing,
             rest_s=limits.rest_s,
-            **times,
         )
-    else:
         text = tr(
             "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
-            "seconds at most. The run ends before that when nothing has moved in the first "
+            "seconds at most. The run ends before that {rests}when nothing has moved in the first "
             "{first_s:g} s, or when your node ends. Time is simulated: the same program gets the "
             "same verdict every time, on any machine.",
+            rests=rests if limits.rest_s else "",
             **times,
         )
     elsewhere = tr_many(

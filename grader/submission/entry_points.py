@@ -14,7 +14,6 @@ from grader.submission.interfaces import TWICE
 from grader.submission.program import Program, Script
 from grader.submission.program_source import is_among, read_imports, roles_in
 from grader.submission.python_source import read_source
-from grader.submission.request import USUAL_NAME
 from grader.submission.set_ups import Executable, PackageFolder, read_package
 from grader.text.message import Message, msg, msg_many
 from grader.text.strings import listed, nearest, shown
@@ -238,11 +237,6 @@ def not_started(names: list[str]) -> list[Message]:
             names=listed(names),
         )
     ]
-
-
-def example(module: str, name: str = USUAL_NAME) -> str:
-    """Return the line that a set-up file should have."""
-    return f"'console_scripts': ['{name} = {module}:main']"
 
 
 def _must_define(submitted: SubmissionFolder, script: Executable, file: Path) -> None:

@@ -24,7 +24,6 @@ from grader.errors import SubmissionError, UsageError
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
     Packages,
-    example,
     find_packages,
     no_such_executable,
     not_started,
@@ -408,7 +407,8 @@ def _no_script(
     called = submitted.called(package.folder / "setup.py")
     text = (read_bounded(package.folder / "setup.py") or b"").decode("utf-8", "replace")
     words = {*re.findall(r"['\"](\w*script\w*)['\"]", text)} - {"console_scripts"}
-    expected: Text = example(module, module.rpartition(".")[2])
+    name = module.rpartition(".")[2]
+    expected: Text = f"'console_scripts': ['{name} = {module}:main']"
     if meant := nearest("console_scripts", sorted(words)):
         expected = msg("'console_scripts' instead of '{found}'", found=shown(meant[0]))
     return msg(

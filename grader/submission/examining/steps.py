@@ -193,14 +193,13 @@ def attempt(work: Callable[[], Made], file: str = "", line: int = 0) -> Made:
         return work()
     except Ended:
         raise
-    except OSError as error:
-        what = msg("cannot be read ({error})", error=error.strerror)
-        raise Ended(Obstacle("unknown", it(what), file, line)) from error
     except Exception as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
         words = start_of(" ".join(f"{type(error).__name__}: {error}".split()), _LONGEST)
-        at = f"{Path(last.filename).name}, line {last.lineno}"
-        what = msg("cannot be read ({error})", error=f"{words}, {at}")
+        why = f"{words}, {Path(last.filename).name}, line {last.lineno}"
+        if isinstance(error, OSError):
+            why = str(error.strerror)
+        what = msg("cannot be read ({error})", error=why)
         raise Ended(Obstacle("unknown", it(what), file, line)) from error
 
 
