@@ -18,10 +18,7 @@ for line in sys.stdin:
 
 
 def tasks(count):
-    return [
-        Task(str(n), (), "square", "virtual", None, None, Path("a.py"))
-        for n in range(count)
-    ]
+    return [Task(str(n), (), "square", "virtual", None, None, Path("a.py")) for n in range(count)]
 
 
 def workers_that(monkeypatch, then):
