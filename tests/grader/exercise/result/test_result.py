@@ -25,7 +25,7 @@ from grader.system.strict_json import to_json
 from grader.text.message import NOTHING, authored, joined, msg, msg_many, plain_text
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
-from tests.grader.reports.test_every_format import any_results
+from tests.grader.reports.drawn import any_results
 
 
 @given(made=any_results())

@@ -19,7 +19,7 @@ from grader.exercise.result.json_file import ErrorResult
 from grader.reports import ErrorReport, read, render
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import FORMATS
-from tests.grader.reports.test_every_format import TEXTS, safe_to_print
+from tests.grader_class.reports.test_every_format import TEXTS, safe_to_print
 
 CHECKS = ("moves", "spiral")
 #: Formats in which the absence of a judgement can be said.
