@@ -24,8 +24,6 @@ from grader.exercise.verdict import Verdict as Verdict
 from grader.grading import exercise_for as exercise_for
 from grader.grading import grade as grade
 from grader.grading import record as record
-from grader.grading import run_all as run_all
-from grader.grading import runner as runner
 from grader.judging import judge as judge
 from grader.judging import load_recordings as load_recordings
 from grader.judging import save_recordings as save_recordings

@@ -183,11 +183,16 @@ def record(
     seed: int | None = None,
     executable: str | None = None,
     progress: Progress | None = None,
+    hides_seed: bool = False,
 ) -> Recordings:
-    """Run a submission without judging it; see `grade`."""
+    """Run a submission without judging it; see `grade`.
+
+    Args:
+        hides_seed: whether the recordings leave out the seed.
+    """
     asked = _asked(submission, exercise)
     with _opened(submission, executable, asked) as opened:
-        return _record(opened, asked, time, seed, progress)
+        return _record(opened, asked, time, seed, progress, hides_seed)
 
 
 def run_all(
@@ -370,12 +375,14 @@ def _record(
     time: Clock,
     seed: int | None,
     progress: Progress | None,
+    hides_seed: bool = False,
 ) -> Recordings:
     if time not in RUNNERS:
         raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
         raise UsageError(f"seed: expected a whole number, found {seed!r}")
-    return run_all(submission, exercise, runner(exercise, time), seed=seed, progress=progress)
+    run = runner(exercise, time)
+    return run_all(submission, exercise, run, seed=seed, progress=progress, hides_seed=hides_seed)
 
 
 def _asked(submission: AnyPath | Submission, exercise: AnyPath | Exercise | None) -> Exercise:

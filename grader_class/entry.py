@@ -19,7 +19,7 @@ from typing import Any, Literal, Self
 
 from grader import Result, UsageError, Verdict
 from grader.exercise import RESULT, ROUNDING, json_file
-from grader.system import UNSTORED, files, strict_json
+from grader.system import files, strict_json
 from grader.text import NOTHING, Message, msg
 
 
@@ -64,7 +64,7 @@ class HandIn:
 
     id: str
     people: tuple[Person, ...]
-    path: Path | None = field(default=None, metadata=UNSTORED)
+    path: Path | None = field(default=None, metadata=strict_json.UNSTORED)
     filename: str = ""
     attempt: int = 1
     at: datetime | None = None

@@ -33,8 +33,7 @@ from grader import (
     load_exercise,
     load_recordings,
     open_submission,
-    run_all,
-    runner,
+    record,
     save_recordings,
 )
 from grader.exercise import (
@@ -49,7 +48,7 @@ from grader.exercise import (
 from grader.reports import Report, render
 from grader.run import levels, started_process
 from grader.submission import Submission
-from grader.system import files, scratch, strict_json
+from grader.system import files, make_folder, strict_json
 from grader.text import NOTHING, Message, msg, plain, use
 from grader_class import export
 from grader_class.entry import Entry, HandIn, State
@@ -154,20 +153,19 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
         with ExitStack() as held:
             path = submitted = task.path
             assert submitted is not None and path is not None
-            if path.is_file():  # by its original name, and apart from the files of others
-                name = task.filename or path.name
-                path = held.enter_context(scratch.make_folder()) / name
-                shutil.copyfile(submitted, path)
-            elif task.filename:  # and not by that of the export, which may be the student's
-                path = held.enter_context(scratch.make_folder()) / task.filename
-                path.symlink_to(submitted)
+            if path.is_file() or task.filename:
+                # by its original name, not the export's, and apart from the files of others
+                path = held.enter_context(make_folder()) / (task.filename or path.name)
+                if submitted.is_file():
+                    shutil.copyfile(submitted, path)
+                else:
+                    path.symlink_to(submitted)
             opened = held.enter_context(
                 open_submission(path, task.executable, task.launch, **exercise.opening)
             )
             submission = _without_path(opened)
-            run = runner(exercise, task.time)
-            recordings = run_all(
-                submission, exercise, run, seed=task.seed, hides_seed=task.hides_seed
+            recordings = record(
+                submission, exercise, time=task.time, seed=task.seed, hides_seed=task.hides_seed
             )
             _keep_for_pages(submission, recordings, place)
     except (SubmissionError, UsageError) as error:

@@ -20,7 +20,7 @@ from pathlib import Path
 from grader import Exercise, UsageError, load_exercise
 from grader.exercise import View, not_followed
 from grader.reports import cell, table
-from grader.system import files, remove, scratch
+from grader.system import files, make_folder, remove
 from grader.system import versions as system
 from grader.text import Message, chained, msg, number
 from grader_class import batch, pool
@@ -116,7 +116,7 @@ def regrade(out: Path, exercise_path: str, jobs: int, store: Store | None = None
     judged: list[tuple[Entry, Entry]] = []
     failures: list[tuple[Entry, Message]] = []
     made: list[Task] = []
-    with scratch.make_folder() as folder:
+    with make_folder() as folder:
         tasks = (
             replace(task, into=store.new_place())
             if store

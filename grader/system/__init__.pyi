@@ -1,6 +1,5 @@
 from grader.system import content as content
 from grader.system import files as files
-from grader.system import scratch as scratch
 from grader.system import strict_json as strict_json
 from grader.system import versions as versions
 from grader.system.expressions import Expression as Expression
@@ -10,4 +9,3 @@ from grader.system.removal import remove as remove
 from grader.system.requirements import require as require
 from grader.system.requirements import require_ros as require_ros
 from grader.system.scratch import make_folder as make_folder
-from grader.system.strict_json import UNSTORED as UNSTORED

@@ -1,4 +1,3 @@
-from grader.text import strings as strings
 from grader.text.message import NOTHING as NOTHING
 from grader.text.message import Message as Message
 from grader.text.message import Text as Text
@@ -11,6 +10,7 @@ from grader.text.message import plain_text as plain_text
 from grader.text.message import reason as reason
 from grader.text.message import series as series
 from grader.text.strings import clip as clip
+from grader.text.strings import clip_middle as clip_middle
 from grader.text.strings import for_terminal as for_terminal
 from grader.text.strings import in_one_line as in_one_line
 from grader.text.strings import listed as listed
@@ -18,6 +18,7 @@ from grader.text.strings import misspelt as misspelt
 from grader.text.strings import nearest as nearest
 from grader.text.strings import number as number
 from grader.text.strings import one_line as one_line
+from grader.text.strings import place as place
 from grader.text.strings import plain as plain
 from grader.text.strings import plain_all as plain_all
 from grader.text.strings import shown as shown

@@ -12,8 +12,7 @@ from grader import Exercise, UsageError, load_exercise
 from grader.exercise import installed, names
 from grader.system import DEFAULT_EXERCISE, files
 from grader.system import versions as system
-from grader.text import msg, tr
-from grader.text import strings as text
+from grader.text import msg, number, tr
 from grader_class.course import repository
 from grader_class.course.repository import HAVE_A_CHECK, KINDS
 
@@ -117,8 +116,8 @@ def _check_points(kind: str, points: float | None, exercises: Sequence[Exercise]
     if not 0 <= points <= least.max_score:
         raise UsageError(
             "--pass-points {points}: expected 0 to {most}, which {exercise} is worth",
-            points=text.number(points),
-            most=text.number(least.max_score),
+            points=number(points),
+            most=number(least.max_score),
             exercise=least.name,
         )
 

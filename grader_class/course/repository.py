@@ -14,7 +14,7 @@ from grader import Exercise
 from grader.cli import starters as starter
 from grader.exercise import installed
 from grader.system import versions as system
-from grader.text import strings as text
+from grader.text import number
 
 TEMPLATES = Path(__file__).parent / "templates"
 #: What of them every kind has, and what is laid where a kind wants it.
@@ -141,7 +141,7 @@ def write(folder: Path, name: str, exercises: Sequence[Exercise], how: Settings)
         for exercise, slug in of_each:
             target = folder / str(path).replace(EXERCISE, slug)
             passed = PASS_SHARE * exercise.max_score if how.pass_points is None else how.pass_points
-            _fill(target, _text(template), of_course | {"pass_points": str(text.number(passed))})
+            _fill(target, _text(template), of_course | {"pass_points": str(number(passed))})
 
 
 def _templates(name: str, kind: Kind) -> Iterator[tuple[PurePosixPath, Path]]:
@@ -187,7 +187,7 @@ def _of_course(
 
 
 def _row(exercise: Exercise, slug: str) -> str:
-    return f"| `{slug}` | {exercise.title!s} | {text.number(exercise.max_score)} |"
+    return f"| `{slug}` | {exercise.title!s} | {number(exercise.max_score)} |"
 
 
 def _text(path: Path) -> str:

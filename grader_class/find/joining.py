@@ -8,9 +8,9 @@ from dataclasses import replace
 from itertools import chain
 
 from grader.text import Message, listed, msg, shown
-from grader_class.entry import Person
+from grader_class.entry import Person, comparable
 from grader_class.find.attempt import Attempt
-from grader_class.find.roster import Roster, RosterMember, folded, letters
+from grader_class.find.roster import Roster, RosterMember, letters
 
 NOT_HANDED_IN = msg("Nothing was handed in.")
 #: The problem of a member to whom an unmatched hand-in may belong: there is no grade.
@@ -115,7 +115,7 @@ class _Index:
         self._names: dict[str, list[RosterMember]] = defaultdict(list)
         self._groups: dict[str, list[RosterMember]] = defaultdict(list)
         for member in members:
-            for key in {*map(folded, member.keys)} - {""}:
+            for key in {*map(comparable, member.keys)} - {""}:
                 self._keys[key].append(member)
             if name := letters(member.person.name):
                 self._names[name].append(member)
@@ -129,7 +129,7 @@ class _Index:
             keys: what may identify the person; (): the id and the columns.
         """
         keys = keys or (person.id, *(person.columns.get(title, "") for title in _KEYS))
-        found = [self._keys[key] for key in map(folded, keys) if key in self._keys]
+        found = [self._keys[key] for key in map(comparable, keys) if key in self._keys]
         found = [each for each in found if not _contradicts(person, each[0])]
         named = self._names.get(letters(person.name or person.id), [])
         one = next((each for each in found if len(each) == 1), None)

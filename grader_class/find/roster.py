@@ -19,7 +19,7 @@ from typing import Final
 
 from grader import UsageError
 from grader.text import Message, listed, msg, shown
-from grader_class.entry import Person
+from grader_class.entry import Person, comparable
 from grader_class.find.attempt import moment, person, read_time
 
 #: Columns that identify a person, the best first. The id is that of the first one in which all rows
@@ -55,7 +55,7 @@ class RosterMember:
     """One row.
 
     Attributes:
-        keys: everything that may identify this person in an export; compared by `folded`.
+        keys: everything that may identify this person in an export; compared by `comparable`.
         groups: those of this person.
         at: when this person handed in, if the roster contains it.
         unread: the text of that time, if it is none.
@@ -86,11 +86,6 @@ class Roster:
     notes: Sequence[Message] = ()
 
 
-def folded(text: str) -> str:
-    """Return a text for comparison: without case, and without white space around it."""
-    return text.strip().casefold()
-
-
 def letters(text: str) -> str:
     """Return letters and digits alone, without case: Canvas's form of names, and that of titles."""
     return re.sub(r"[\W_]+", "", text.casefold())
@@ -119,14 +114,14 @@ def read_roster(path: Path) -> Roster:
         )
     rows = [_Row(titles, line) for line in lines]
     rows = [
-        row for row in rows if folded(row.name) not in _NOBODY and (row.name or row.filled(ids))
+        row for row in rows if comparable(row.name) not in _NOBODY and (row.name or row.filled(ids))
     ]
     # first the columns whose values all differ, then the others
     ids.sort(key=lambda title: not _all_differ([row.cells[title] for row in rows]))
     members: dict[str, RosterMember] = {}
     twice: list[str] = []
     for member in (_member(row, ids) for row in rows):
-        same = folded(member.id)
+        same = comparable(member.id)
         if same not in members:
             members[same] = member
         elif _TAGS in there:  # one row for each attempt
@@ -197,7 +192,7 @@ def _member(row: _Row, ids: Sequence[str]) -> RosterMember:
 
 
 def _all_differ(values: Sequence[str]) -> bool:
-    return all(values) and len(set(map(folded, values))) == len(values)
+    return all(values) and len(set(map(comparable, values))) == len(values)
 
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]]]:

@@ -16,8 +16,7 @@ from grader import Recording
 from grader.exercise import ErrorResult, RunSummary, View
 from grader.reports import Beside, ErrorReport, Report, points, render
 from grader.system import files
-from grader.text import LANGUAGES, Message, msg, tr, translate
-from grader.text import strings as text
+from grader.text import LANGUAGES, Message, msg, shown, tr, translate
 from grader_class.entry import Entry
 from grader_class.gradebook.grade import LONGEST, Grade, out_of
 from grader_class.page.thumb import Thumb
@@ -73,7 +72,7 @@ class Feedback:
             )
         else:
             sentence = tr("{mark} {points} points. {first}", **values)
-        return text.shown(sentence, LONGEST)
+        return shown(sentence, LONGEST)
 
     def _first(self, entry: Entry) -> str:
         if not has_feedback(entry):
@@ -86,13 +85,13 @@ class Feedback:
             error = ErrorResult("submission", entry.message, entry.max_score)
             return ErrorReport(error, entry.folder)
         result = entry.result
-        shown = replace(
+        result = replace(
             result,
             run=_without_circumstances(result.run),
             varied_runs=tuple(map(_without_circumstances, result.varied_runs)),
             provenance=None,
         )
-        return Report(shown, _WithoutRecordings(shown, entry.folder), self.view)
+        return Report(result, _WithoutRecordings(result, entry.folder), self.view)
 
 
 class _WithoutRecordings(Beside):

@@ -11,7 +11,7 @@ import re
 from collections.abc import Sequence
 
 from grader.reports import cell, table
-from grader.text import strings as text
+from grader.text import one_line, plain
 from grader_class.gradebook.feedback import PAGE, Feedback, has_feedback, is_ours
 from grader_class.gradebook.grade import (
     MOODLE_KEYS,
@@ -114,12 +114,12 @@ def _comment(grade: Grade, feedback: Feedback) -> str:
     """Return the comment as HTML, which Moodle expects; one of somebody else stays as it is."""
     there = grade.person.column("Feedback comments")
     if there and not is_ours(there):
-        return cell(text.one_line(there))
+        return cell(one_line(there))
     return cell(html.escape(feedback.sentence(grade), quote=False))
 
 
 def _name(grade: Grade) -> str:
     """Return a name for a file name: without underscores, at which Moodle splits it."""
-    name = _NOT_IN_FILE_NAMES.sub(" ", text.plain(grade.person.name or grade.person.id))
-    name = text.one_line(name).lstrip(".~ ")[:_LONGEST_NAME].rstrip(". ")
+    name = _NOT_IN_FILE_NAMES.sub(" ", plain(grade.person.name or grade.person.id))
+    name = one_line(name).lstrip(".~ ")[:_LONGEST_NAME].rstrip(". ")
     return name or "Participant"

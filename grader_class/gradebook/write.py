@@ -20,8 +20,7 @@ from typing import Any
 from grader.exercise import View
 from grader.reports import cell, table
 from grader.system import files
-from grader.text import Message, msg, plain_all, translate
-from grader.text import strings as text
+from grader.text import Message, clip, listed, msg, plain_all, translate
 from grader_class.entry import Entry
 from grader_class.find.joining import UNCLEAR
 from grader_class.gradebook import canvas, moodle
@@ -145,7 +144,7 @@ def _row(grade: Grade, checks: Sequence[str]) -> list[str]:
         *(str(hand_in.attempt), "" if hand_in.at is None else hand_in.at.isoformat(), entry.state),
         *map(decimal, (grade.score, grade.late_deduction, grade.final, entry.max_score)),
         *(decimal(earned.get(check)) for check in checks),
-        cell(text.clip(translate(entry.message), LONGEST)),
+        cell(clip(translate(entry.message), LONGEST)),
     ]
 
 
@@ -243,7 +242,7 @@ def _of_moodle(grades: Sequence[Grade]) -> Iterator[Message]:
         yield msg(
             "Moodle's assignment has a maximum of {theirs}, the exercise of {ours:.10g}: Moodle "
             "leaves out what is above its own. Give it the exercise's.",
-            theirs=text.clip(next(iter(others)), 20),
+            theirs=clip(next(iter(others)), 20),
             ours=round(most, 2),
         )
 
@@ -272,7 +271,7 @@ def _of_canvas(grades: Sequence[Grade], assignment: str) -> Iterator[Message]:
 
 
 def _people(grades: Sequence[Grade]) -> Message:
-    return text.listed((grade.person.name or grade.person.id for grade in grades), 3)
+    return listed((grade.person.name or grade.person.id for grade in grades), 3)
 
 
 def _number(value: str) -> float | None:

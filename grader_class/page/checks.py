@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from grader import Result, Verdict
-from grader.text import Message, plain_text, translate
-from grader.text import strings as text
+from grader.text import Message, plain_text, shown, translate
 
 _LONGEST_LINE = 400
 #: Whether it is about the run as a whole, and not about the check.
@@ -83,13 +82,13 @@ def _most_frequent(lines: Sequence[_Line]) -> tuple[str, int]:
     """
     by_kind: dict[tuple[bool, Hashable], Counter[str]] = {}
     for is_of_run, line in lines:
-        shown = text.shown(translate(line), _LONGEST_LINE)
-        by_kind.setdefault((is_of_run, _kind(line)), Counter())[shown] += 1
+        sentence = shown(translate(line), _LONGEST_LINE)
+        by_kind.setdefault((is_of_run, _kind(line)), Counter())[sentence] += 1
     if not by_kind:
         return "", 0
     most = max(each.total() for each in by_kind.values())
     _, example = min(
-        (is_of_run, min(each, key=lambda shown: (-each[shown], shown)))
+        (is_of_run, min(each, key=lambda sentence: (-each[sentence], sentence)))
         for (is_of_run, _), each in by_kind.items()
         if each.total() == most
     )

@@ -25,8 +25,7 @@ from grader.exercise import PAGE as REPORT
 from grader.exercise import SubmissionInfo
 from grader.recording import load_subject
 from grader.reports import outcome_text, points, templating
-from grader.text import NOTHING, Message, msg, tr, translate
-from grader.text import strings as text
+from grader.text import NOTHING, Message, clip, msg, plain, shown, tr, translate
 from grader_class.entry import SUBMISSIONS, Entry, State
 from grader_class.page.checks import check_rows
 from grader_class.page.thumb import EDGE_PX, UNITS, Thumb
@@ -76,7 +75,7 @@ class Student:
         result = self.entry.result
         if result is None:
             return translate(STATES.get(self.entry.state, NOTHING))
-        outcome = text.clip(text.plain(result.run.outcome), _WORD_LIMIT).replace("_", " ")
+        outcome = clip(plain(result.run.outcome), _WORD_LIMIT).replace("_", " ")
         return outcome_text(outcome)
 
     @property
@@ -183,7 +182,7 @@ def _environment() -> jinja2.Environment:
     made.globals.update(
         edge=EDGE_PX,
         units=UNITS,
-        plain=text.shown,
+        plain=shown,
     )
     return made
 
@@ -213,4 +212,4 @@ def _ids(entry: Entry) -> str:
 
 
 def _safe(name: str) -> str:
-    return text.shown(name, _NAME_LIMIT)
+    return shown(name, _NAME_LIMIT)

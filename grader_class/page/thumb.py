@@ -22,8 +22,7 @@ from grader.exercise import json_file
 from grader.recording import Floats, load_subject
 from grader.reports import draw
 from grader.system import strict_json
-from grader.text import strings as text
-from grader.text import translate
+from grader.text import clip, translate
 
 THUMB = "thumb.json"
 SCHEMA: Final = "turtlesim-grader/thumb/v1"
@@ -96,7 +95,7 @@ def thumb(recordings: Recordings) -> bytes:
     """Return the file's content, of the nominal run."""
     run = recordings.nominal
     picture, solid = _picture(run), draw(run).turnable
-    words = text.clip(translate(solid.solid.text), _MOST_WORDS) if solid and not picture else ""
+    words = clip(translate(solid.solid.text), _MOST_WORDS) if solid and not picture else ""
     return strict_json.line(Thumb(picture, words, _path(run)))
 
 

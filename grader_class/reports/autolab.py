@@ -7,8 +7,7 @@ from typing import Any, Final
 
 from grader import UsageError
 from grader.reports import ErrorReport, Format, Report, word
-from grader.text import msg, tr
-from grader.text import strings as text
+from grader.text import msg, number, one_line, tr
 
 _STAGE = "Checks"
 
@@ -23,7 +22,7 @@ def render(report: Report) -> str:
     }
     if report.not_shown:
         checks[report.not_shown_name] = {"passed": False, "hint": report.not_shown}
-    return _lines(checks, {each.check: text.number(each.score) for each in report.verdicts})
+    return _lines(checks, {each.check: number(each.score) for each in report.verdicts})
 
 
 def render_error(report: ErrorReport) -> str:
@@ -32,13 +31,13 @@ def render_error(report: ErrorReport) -> str:
         raise UsageError(
             "the format autolab cannot say that nothing was judged; end without scores "
             "instead: {message}",
-            message=text.one_line(report.message),
+            message=one_line(report.message),
         )
     if not report.checks:
         raise UsageError(
             msg("the format autolab needs the exercise of an error: add --exercise NAME")
         )
-    hint = {"passed": False, "hint": _hint(report.title, [text.one_line(report.message)])}
+    hint = {"passed": False, "hint": _hint(report.title, [one_line(report.message)])}
     return _lines(dict.fromkeys(report.checks, hint), dict.fromkeys(report.checks, 0))
 
 

@@ -11,8 +11,7 @@ from typing import Any, Final
 
 from grader import UsageError, Verdict
 from grader.reports import ErrorReport, Format, Report
-from grader.text import msg
-from grader.text import strings as text
+from grader.text import msg, number, one_line
 
 _SCHEMA = "classroom50/result/v1"
 _NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "COMMIT_URL", "RELEASE_URL")
@@ -29,7 +28,7 @@ def render(report: Report) -> str:
             "score": score,
             "max-score": max_score,
             "status": verdict.status,
-            "exact-score": text.number(verdict.score),
+            "exact-score": number(verdict.score),
             "message": "\n".join(report.led_lines(verdict)),
         }
         for verdict, score, max_score in zip(report.verdicts, scores, max_scores, strict=True)
@@ -46,7 +45,7 @@ def render_error(report: ErrorReport) -> str:
         raise UsageError(
             "the format classroom50 cannot say that nothing was judged; leave with an exit "
             "code other than 0 instead: {message}",
-            message=text.one_line(report.message),
+            message=one_line(report.message),
         )
     max_score = int(_half_up(_decimal(report.max_score or 0)))
     test = {

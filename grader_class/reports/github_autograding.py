@@ -7,8 +7,7 @@ import json
 from typing import Any, Final
 
 from grader.reports import ErrorReport, Format, Report
-from grader.text import msg, translate
-from grader.text import strings as text
+from grader.text import msg, number, translate
 
 
 def render(report: Report) -> str:
@@ -40,7 +39,7 @@ def _document(status: str, max_score: float, tests: list[dict[str, Any]]) -> str
     document = {
         "version": 1,
         "status": status,
-        "max_score": text.number(max_score),
+        "max_score": number(max_score),
         "tests": tests,
     }
     return base64.b64encode(json.dumps(document).encode()).decode() + "\n"
@@ -50,7 +49,7 @@ def _test(code: str, name: str, status: str, score: float, lines: list[str]) -> 
     return {
         "name": name,
         "status": status,
-        "score": text.number(score),
+        "score": number(score),
         "message": "\n".join(lines),
         "test_code": code,
         "filename": "",

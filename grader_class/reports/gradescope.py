@@ -13,8 +13,7 @@ from typing import Any, Final
 from grader import Verdict
 from grader.exercise import is_hidden
 from grader.reports import ErrorReport, Format, Report, pictures
-from grader.text import msg, tr, translate
-from grader.text import strings as text
+from grader.text import clip_middle, msg, number, tr, translate
 
 _OUTPUT_LIMIT = 20_000
 _HIDDEN = {"after_due": "after_due_date", "never": "hidden"}
@@ -23,8 +22,8 @@ _HIDDEN = {"after_due": "after_due_date", "never": "hidden"}
 def render(report: Report) -> str:
     """Return the JSON document, with the picture and the node's output above the tests."""
     document = {
-        "score": text.number(report.whole.score),
-        "execution_time": text.number(report.run.wall_s),
+        "score": number(report.whole.score),
+        "execution_time": number(report.run.wall_s),
         "output": _overview(report),
         "output_format": "html",
         "test_output_format": "text",
@@ -75,8 +74,8 @@ def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
     return {
         "name": f"{verdict.check}: {translate(verdict.title)}",
         "number": str(index + 1),
-        "score": text.number(verdict.score),
-        "max_score": text.number(verdict.max_score),
+        "score": number(verdict.score),
+        "max_score": number(verdict.max_score),
         "status": "passed" if verdict.passed else "failed",
         "output": "\n".join(lines),
     }
@@ -91,7 +90,7 @@ def _overview(report: Report) -> str:
         parts.append(f'<p><img src="{picture}" width="500" alt="{alt}"></p>')
     elif words := pictures.solid_words(report):
         parts.append(f"<p>{html.escape(words)}</p>")
-    output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    output = clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
     if output:
         printed = html.escape(tr("What the node printed:"))
         parts.append(f"<p>{printed}</p><pre>{html.escape(output)}</pre>")

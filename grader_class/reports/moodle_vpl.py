@@ -6,8 +6,7 @@ from typing import Final
 
 from grader import Verdict
 from grader.reports import ErrorReport, Format, Report, score_text, title_of, word
-from grader.text import msg, tr, translate
-from grader.text import strings as text
+from grader.text import msg, number, one_line, tr, translate
 
 
 def render(report: Report) -> str:
@@ -17,7 +16,7 @@ def render(report: Report) -> str:
     lines += [tr("Also: {said}", said=_quote(note)) for note in report.notes]
     for verdict in report.verdicts:
         lines += _verdict(report, verdict)
-    lines += ["--|>", f"Grade :=>> {text.points(report.score)}"]
+    lines += ["--|>", f"Grade :=>> {number(report.score)}"]
     return "\n".join(lines) + "\n"
 
 
@@ -55,7 +54,7 @@ def _verdict(report: Report, verdict: Verdict) -> list[str]:
 
 def _quote(value: str) -> str:
     """Return a text in one line without VPL's marks; never put it at the start of a line."""
-    value = text.one_line(value).replace(":=>>", ": =>>")
+    value = one_line(value).replace(":=>>", ": =>>")
     return value.replace("<|--", "< |--").replace("--|>", "-- |>")
 
 

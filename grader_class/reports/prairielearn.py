@@ -7,8 +7,7 @@ from typing import Any, Final
 
 from grader import Verdict
 from grader.reports import ErrorReport, Format, Report, pictures, title_of, word
-from grader.text import msg, tr, translate
-from grader.text import strings as text
+from grader.text import clip, clip_middle, msg, number, tr, translate
 
 #: PrairieLearn refuses a file above 1 MB.
 LIMIT_BYTES = 1_000_000
@@ -41,8 +40,8 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
     return {
         "gradable": True,
         "score": _share(report),
-        "message": text.clip("\n".join(lines), 1000),
-        "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
+        "message": clip("\n".join(lines), 1000),
+        "output": clip_middle(report.output, _OUTPUT_LIMIT),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,
     }
@@ -51,8 +50,8 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
 def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
     test = {
         "name": tr("{title} ({word})", title=title_of(verdict), word=word(verdict)),
-        "points": text.number(verdict.score),
-        "max_points": text.number(verdict.max_score),
+        "points": number(verdict.score),
+        "max_points": number(verdict.max_score),
     }
     if in_full:
         test["description"] = translate(verdict.title)

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from grader.recording import Floats, Placing, Shape, Solid, SolidFrame
-from grader.text import Message, joined, msg, msg_many
-from grader.text import strings as text
+from grader.text import Message, joined, listed, msg, msg_many, shown
 from grader_robots.robot_py.kinematics import matrix, quaternion, translation
 from grader_robots.robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual
 
@@ -121,11 +120,11 @@ def is_finite(values: Sequence[float]) -> bool:
 
 def name_of(name: str) -> str:
     """A name of the submission's, as it may stand in a page."""
-    return text.shown(name, LONGEST_NAME)
+    return shown(name, LONGEST_NAME)
 
 
 def named(names: Sequence[str], most: int = 6) -> Message:
-    return text.listed(map(name_of, names), most)
+    return listed(map(name_of, names), most)
 
 
 def descend(

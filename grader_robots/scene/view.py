@@ -24,8 +24,7 @@ from grader.recording import (
     Track,
     View,
 )
-from grader.text import Message, msg
-from grader.text import strings as text
+from grader.text import Message, msg, place
 from grader_robots.robot_py.model import Model
 from grader_robots.scene import shapes
 from grader_robots.scene.motion import (
@@ -170,13 +169,13 @@ def _words(trace: RobotTrace, way: Odometry) -> Iterator[Message]:
     if not len(there):
         yield msg("nothing: no transform from odom to the robot's root was heard")
         return
-    first, last = (text.place(float(row[0]), float(row[1])) for row in (there[0], there[-1]))
+    first, last = (place(float(row[0]), float(row[1])) for row in (there[0], there[-1]))
     yield msg("the robot's way in odom, from {first} to {last}", first=first, last=last)
     if (round_ := circle(trace)) is not None:
         yield msg(
             "the circle nearest to it: {radius:.2f} m around {centre}",
             radius=round_[2],
-            centre=text.place(*round_[:2]),
+            centre=place(*round_[:2]),
         )
 
 
@@ -252,7 +251,7 @@ def _notes(trace: RobotTrace, model: Model, lost: tuple[str, ...]) -> Iterator[M
     if (root := places(trace).get(model.root)) is not None:
         yield msg(
             "at {place} in {odom} at the end",
-            place=text.place(float(root[0, 3]), float(root[1, 3])),
+            place=place(float(root[0, 3]), float(root[1, 3])),
             odom=ODOM,
         )
     if (round_ := circle(trace)) is not None:
