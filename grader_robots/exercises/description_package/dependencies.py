@@ -14,6 +14,7 @@ from grader_robots.exercises.description_package.facts import (
     of_package,
     unjudged,
 )
+from grader_robots.exercises.description_package.installing import AS_CREATED
 
 checks = Checks()
 #: What comes along with another package.
@@ -114,7 +115,7 @@ def dependencies(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         rationale = msg(
             "package.xml cannot be read for dependencies: {why}.", why=facts.setup.manifest
         )
-        return Finding(0, rationale, msg("Compare it with one that `ros2 pkg create` writes."))
+        return Finding(0, rationale, AS_CREATED)
     if not missing:
         used_ = ", ".join(sorted(needed)) or msg("nothing but what every desktop installation has")
         return Finding(1, msg("What it uses is declared: {packages}.", packages=used_))

@@ -26,6 +26,19 @@ WRITE = msg(
     "joint_state_publisher_gui, and rviz2 with your .rviz file."
 )
 _BUILD = msg("colcon build stops there, and nothing is installed")
+_LIST_IT = msg(
+    "data_files in setup.py (or install() in CMakeLists.txt) has to list it, with the folder in "
+    "which it is looked for."
+)
+_COMPARE = msg(
+    "Compare the name with the file's, letter by letter; is the file in what you handed in? "
+    "Neither git nor a zip hands on a folder without files."
+)
+_SHARE = msg(
+    "Ask for the package's share folder: get_package_share_directory(NAME), or "
+    "FindPackageShare(NAME)."
+)
+AS_CREATED = msg("Compare it with one that `ros2 pkg create` writes.")
 
 
 @checks()
@@ -47,25 +60,21 @@ def installed(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     the robot in RViz. A marker below share/ament_index, or a package.xml, that nothing installs
     costs nothing: colcon adds both.
     """
-    found: dict[str, list[PackageFault]] = {}
     if (stop := stops(facts)) is not None:
         return Finding(0, stop.rationale, stop.help)
+    found: dict[str, list[PackageFault]] = {}
     for each in _missing(facts):
         found.setdefault(each.what, []).append(each)
     if found and (not_known := not_followed(facts)):
         return not_known
     if not found:
-        rationale = msg(
-            "{count} files are installed, and all that is asked for is among them.",
-            count=len(facts.setup.installed),
-        )
-        return Finding(1, rationale)
-    first = next(iter(found.values()))
-    more = len(first) - 1
+        said = msg("{count} files are installed, and all that is asked for is among them.")
+        return Finding(1, said.given(count=len(facts.setup.installed)))
+    first, *others = found.values()
     texts = [first[0].rationale]
-    if more:
-        texts.append(msg("The same holds for {more} more.", more=more))
-    texts += [each[0].rationale for each in list(found.values())[1:3]]
+    if len(first) > 1:
+        texts.append(msg("The same holds for {more} more.", more=len(first) - 1))
+    texts += [each[0].rationale for each in others[:2]]
     return Finding(ONE_MISSING if len(found) == 1 else 0.0, joined(texts, " "), first[0].help)
 
 
@@ -76,69 +85,64 @@ def stops(facts: PackageFacts) -> PackageFault | None:
         return None if setup.problem.kind == "unknown" else _ended(facts, setup.problem)
     is_cmake = setup.build_type not in ("", "ament_python")
     if is_cmake and setup.told and setup.told != facts.name:
-        rationale = msg(
-            "CMakeLists.txt says project({told}), and package.xml calls the "
-            "package {name}: {build}.",
-            told=shown(setup.told),
-            name=shown(facts.name),
-            build=_BUILD,
+        return PackageFault(
+            "name",
+            msg(
+                "CMakeLists.txt says project({told}), and package.xml calls the "
+                "package {name}: {build}.",
+                told=shown(setup.told),
+                name=shown(facts.name),
+                build=_BUILD,
+            ),
+            msg("Both have to be the same name, and the folder in share is called so."),
         )
-        help = msg("Both have to be the same name, and the folder in share is called so.")
-        return PackageFault("name", rationale, help)
     if setup.absent:
-        return _absent(shown(setup.absent[0]), is_cmake)
-    if setup.folders:
+        name = shown(setup.absent[0])
         rationale = msg(
-            "data_files lists {name!r}, which is a folder: {build} (can't copy: "
-            "not a regular file).",
-            name=shown(setup.folders[0]),
+            "{file} installs {name!r}, and there is no such file or folder: {build}.",
+            file="CMakeLists.txt" if is_cmake else "setup.py",
+            name=name,
             build=_BUILD,
         )
-        help = msg(
-            "data_files takes files. List those of a folder of their own, with the "
-            "folder that they come into."
+        return PackageFault(name, rationale, _COMPARE)
+    if setup.folders:
+        return PackageFault(
+            "folder",
+            msg(
+                "data_files lists {name!r}, which is a folder: {build} (can't copy: "
+                "not a regular file).",
+                name=shown(setup.folders[0]),
+                build=_BUILD,
+            ),
+            msg(
+                "data_files takes files. List those of a folder of their own, with the "
+                "folder that they come into."
+            ),
         )
-        return PackageFault("folder", rationale, help)
     return None
 
 
 def _ended(facts: PackageFacts, problem: Obstacle) -> PackageFault:
     """Of a set-up that comes to no end, or is not there."""
     if problem.text.key == "there is no {file}":
-        rationale = msg("The package cannot be built: {why}.", why=problem.text)
-        help = msg(
-            "<build_type> in package.xml is {build_type!r}: ament_python wants a setup.py, "
-            "ament_cmake a CMakeLists.txt. Correct the one, or add the other.",
-            build_type=shown(facts.setup.build_type) or "ament_python",
+        return PackageFault(
+            "set-up",
+            msg("The package cannot be built: {why}.", why=problem.text),
+            msg(
+                "<build_type> in package.xml is {build_type!r}: ament_python wants a setup.py, "
+                "ament_cmake a CMakeLists.txt. Correct the one, or add the other.",
+                build_type=shown(facts.setup.build_type) or "ament_python",
+            ),
         )
-        return PackageFault("set-up", rationale, help)
-    rationale = msg(
-        "{what_happens}: {build}.", what_happens=how_it_ends("setup.py", problem), build=_BUILD
-    )
-    help = msg("Run `python3 setup.py --name` in the package's folder: it shows the same.")
-    return PackageFault("set-up", rationale, help)
-
-
-def _absent(name: str, is_cmake: bool) -> PackageFault:
-    """Of something that is to be installed, and is not there."""
-    if is_cmake:
-        rationale = msg(
-            "CMakeLists.txt installs {name!r}, and there is no such folder or file: {build}.",
-            name=name,
+    return PackageFault(
+        "set-up",
+        msg(
+            "{what_happens}: {build}.",
+            what_happens=how_it_ends("setup.py", problem),
             build=_BUILD,
-        )
-        help = msg(
-            "Compare the name with what is there; a folder without files is not in what git, "
-            "or a zip, hands on."
-        )
-        return PackageFault(name, rationale, help)
-    rationale = msg(
-        "setup.py installs {name!r}, and there is no such file: {build}.", name=name, build=_BUILD
+        ),
+        msg("Run `python3 setup.py --name` in the package's folder: it shows the same."),
     )
-    help = msg(
-        "Compare the name in data_files with the file's, or use glob(), which lists what is there."
-    )
-    return PackageFault(name, rationale, help)
 
 
 def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
@@ -153,14 +157,7 @@ def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
     for description in facts.descriptions:
         for mesh in description.meshes:
             if mesh.state == "left":
-                yield PackageFault(
-                    dirname(mesh.path),
-                    _left(facts, msg("The description"), shown(mesh.uri), mesh.path),
-                    msg(
-                        "data_files in setup.py (or install() in CMakeLists.txt) has to list "
-                        "it, with the folder that the description names."
-                    ),
-                )
+                yield _left(facts, msg("The description"), shown(mesh.uri), mesh.path)
 
 
 def _is_installed(launch: LaunchFile) -> bool:
@@ -175,114 +172,76 @@ def moved(launch: LaunchFile) -> PackageFault:
         file=launch.file,
         path=shown(launch.moved),
     )
-    help = msg("Ask for the share folder: get_package_share_directory(), FindPackageShare().")
-    return PackageFault(launch.moved, rationale, help)
+    return PackageFault(launch.moved, rationale, _SHARE)
 
 
 def lacking(facts: PackageFacts, lacks: Lacking) -> PackageFault:
     """Of what a launch file names, and is not there."""
     of_kind = {"file": _file, "package": _package}.get(lacks.kind, _program)
-    return of_kind(facts, lacks)
+    by: str | Message = lacks.by
+    if lacks.line:
+        by = msg("{file} (line {line})", file=lacks.by, line=lacks.line)
+    return of_kind(facts, lacks, by)
 
 
-def _by(lacking: Lacking) -> str | Message:
-    """The file that asks for something, with the line."""
-    if not lacking.line:
-        return lacking.by
-    return msg("{file} (line {line})", file=lacking.by, line=lacking.line)
-
-
-def _file(facts: PackageFacts, lacking: Lacking) -> PackageFault:
-    name, source, by = lacking.name, lacking.source, _by(lacking)
-    if source == lacking.by:
+def _file(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageFault:
+    name, source = lacks.name, lacks.source
+    if source == lacks.by:
         rationale = msg(
             "{source} is not installed: `ros2 launch {name}` does not find it.",
             source=source,
             name=facts.name,
         )
-        help = msg(
-            "data_files in setup.py (or install() in CMakeLists.txt) has to list the launch files."
-        )
-        return PackageFault("launch", rationale, help)
+        return PackageFault("launch", rationale, _LIST_IT)
+    path = shown(name.removeprefix(_EMPTY).removeprefix("/prefix/"))
     if not name.startswith(("/", "~")) or name.startswith(_EMPTY):
         rationale = msg(
             "{by} asks for {path}, a path from the current folder: it is there "
             "only for who stands in the right one.",
             by=by,
-            path=shown(name.removeprefix(_EMPTY)),
+            path=path,
         )
-        help = msg("Join it to the package's share folder: get_package_share_directory(NAME).")
-        return PackageFault(name, rationale, help)
-    if name.startswith("~") or not name.startswith(("/prefix/", "/opt/ros/")):
+        return PackageFault(name, rationale, _SHARE)
+    if not name.startswith(("/prefix/", "/opt/ros/")):
         rationale = msg(
-            "{by} asks for {path}: a path of one machine, which no other has.",
-            by=by,
-            path=shown(name),
+            "{by} asks for {path}: a path of one machine, which no other has.", by=by, path=path
         )
-        help = msg(
-            "Ask for the package's share folder: get_package_share_directory(NAME),"
-            " or FindPackageShare(NAME)."
-        )
-        return PackageFault(name, rationale, help)
-    path = name.removeprefix("/prefix/")
+        return PackageFault(name, rationale, _SHARE)
     if source:
-        help = msg(
-            "Compare the folder in data_files (or install() in CMakeLists.txt) with"
-            " the path that is asked for."
-        )
-        return PackageFault(dirname(source), _left(facts, by, shown(path), source), help)
+        return _left(facts, by, path, source)
+    rationale = msg("{by} asks for {path}, and the package has no such file.", by=by, path=path)
+    return PackageFault(name, rationale, _COMPARE)
+
+
+def _package(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageFault:
     return PackageFault(
-        name,
-        msg("{by} asks for {path}, and the package has no such file.", by=by, path=shown(path)),
+        f"package {lacks.name}",
         msg(
-            "Compare the name with the file's, letter by letter; is the file in what you handed in?"
+            "{by} asks for the package {name!r}, which is neither yours ({own}) "
+            "nor among your dependencies.",
+            by=by,
+            name=shown(lacks.name),
+            own=facts.name,
+        ),
+        msg(
+            "Was the name copied from another package? If it is meant, package.xml has to name it."
         ),
     )
 
 
-def _package(facts: PackageFacts, lacking: Lacking) -> PackageFault:
-    name, by = lacking.name, _by(lacking)
-    rationale = msg(
-        "{by} asks for the package {name!r}, which is neither yours ({own}) "
-        "nor among your dependencies.",
-        by=by,
-        name=shown(name),
-        own=facts.name,
-    )
-    help = msg(
-        "Was the name copied from another package? If it is meant, package.xml has to name it."
-    )
-    return PackageFault(f"package {name}", rationale, help)
-
-
-def _program(facts: PackageFacts, lacking: Lacking) -> PackageFault:
-    name, by = lacking.name, _by(lacking)
-    package, _, program = name.partition(" ")
+def _program(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageFault:
+    package, _, program = lacks.name.partition(" ")
+    values = {"by": by, "program": shown(program), "package": package}
     if package != facts.name:
         rationale = msg(
-            "{by} starts {program!r} of the package {package}, which has no such program.",
-            by=by,
-            program=shown(program),
-            package=package,
+            "{by} starts {program!r} of the package {package}, which has no such program.", **values
         )
         help = msg("Compare the name: `ros2 pkg executables PACKAGE` lists them.")
-        return PackageFault(name, rationale, help)
-    where = facts.setup.scripts_folder or "bin"
+        return PackageFault(lacks.name, rationale, help)
     if any(each.name == program for each in facts.setup.scripts):
-        rationale = msg(
-            "{by} starts {program!r} of {package}, which is installed in {where}; "
-            "expected lib/{package}: `ros2 launch` and `ros2 run` look there.",
-            by=by,
-            program=shown(program),
-            package=package,
-            where=where,
-        )
-        return PackageFault("scripts", rationale, _scripts_needed(package))
+        return _misplaced(facts)
     rationale = msg(
-        "{by} starts {program!r} of {package}, and the set-up has no such console script.",
-        by=by,
-        program=shown(program),
-        package=package,
+        "{by} starts {program!r} of {package}, and the set-up has no such console script.", **values
     )
     help = msg("Add it to console_scripts in setup.py: 'NAME = PACKAGE.MODULE:main'.")
     return PackageFault("scripts", rationale, help)
@@ -295,8 +254,7 @@ def unstarted(facts: PackageFacts) -> Iterator[PackageFault]:
             "package.xml cannot be used: {why}. colcon takes the folder for no ROS package.",
             why=facts.setup.manifest.map_texts(shown),
         )
-        help = msg("Compare it with one that `ros2 pkg create` writes.")
-        yield PackageFault("package.xml", rationale, help)
+        yield PackageFault("package.xml", rationale, AS_CREATED)
     for each in facts.setup.scripts:
         if each.fault:
             rationale = msg(
@@ -309,44 +267,31 @@ def unstarted(facts: PackageFacts) -> Iterator[PackageFault]:
                 "PACKAGE/MODULE.py has to be there, and the function in it."
             )
             yield PackageFault(f"script {each.name}", rationale, help)
-    folder, name = facts.setup.scripts_folder, facts.name
-    if facts.setup.scripts and folder.rstrip("/") != f"lib/{name}":
-        yield PackageFault(
-            "scripts",
-            msg(
-                "Programs are installed in {folder}; expected lib/{name}: `ros2 run {name}` looks "
-                "there.",
-                folder=shown(folder),
-                name=name,
-            )
-            if folder
-            else msg(
-                "Programs are installed in bin, since setup.cfg says nothing else; expected "
-                "lib/{name}: `ros2 run {name}` looks there.",
-                name=name,
-            ),
-            _scripts_needed(name),
-        )
+    if facts.setup.scripts and facts.setup.scripts_folder.rstrip("/") != f"lib/{facts.name}":
+        yield _misplaced(facts)
 
 
-def _scripts_needed(package: str) -> Message:
-    return msg(
-        "setup.cfg needs install_scripts=$base/lib/{package} below [install].", package=package
+def _misplaced(facts: PackageFacts) -> PackageFault:
+    """Of programs where nobody looks for them; without a setup.cfg that is bin."""
+    name = facts.name
+    rationale = msg(
+        "Programs are installed in {folder}; expected lib/{name}: `ros2 run {name}` looks there.",
+        folder=shown(facts.setup.scripts_folder) or "bin",
+        name=name,
     )
+    help = msg("setup.cfg needs install_scripts=$base/lib/{package} below [install].", package=name)
+    return PackageFault("scripts", rationale, help)
 
 
-def _left(facts: PackageFacts, by: str | Message, wanted: str, source: str) -> Message:
+def _left(facts: PackageFacts, by: str | Message, wanted: str, source: str) -> PackageFault:
     """Of a file of the package that nothing installs where it is asked for."""
-    pairs = list(zip(facts.setup.installed, facts.setup.sources, strict=True))
+    pairs = zip(facts.setup.installed, facts.setup.sources, strict=True)
     elsewhere = next((path for path, of in pairs if of == source), "")
-    values = {"by": by, "wanted": wanted, "source": source, "elsewhere": elsewhere}
-    if elsewhere:
-        return msg(
-            "{by} asks for {wanted}; {source} is in the package, and nothing installs it there "
-            "(but as {elsewhere}).",
-            **values,
-        )
-    return msg(
-        "{by} asks for {wanted}; {source} is in the package, and nothing installs it there.",
-        **values,
+    rationale = msg(
+        "{by} asks for {wanted}; {source} is in the package, and nothing installs it there{but}.",
+        by=by,
+        wanted=wanted,
+        source=source,
+        but=msg(" (but as {elsewhere})", elsewhere=elsewhere) if elsewhere else "",
     )
+    return PackageFault(dirname(source), rationale, _LIST_IT)
