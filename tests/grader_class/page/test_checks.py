@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from grader.text.message import joined, msg, plain_text, series
-from grader_class.page.checks import check_rows
+from grader_class.page.html import check_rows
 from tests.grader.reports.samples import diagnosis
 from tests.grader_class.page.classes import OFF, result
 
