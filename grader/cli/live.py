@@ -18,12 +18,12 @@ from rich.text import Text
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.result.visible import is_hidden
-from grader.recording.playback import JudgedCheck
 from grader.recording.recording import Clock
 from grader.reports import playback
 from grader.reports.report import Report
 from grader.run.handover import Plan
 from grader.scenes.live import Grading, LivePage
+from grader.scenes.playback import JudgedCheck
 from grader.scenes.scene import Scene
 from grader.text import strings as texts
 from grader.text.message import Message, msg

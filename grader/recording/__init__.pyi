@@ -1,4 +1,4 @@
-from grader.recording.channel import Channel as Channel
+from grader.recording.mcap import Channel as Channel
 from grader.recording.observations import Caught as Caught
 from grader.recording.observations import End as End
 from grader.recording.observations import EndKind as EndKind

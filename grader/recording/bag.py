@@ -18,8 +18,7 @@ from typing import Any, Final
 import yaml
 
 from grader.errors import RecordingError
-from grader.recording.channel import Channel
-from grader.recording.mcap import McapWriter, read_mcap
+from grader.recording.mcap import Channel, McapWriter, read_mcap
 from grader.recording.subject import Subject, Trace
 from grader.ros.bag_types import BagTypes
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from grader.recording.channel import Channel
+from grader.recording.mcap import Channel
 from grader.recording.subject import CAST_SCENE, BagMessage, Start, Subject, Trace, load_subject
 from grader.ros.bag_types import OF_ROS
 

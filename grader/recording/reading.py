@@ -35,7 +35,6 @@ from grader.recording.saving import (
     SCHEMA,
     varied_in,
 )
-from grader.recording.scene_at_work import scene_at_work
 from grader.recording.subject import (
     DEFAULT_SCENE,
     PACKAGE_SCENE,
@@ -43,6 +42,7 @@ from grader.recording.subject import (
     Subject,
     Trace,
     load_subject,
+    scene_at_work,
 )
 from grader.system import content, limited, strict_json
 from grader.system.limited import WorkLimits

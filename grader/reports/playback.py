@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import replace
 
 from grader.exercise.verdict import Verdict
-from grader.recording.observations import SourceLine
-from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun, Sent
+from grader.recording.observations import Burst, End
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
 from grader.reports.report import Report
+from grader.scenes.playback import JudgedCheck, Moment, Playback, PlayedRun
 from grader.text import strings as text
 from grader.text.translations import tr, translate
 
@@ -58,26 +59,18 @@ def _played_run(number: int, recording: Recording) -> PlayedRun:
     )
 
 
-def _sent(recording: Recording) -> tuple[Sent, ...]:
-    """Return the lines that sent, as the submission's process has reported.
+def _sent(recording: Recording) -> tuple[End, ...]:
+    """Return the ends that sent, with their lines, as the submission's process has reported.
 
-    A name with several endpoints is left out: the order in which these sent is not known.
+    A name with several of them is left out: the order in which these sent is not known.
     """
-    found: dict[str, list[Sent]] = {}
+    by_name: dict[str, list[End]] = defaultdict(list)
     for end in recording.observations.ends:
+        if not end.lines and end.used_at is not None:
+            end = replace(end, lines=(end.used_at,), sent=(Burst(0, 1),))
         if end.lines:
-            order = tuple((burst.line, burst.times) for burst in end.sent)
-            sent = Sent(end.name, end.used, tuple(map(_line, end.lines)), order)
-        elif end.used_at is not None:
-            sent = Sent(end.name, end.used, (_line(end.used_at),), ((0, 1),))
-        else:
-            continue
-        found.setdefault(end.name, []).append(sent)
-    return tuple(several[0] for several in found.values() if len(several) == 1)
-
-
-def _line(place: SourceLine) -> SourceLine:
-    return replace(place, function="")
+            by_name[end.name].append(end)
+    return tuple(ends[0] for ends in by_name.values() if len(ends) == 1)
 
 
 def _judged(report: Report, verdict: Verdict, runs: int) -> JudgedCheck:

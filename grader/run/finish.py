@@ -26,8 +26,7 @@ from grader.recording.recording import (
     Recording,
     Run,
 )
-from grader.recording.scene_at_work import scene_at_work
-from grader.recording.subject import Trace, load_subject
+from grader.recording.subject import Trace, load_subject, scene_at_work
 from grader.run.evidence import EvidencePage
 from grader.run.handover import Plan, keeper
 from grader.run.limits import LIMITS, size

@@ -9,10 +9,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from grader.recording.playback import JudgedCheck
 from grader.text.translations import current
 
 if TYPE_CHECKING:  # few want a page
+    from grader.scenes.playback import JudgedCheck
     from turtlesim_py.live.feed import Deliver
     from turtlesim_py.live.server import LiveServer
     from turtlesim_py.world.canvas import Canvas

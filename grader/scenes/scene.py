@@ -16,8 +16,7 @@ from pathlib import PurePath
 from typing import Any, ClassVar, Final, Literal, get_args
 
 from grader.errors import SceneFailure
-from grader.recording.scene_at_work import LONGEST_WORDS
-from grader.recording.subject import Start, Subject, Trace, load_subject
+from grader.recording.subject import LONGEST_WORDS, Start, Subject, Trace, load_subject
 from grader.scenes.live import LivePage
 from grader.text.message import Message, msg
 

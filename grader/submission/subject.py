@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar, Final
 
-from grader.recording.channel import Channel
+from grader.recording.mcap import Channel
 from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
 from grader.recording.view import Part, View
 from grader.ros.cdr import string, string_of

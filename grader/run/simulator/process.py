@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from grader.recording.scene_at_work import overdue, scene_at_work
+from grader.recording.subject import overdue, scene_at_work
 from grader.run.handover import Plan
 from grader.run.limits import SCENE_S, SIMULATOR_BYTES
 from grader.system import linux

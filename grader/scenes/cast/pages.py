@@ -9,11 +9,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
-from grader.recording.playback import Playback, PlayedRun
-from grader.scenes import joined
 from grader.scenes.cast import timeline
 from grader.scenes.cast.trace import CastTrace
 from grader.scenes.live import LivePage
+from grader.scenes.playback import Playback, PlayedRun, render_page
 from grader.scenes.scene import STEP_NS
 
 PAGE: Final = Path(__file__).with_name("page")
@@ -25,7 +24,7 @@ def render(playback: Playback) -> str:
     others = () if other is None else tuple((f"{other.title}: {r.title}", r) for r in other.runs)
     data = {"runs": [_run(*each) for each in (*((r.title, r) for r in playback.runs), *others)]}
     live = PAGE / "live"
-    return joined.render(
+    return render_page(
         playback, PAGE / "replay.html", data, STEP_NS / 1e9, [PAGE, live], [live / "timeline.css"]
     )
 

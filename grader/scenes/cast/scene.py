@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, ClassVar
 
-from grader.recording.channel import Channel
-from grader.recording.playback import Playback
+from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage, Start, Trace
 from grader.recording.view import Cell, Table, View
 from grader.scenes.cast import trace
 from grader.scenes.cast.trace import CastTrace
 from grader.scenes.live import LivePage
+from grader.scenes.playback import Playback
 from grader.scenes.scene import (
     STEP_NS,
     Hooks,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final, NamedTuple
 
-from grader.recording.channel import Channel
+from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage
 from grader.ros.bag_types import BagTypes
 from grader.ros.cdr import string, string_of

@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording.channel import Channel
+from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage
 from grader.recording.view import Times
 from grader.ros.bag_types import BagTypes

@@ -9,23 +9,25 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, ClassVar, Final
 
-from grader.recording.channel import Channel
-from grader.recording.playback import Playback
+from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage, Endpoint, Start, Trace
 from grader.recording.view import Pictures, View
 from grader.scenes.live import LivePage
+from grader.scenes.playback import Playback
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
-from grader.scenes.turtlesim import interfaces, messages, remarks, view
+from grader.scenes.turtlesim import interfaces, messages, view, words
 from grader.scenes.turtlesim.interfaces import endpoints_of
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace
-from grader.text.message import Message, msg
+from grader.text.message import NOTHING, Message, msg
 from grader.text.translations import tr
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import TICK_NS
-from turtlesim_py.world.events import to_json
+from turtlesim_py.world.events import Spawn, to_json
 from turtlesim_py.world.turtle import SIZE_M
 
 _TURTLE = f"/{FIRST_TURTLE}"
+#: The longest scenario [ticks]: an hour. It is replayed when an exercise is loaded.
+MOST_TICKS: Final = 225_000
 
 
 class Turtlesim(Scene):
@@ -52,10 +54,31 @@ class Turtlesim(Scene):
     usual_start = USUAL_START
 
     def wrong_setting(self, setting: str) -> Message:
-        """Return why a setting is no scenario; NOTHING where it is one."""
-        from grader.scenes.turtlesim import setting as scenarios
+        """Return why a setting is no scenario to play beside a submission; NOTHING where it is.
 
-        return scenarios.wrong(setting)
+        It may have any turtles. Its events of a tick happen before those that the submission has
+        sent for that tick.
+        """
+        from turtlesim_py.scenario import ScenarioError, events_by_tick, parse, replay
+
+        if not setting:
+            return NOTHING
+        try:
+            scenario = parse(setting)
+            ticks = scenario.get("ticks")
+            if isinstance(ticks, int) and ticks > MOST_TICKS:
+                return msg(
+                    "expected {most} ticks at most, found {ticks}", most=MOST_TICKS, ticks=ticks
+                )
+            replay(scenario)
+            for tick, each in events_by_tick(scenario).items():
+                if tick > 1 and any(isinstance(event, Spawn) for _, event in each):
+                    return msg(
+                        "expected turtles to be spawned in tick 1, found tick {tick}", tick=tick
+                    )
+        except ScenarioError as error:
+            return msg("expected a scenario in JSON: {why}", why=str(error))
+        return NOTHING
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Return places at a distance from the centre of the window; the same for the same seed."""
@@ -70,30 +93,27 @@ class Turtlesim(Scene):
         return found
 
     def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
-        """Choose one of the two packages that turtlesim's messages come from."""
         return interfaces.choose(surely, perhaps)
 
     def adapted(self, text: str, ros_distro: str) -> str:
-        """Return a file with the package of messages that the release has."""
         return interfaces.adapted(text, ros_distro)
 
     def how_to_try(self, program: str, package: str) -> str:
-        """Explain how to run a node beside turtlesim, and how to see the turtle."""
-        name = PurePath(program).stem
         parts = [
             tr(
                 "From the folder above this one, in one terminal the simulator, in another your "
                 "node:"
             ),
-            _BESIDE.format(command=command_by_hand(program, package)),
+            f"    turtlesim\n    {command_by_hand(program, package)}",
         ]
         if package:
             parts += [
                 tr("The same with `ros2`, in a workspace that has this folder in its `src`:"),
-                _WITH_ROS2.format(package=package, name=name),
+                "    colcon build && . install/setup.bash\n    ros2 run turtlesim_py turtlesim\n"
+                f"    ros2 run {package} {PurePath(program).stem}",
             ]
         parts += [tr("To see the turtle:"), "\n".join(_ways_to_see())]
-        return "\n\n".join(part.strip("\n") for part in parts) + "\n"
+        return "\n\n".join(parts) + "\n"
 
     def preload(self) -> None:
         """Import the node, decode the picture of the turtle."""
@@ -104,7 +124,6 @@ class Turtlesim(Scene):
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
     ) -> Simulation:
-        """Make the node and the recorder; ROS is up."""
         from grader.scenes.turtlesim.simulation import TurtlesimSimulation
 
         return TurtlesimSimulation(limits, start, hooks, interfaces, setting)
@@ -121,11 +140,9 @@ class Turtlesim(Scene):
             yield from messages.topics(turtle).items()
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
-        """Serialise a trace as messages, by time."""
         return messages.to_messages(TurtleTrace.of(made))
 
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
-        """Parse a bag's channels; see `grader.scenes.turtlesim.messages`."""
         return messages.from_channels(channels, duration_ns // TICK_NS)
 
     def scenario(self, made: Trace) -> dict[str, Any]:
@@ -135,7 +152,6 @@ class Turtlesim(Scene):
         return {"ticks": made.ticks, "events": within}
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
-        """Return the endpoints of the node and of each turtle."""
         return endpoints_of(TurtleTrace.of(made), interfaces)
 
     def pictures(self, made: Trace) -> Pictures:
@@ -148,41 +164,26 @@ class Turtlesim(Scene):
 
     @property
     def player(self) -> Callable[[Playback], str]:
-        """The function that renders the page that plays runs."""
-        from grader.scenes.turtlesim.player.page import render
+        from grader.scenes.turtlesim.pages import render
 
         return render
 
     def live_page(self, port: int) -> LivePage:
-        """Serve the simulator's page, read-only."""
-        from grader.scenes.turtlesim.live import TurtlesimPage
+        from grader.scenes.turtlesim.pages import TurtlesimPage
 
         return TurtlesimPage.serve(port)
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        """Return the traces of odd nodes."""
         from grader.scenes.turtlesim.driving import odd_traces
 
         return odd_traces(start)
 
     def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
-        """Return remarks on changes of the arena other than by driving, and on the messages."""
-        return list(remarks.remarks(TurtleTrace.of(made), published, interfaces))
-
-
-_BESIDE = """\
-    turtlesim
-    {command}
-"""
-_WITH_ROS2 = """\
-    colcon build && . install/setup.bash
-    ros2 run turtlesim_py turtlesim
-    ros2 run {package} {name}
-"""
+        return list(words.remarks(TurtleTrace.of(made), published, interfaces))
 
 
 def _ways_to_see() -> Iterator[str]:
-    """Yield the ways to see the turtle, each as an item of a list."""
+    """Return the ways to see the turtle, each as an item of a list."""
     points = (
         tr(
             "Every grading leaves `report.html`: the picture, the way, an animation, the speeds "
@@ -203,14 +204,10 @@ def _ways_to_see() -> Iterator[str]:
             "window; your node drives that turtle as well."
         ),
     )
-    for point in points:
-        yield textwrap.fill(
-            f"- {point}",
-            100,
-            subsequent_indent="  ",
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
+    item = textwrap.TextWrapper(
+        100, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
+    )
+    return (item.fill(f"- {point}") for point in points)
 
 
 SCENE: Final = Turtlesim()

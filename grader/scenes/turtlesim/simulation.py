@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from itertools import count
 from typing import Any
 
 from grader.recording.subject import Start
 from grader.scenes.scene import GRACE_TICKS, Forecast, Hooks, Limits, Reason, Simulation
-from grader.scenes.turtlesim.allowance import MOST_LOGS
 from grader.scenes.turtlesim.driving import Recorder, place
-from grader.scenes.turtlesim.graded_node import GradedNode
-from grader.scenes.turtlesim.setting import script
+from grader.scenes.turtlesim.graded_node import MOST_LOGS, GradedNode
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.text.message import Message
 from turtlesim_py.live.feed import Feed, News
 from turtlesim_py.ros.turtle_endpoints import pose_bytes
+from turtlesim_py.scenario import events_by_tick, parse
 from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.events import Event, Spawn
 from turtlesim_py.world.turtle import TICK_S, Pose, Reading
 
 
@@ -112,6 +112,23 @@ def _feed(arena: Arena, send: Callable[[Mapping[str, Any]], None]) -> Feed:
     feed.is_watched = True
     feed.after_tick({})
     return feed
+
+
+def script(setting: str) -> tuple[Sequence[Event], Mapping[int, Sequence[Event]]]:
+    """Return a scenario's events before a run begins, and those by tick; 1 is recorded first.
+
+    Turtles of tick 1 are spawned before the run: a submission that waits for a later one would look
+    as if it waited in vain.
+    """
+    if not setting:
+        return (), {}
+    by_tick = {
+        tick: [event for _, event in each] for tick, each in events_by_tick(parse(setting)).items()
+    }
+    spawned = [event for event in by_tick.get(1, ()) if isinstance(event, Spawn)]
+    if spawned:
+        by_tick[1] = [event for event in by_tick[1] if event not in spawned]
+    return spawned, by_tick
 
 
 class EndOfRun:

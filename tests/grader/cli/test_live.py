@@ -16,7 +16,7 @@ from grader import grading
 from grader.cli import live, main
 from grader.exercise.loading import load_exercise
 from grader.scenes import load_scene
-from grader.scenes.turtlesim.live import TurtlesimPage
+from grader.scenes.turtlesim.pages import TurtlesimPage
 from tests.programs import DEADLINE_S, ROOT
 
 QUICK = ROOT / "tests" / "submissions" / "quick_spiral.py"

@@ -8,7 +8,7 @@ from grader.run import real_time, simulator_process, virtual_time
 from grader.run.handover import Plan
 from grader.run.opening import open_submission
 from grader.scenes.scene import Limits
-from grader.scenes.turtlesim.live import TurtlesimPage
+from grader.scenes.turtlesim.pages import TurtlesimPage
 from tests.grader.run.conftest import LIMITS
 from tests.hand_ins import SUBMISSIONS
 from tests.tiers import others_are_more

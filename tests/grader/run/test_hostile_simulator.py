@@ -15,7 +15,7 @@ from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.simulator import hub, link
 from grader.scenes.scene import Limits
-from grader.scenes.turtlesim.allowance import LONGEST_NAME, MOST_TURTLES
+from grader.scenes.turtlesim.graded_node import LONGEST_NAME, MOST_TURTLES
 from tests import runs
 from tests.runs import CHALLENGE, SUBMISSIONS
 from tests.tiers import others_are_more

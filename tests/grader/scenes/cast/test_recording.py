@@ -12,7 +12,7 @@ from rosbags.rosbag2 import Reader
 from std_msgs.msg import Float64, String
 
 from grader.recording import bag
-from grader.recording.channel import Channel
+from grader.recording.mcap import Channel
 from grader.recording.subject import load_subject
 from grader.ros.cdr import string
 from grader.ros.messages import plain, serialise

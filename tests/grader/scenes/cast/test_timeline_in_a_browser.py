@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from grader.exercise.loading import load_exercise
-from grader.recording.playback import JudgedCheck, Moment, Playback, PlayedRun
 from grader.scenes.cast import timeline
 from grader.scenes.cast.pages import TimelinePage, render
 from grader.scenes.live import Grading
+from grader.scenes.playback import JudgedCheck, Moment, Playback, PlayedRun
 from tests import runs
 from tests.barriers import barriers
 from tests.browser import WIDTHS, clipped, cut_off, needs_browser

@@ -11,10 +11,10 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from grader.recording.playback import JudgedCheck
 from grader.scenes import load_scene
 from grader.scenes.live import Grading
-from grader.scenes.turtlesim.live import TurtlesimPage
+from grader.scenes.playback import JudgedCheck
+from grader.scenes.turtlesim.pages import TurtlesimPage
 from tests.programs import DEADLINE_S
 from turtlesim_py.live.feed import Feed
 from turtlesim_py.world.arena import Arena

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from grader.recording.channel import Channel
+from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage
 from grader.ros.bag_types import OF_ROS
 from grader.ros.cdr import string

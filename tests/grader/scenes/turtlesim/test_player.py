@@ -10,14 +10,14 @@ import pytest
 from hypothesis import given
 
 from grader.errors import RecordingError
-from grader.recording.observations import SourceLine
-from grader.recording.playback import JudgedCheck, Playback, PlayedRun, Sent
+from grader.recording.observations import Burst, End, SourceLine
 from grader.recording.subject import Start
-from grader.scenes import joined
+from grader.scenes import playback
+from grader.scenes.playback import JudgedCheck, Playback, PlayedRun
+from grader.scenes.turtlesim import pages
 from grader.scenes.turtlesim.driving import drive
-from grader.scenes.turtlesim.player import page
-from grader.scenes.turtlesim.player.page import first_difference
-from grader.scenes.turtlesim.player.replay import MOST_TICKS, WIPED, animate
+from grader.scenes.turtlesim.pages import first_difference
+from grader.scenes.turtlesim.replay import MOST_TICKS, WIPED, animate
 from grader.testing import pen, twist
 from tests.grader.driving import Spiral
 from tests.grader.scenes.turtlesim.traces import odd_traces
@@ -186,8 +186,11 @@ COMMANDS = [{"op": "cmd_vel", "turtle": "turtle1", "tick": tick} for tick in (1,
 LINES = (SourceLine("a.py", 5, text="go"), SourceLine("a.py", 9, text="stop"))
 
 
-def lines_of(sent):
-    made = page.with_lines([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
+def lines_of(name, used, lines, told):
+    sent = End(
+        "publisher", name, "", True, used, lines=lines, sent=tuple(Burst(*each) for each in told)
+    )
+    made = pages.with_lines([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
     lines = [line["line"] for line in made["lines"]]
     found = [call.get("line") for call in made["calls"]]
     return [None if each is None else lines[each] for each in found]
@@ -202,19 +205,19 @@ def lines_of(sent):
     ],
 )
 def test_what_came_has_its_line_as_far_as_as_many_were_sent(times, told, lines):
-    assert lines_of(Sent("/turtle1/cmd_vel", times, LINES, told)) == [None, *lines]
+    assert lines_of("/turtle1/cmd_vel", times, LINES, told) == [None, *lines]
 
 
 def test_nothing_is_known_of_what_was_sent_by_another_name():
-    assert lines_of(Sent("/turtle2/cmd_vel", 3, LINES, ((0, 3),))) == [None] * 4
-    assert lines_of(Sent("/clear", 1, LINES, ((1, 1),))) == [9, None, None, None]
+    assert lines_of("/turtle2/cmd_vel", 3, LINES, ((0, 3),)) == [None] * 4
+    assert lines_of("/clear", 1, LINES, ((1, 1),)) == [9, None, None, None]
 
 
 def test_what_stands_in_a_result_ends_no_element_of_the_page():
     evil = "</script><script>alert(1)</script><!-- $data & co"
     trace = drive(eventful, 3)[0]
     judged = JudgedCheck(evil, "failed", evil, evil, evil, ())
-    made = page.render(Playback(evil, evil, (PlayedRun(0, evil, evil, trace),), (judged,)))
+    made = pages.render(Playback(evil, evil, (PlayedRun(0, evil, evil, trace),), (judged,)))
     assert made.count("<script") == 2
     assert made.count("</script>") == 2
     assert "alert(1)</" not in made
@@ -223,7 +226,7 @@ def test_what_stands_in_a_result_ends_no_element_of_the_page():
 def test_a_module_that_cannot_be_joined_is_named(tmp_path):
     (tmp_path / "a.js").write_text('import { b } from "./b.js";\nb();\n')
     with pytest.raises(ValueError, match=r"no module b\.js"):
-        joined.join_modules("a", [tmp_path])
+        playback.join_modules("a", [tmp_path])
     (tmp_path / "b.js").write_text("export default 3;\n")
     with pytest.raises(ValueError, match=r"b\.js: cannot be joined: export default"):
-        joined.join_modules("a", [tmp_path])
+        playback.join_modules("a", [tmp_path])

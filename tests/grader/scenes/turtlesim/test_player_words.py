@@ -4,26 +4,26 @@ import json
 
 import pytest
 
-from grader.scenes import joined
+from grader.scenes import playback
 from grader.scenes.cast import pages
 from grader.text.translations import ENGLISH, catalogue
 
 #: Of each page its name, its first module, and the folders of its modules before those of others.
 PAGES = [
-    ("player.html", "player", [joined.PLAYER]),
-    ("replay.html", "replay", [pages.PAGE, pages.PAGE / "live", joined.PLAYER]),
+    ("player.html", "player", [playback.PLAYER]),
+    ("replay.html", "replay", [pages.PAGE, pages.PAGE / "live", playback.PLAYER]),
 ]
 
 
 def sentences(html, entry, folders, language):
-    text = joined.whole_html(folders[0] / html)
-    modules = joined.join_modules(entry, [*folders, joined.LIVE_PAGE])
-    return joined._sentences(f"{modules} {text}", language)
+    text = playback.whole_html(folders[0] / html)
+    modules = playback.join_modules(entry, [*folders, playback.LIVE_PAGE])
+    return playback._sentences(f"{modules} {text}", language)
 
 
 @pytest.mark.parametrize(("html", "entry", "folders"), PAGES)
 def test_a_page_has_the_translations_of_its_own_sentences_and_the_live_pages(html, entry, folders):
-    shared = json.loads((joined.LIVE_PAGE / "fr.json").read_text(encoding="utf-8"))
+    shared = json.loads((playback.LIVE_PAGE / "fr.json").read_text(encoding="utf-8"))
     there = sentences(html, entry, folders, "fr")
     assert shared.items() <= there.items()
     assert there["Pause"] == catalogue("fr")["Pause"]

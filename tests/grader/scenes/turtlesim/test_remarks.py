@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from grader.scenes.turtlesim.remarks import remarks
 from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.scenes.turtlesim.words import remarks
 from tests.grader.driving import Spiral, drive
 from turtlesim_py.world.events import (
     Clear,

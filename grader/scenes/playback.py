@@ -1,4 +1,7 @@
-"""Pages that play runs, one file each: their modules are one script, which alone may run there."""
+"""Pages that play runs: what they show, and one file each.
+
+The modules of a page are one script, which alone may run there.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ import hashlib
 import json
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -14,15 +18,94 @@ from string import Template
 from typing import Any, Final
 
 import turtlesim_py
-from grader.recording.playback import JudgedCheck, Moment, Playback
+from grader.recording.observations import End
+from grader.recording.subject import Start, Trace
 from grader.text.translations import catalogue, current, tr
 
 #: Modules that several pages share: of the page that plays runs, and of the live page.
-PLAYER: Final = Path(__file__).parent / "turtlesim" / "player" / "page"
+PLAYER: Final = Path(__file__).parent / "turtlesim" / "page"
 LIVE_PAGE: Final = Path(turtlesim_py.__file__).parent / "live" / "page"
 
 
-def render(
+@dataclass(frozen=True)
+class Moment:
+    """A piece of evidence.
+
+    Attributes:
+        number: 1, 2, ... over all checks.
+        run: 0 for the nominal run, 1, 2, ... for the varied ones.
+        time_s: when [simulated s].
+        place: x, y [m]; None for nowhere.
+        text: when, where and what, in words.
+    """
+
+    number: int
+    run: int
+    time_s: float
+    place: tuple[float, float] | None
+    text: str
+
+
+@dataclass(frozen=True)
+class JudgedCheck:
+    """The verdict of a check, as shown.
+
+    Attributes:
+        title: what it asks for.
+        status: `passed`, `failed` or `not_judged`; on a live page, `waiting` before that.
+        word: the same for people, with its points.
+        rationale, help: what was found, and a hint.
+        moments: where to see it.
+    """
+
+    title: str
+    status: str
+    word: str
+    rationale: str
+    help: str
+    moments: tuple[Moment, ...]
+
+
+@dataclass(frozen=True)
+class PlayedRun:
+    """A run.
+
+    Attributes:
+        number: 0 for the nominal one.
+        title: 'Nominal run', 'Varied run 1'.
+        outcome: how it ended, in a word or two.
+        sent: what has sent, one for a name at most, as the submission's process has reported.
+        start: where it began; None for the usual place.
+    """
+
+    number: int
+    title: str
+    outcome: str
+    trace: Trace
+    start: Start | None = None
+    sent: tuple[End, ...] = ()
+
+
+@dataclass(frozen=True)
+class Playback:
+    """The runs that are played, and their judgement.
+
+    Attributes:
+        title: name and score, in a line.
+        summary: the diagnosis, in a line; '' where nothing was judged.
+        runs: the nominal one, and the varied ones.
+        judged: the verdicts, in the order of the checks.
+        other: to compare with.
+    """
+
+    title: str
+    summary: str
+    runs: tuple[PlayedRun, ...]
+    judged: tuple[JudgedCheck, ...] = ()
+    other: Playback | None = None
+
+
+def render_page(
     playback: Playback,
     page: Path,
     data: dict[str, Any],

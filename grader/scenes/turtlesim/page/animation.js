@@ -1,6 +1,6 @@
 // An animated run: the paint and the turtles in every frame. Frame 0 is before the first tick.
 //
-// grader/scenes/turtlesim/player/animation.py writes the data.
+// grader/scenes/turtlesim/replay.py writes the data.
 
 import { SIZE_PX, TurtleWindow } from "./window.js";
 

@@ -1,1 +1,0 @@
-"""The page that plays runs of turtlesim: animations of them, and the page itself."""
