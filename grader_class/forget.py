@@ -16,7 +16,7 @@ from pathlib import Path
 
 from grader import Exercise, UsageError
 from grader.exercise import PAGE, RESULT, View
-from grader.reports import Beside, Report, render
+from grader.reports import Artifacts, Report, render
 from grader.system import files, remove
 from grader.text import listed, nearest
 from grader_class import batch
@@ -143,7 +143,7 @@ def _rename(entry: Entry, hand_in: HandIn, store: Store) -> None:
         named = replace(_as(entry, hand_in), folder=made)
         if named.result is not None:
             named.result.put(made / RESULT)
-            report = Report(named.result, Beside(named.result, made), "whole")
+            report = Report(named.result, Artifacts(named.result, made), "whole")
             files.put(made / PAGE, render("html", [report]).encode("utf-8"))
         named.put()
         remove(target)

@@ -24,7 +24,6 @@ class Both:
 
     @property
     def duration_ns(self) -> int:
-        """The length of the recording [simulated ns]."""
         return self.trace.duration_ns
 
     @property
@@ -44,7 +43,6 @@ class CastKeeper(Subject):
 
     @property
     def name(self) -> str:  # type: ignore[override]
-        """The scene's."""
         return self._scene.name
 
     def untouched(self, start: Start | None) -> Trace:

@@ -286,7 +286,6 @@ class _Found:
                 raise ValueError(f"a record of kind {kind} stands among its messages")
 
     def channels(self) -> list[Channel]:
-        """Return what was found by channels."""
         columns = np.array(self._messages, np.int64).reshape(-1, 4)
         times_ns, places, begins, ends = columns.T
         if (places < 0).any() or (begins > ends).any():

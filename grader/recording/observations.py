@@ -271,7 +271,6 @@ class Observations:
         return replace(self, **made)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the observations as `from_json` reads them."""
         return asdict(self)
 
     @classmethod

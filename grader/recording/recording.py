@@ -107,7 +107,6 @@ class OwnInterfaces:
 
     @property
     def packages(self) -> set[str]:
-        """The names of their packages."""
         return {name.partition("/")[0] for name in (*self.texts, *self.faults)}
 
 

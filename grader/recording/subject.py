@@ -63,7 +63,6 @@ class Start:
 
     @property
     def is_as_commanded(self) -> bool:
-        """Whether commands are obeyed as they are given."""
         return self.speed == self.turn == 1.0
 
     @property

@@ -272,7 +272,6 @@ class Plane(NamedTuple):
         return (x - self.origin_m) * self.metre_px, (self.end_m - y) * self.metre_px
 
     def holds(self, x: float, y: float, slack_m: float = 0.01) -> bool:
-        """Whether a place is in it."""
         first, last = self.origin_m - slack_m, self.end_m + slack_m
         return first <= x <= last and first <= y <= last
 

@@ -20,7 +20,6 @@ _LEVEL: Final = 3
 
 
 def compress(data: bytes) -> bytes:
-    """Compress data into one frame."""
     if found := python():
         return bytes(found.compress(data))
     library = c_library()
@@ -63,7 +62,6 @@ def python() -> Any:
 
 @cache
 def c_library() -> Any:
-    """Return the C library."""
     try:
         library = ctypes.CDLL(_LIBRARY)
     except OSError:

@@ -1,4 +1,3 @@
-from grader.reports.beside import Beside as Beside
 from grader.reports.csv import cell as cell
 from grader.reports.csv import is_safe_id as is_safe_id
 from grader.reports.csv import table as table
@@ -11,6 +10,7 @@ from grader.reports.formats import render as render
 from grader.reports.page import pictures as pictures
 from grader.reports.page import templating as templating
 from grader.reports.page.html import draw as draw
+from grader.reports.report import Artifacts as Artifacts
 from grader.reports.report import Report as Report
 from grader.reports.wording import outcome_text as outcome_text
 from grader.reports.wording import points as points

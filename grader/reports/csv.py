@@ -28,7 +28,6 @@ _AFTER = ("outcome", "first_to_mend", "flags", "trace_sha256", "folder")
 
 
 def render(report: Report | ErrorReport) -> str:
-    """Return the table of one result or error."""
     return render_all([report])
 
 

@@ -75,7 +75,6 @@ class ErrorReport:
 
     @property
     def title(self) -> str:
-        """The state, in a few words."""
         return tr("Cannot be graded") if self.is_judged else tr("Not graded")
 
     @property
@@ -87,7 +86,6 @@ class ErrorReport:
 
     @property
     def before(self) -> str:
-        """The sentence before the message."""
         if self.is_judged:
             return tr("This cannot be graded, so it has no points:")
         return translate(joined([_WHAT[self.whose], _NOT_YOURS], " "))

@@ -11,9 +11,8 @@ from grader.exercise.result import json_file
 from grader.exercise.result.json_file import ErrorResult
 from grader.exercise.result.result import Result
 from grader.exercise.result.visible import View
-from grader.reports.beside import Beside
 from grader.reports.error_report import ErrorReport
-from grader.reports.report import Report
+from grader.reports.report import Artifacts, Report
 from grader.system import extensions
 from grader.text.message import Message
 
@@ -36,12 +35,10 @@ class Format:
 
 
 def names() -> Sequence[str]:
-    """Return the names of the installed formats."""
     return tuple(extensions.points(extensions.REPORTS))
 
 
 def load(name: str) -> Format:
-    """Load a format by one of `names`."""
     form: Format = extensions.load(extensions.REPORTS, name)
     return form
 
@@ -61,7 +58,7 @@ def read(path: Path, checks: Sequence[str] = (), view: View = "student") -> Repo
         failed = json_file.made(ErrorResult.from_json, path, data)
         return ErrorReport(failed, path.parent, checks, path)
     result = json_file.made(Result.from_json, path, data)
-    return Report(result, Beside(result, path.parent), view)
+    return Report(result, Artifacts(result, path.parent), view)
 
 
 def render(name: str, reports: Sequence[Report | ErrorReport]) -> str:

@@ -98,7 +98,7 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
 
 def _canvas_here(report: Report) -> str:
     """Return the picture's path relative to the project, for GitLab; '' where it has none."""
-    path = report.beside.canvas_path
+    path = report.artifacts.canvas_path
     if path is None or not path.is_relative_to(Path.cwd()):
         return ""
     name = path.relative_to(Path.cwd()).as_posix()

@@ -38,7 +38,6 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """Return the error, ending with a line break."""
     title = report.title
     if report.is_judged:
         title = tr("{title}: {score} points", title=title, score=report.score_text)

@@ -1,24 +1,101 @@
-"""The input of every format: a result with its picture and recordings."""
+"""The input of every format: a result, and its artifacts: picture, recordings, output."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Self
 
+from grader.errors import RecordingError
 from grader.exercise.result.result import Result
 from grader.exercise.result.visible import View, student_view
 from grader.exercise.verdict import Evidence, Verdict
+from grader.recording import reading
 from grader.recording.recording import Recording, Recordings
 from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
 from grader.reports import readable, wording
-from grader.reports.beside import Beside
 from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, points, title_of, where, word
 from grader.text import strings as text
 from grader.text.message import NOTHING, Message
 from grader.text.translations import tr, translate
+
+
+class Artifacts:
+    """The artifacts beside a result file; each is read when it is first used.
+
+    Args:
+        recordings: those of a new result, which then need not be read back.
+
+    Attributes:
+        folder: of the result file; artifacts outside it are ignored.
+    """
+
+    def __init__(self, result: Result, folder: Path, recordings: Recordings | None = None) -> None:
+        self.folder = folder
+        self._paths = text.plain_all(dict(result.artifacts))
+        self._runs = 1 + len(result.varied_runs)
+        self._made = recordings
+
+    @cached_property
+    def canvas_path(self) -> Path | None:
+        """The path of the final window's picture; None where there is none."""
+        path = self._artifact("canvas")
+        return path if path is not None and path.is_file() else None  # reading a pipe would block
+
+    @property
+    def canvas_file(self) -> Path | None:
+        """`canvas_path` if the picture has to be read from the file, else None."""
+        return None if self._made is not None else self.canvas_path
+
+    @property
+    def solid_words(self) -> str:
+        """What only a page could draw, in words, where no recording is kept; '' for nothing."""
+        return ""
+
+    @cached_property
+    def scene(self) -> str:
+        """The name of the scene; the default one where there is no recording."""
+        if self._made is not None:
+            return self._made.nominal.scene
+        base = self._artifact("recording")
+        return DEFAULT_SCENE if base is None else reading.scene_of(base)
+
+    @cached_property
+    def recordings(self) -> Mapping[int, Recording | Message]:
+        """Run (0 nominal, 1, 2, ... varied) -> its recording, or why that cannot be read."""
+        if self._made is not None:
+            return dict(enumerate(self._made))
+        base = self._artifact("recording")
+        if base is None:
+            return {}
+        loaded: dict[int, Recording | Message] = {}
+        for run in range(self._runs):
+            try:
+                loaded[run] = reading.load(base / f"varied_{run}" if run else base)
+            except RecordingError as error:
+                loaded[run] = error.message
+        return loaded
+
+    @cached_property
+    def output(self) -> str:
+        """The output of the node in the nominal run."""
+        path = None if self._made is not None else self._artifact("output")
+        if path is not None and path.is_file():
+            return path.read_bytes().decode(errors="replace")
+        nominal = self.recordings.get(0)
+        return nominal.output if isinstance(nominal, Recording) else ""
+
+    def _artifact(self, name: str) -> Path | None:
+        """Return the path of an artifact; None if it is missing or outside the result's folder."""
+        relative = self._paths.get(name)
+        if not relative:
+            return None
+        folder = self.folder.resolve()
+        path = (folder / relative).resolve()
+        return path if path.is_relative_to(folder) and path.exists() else None
 
 
 @dataclass(frozen=True)
@@ -51,7 +128,7 @@ class Report:
 
     Args:
         result: the result.
-        beside: the picture, the recordings and the output.
+        artifacts: the picture, the recordings and the output.
         view: what its reader may see; all else is left out of the report.
 
     Attributes:
@@ -67,15 +144,15 @@ class Report:
         not_shown_name: the name of these as one check, for formats that know only checks.
         made: when this report was made, in UTC.
         notes: sentences on whose attempt it is, the deduction for lateness, and `not_shown`.
-        beside, view: as above.
+        artifacts, view: as above.
     """
 
-    def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
+    def __init__(self, result: Result, artifacts: Artifacts, view: View = "student") -> None:
         seen = result if view == "whole" else student_view(result, view == "after_due")
         shown: Result = text.plain_all(readable.few(seen), readable.RAW_LIMIT)
         self._result = result
         self.made = datetime.now(UTC)
-        self.beside = beside
+        self.artifacts = artifacts
         self.view = view
         self.exercise = readable.line(shown.exercise) or tr("(no name)")
         self.submission = readable.line(shown.submission) or tr("(no name)")
@@ -103,12 +180,11 @@ class Report:
         cls, result: Result, folder: Path, recordings: Recordings, view: View = "student"
     ) -> Self:
         """Make the report of a new result, which will be in a folder."""
-        return cls(result, Beside(result, folder, recordings), view)
+        return cls(result, Artifacts(result, folder, recordings), view)
 
     @cached_property
     def whole(self) -> Report:
-        """The report for a teacher."""
-        return self if self.view == "whole" else Report(self._result, self.beside, "whole")
+        return self if self.view == "whole" else Report(self._result, self.artifacts, "whole")
 
     def seen_by_students(self, verdict: Verdict) -> str:
         """Return, for a teacher, what students see of a verdict; '' for all, and for students."""
@@ -118,8 +194,7 @@ class Report:
 
     @property
     def folder(self) -> Path:
-        """The folder of the result file."""
-        return self.beside.folder
+        return self.artifacts.folder
 
     @property
     def score_text(self) -> str:
@@ -134,7 +209,6 @@ class Report:
         return tuple(Point(number, *one) for number, one in enumerate(listed, 1))
 
     def points_of(self, verdict: Verdict) -> tuple[Point, ...]:
-        """Return the evidence of one verdict."""
         index = self.verdicts.index(verdict)
         return tuple(point for point in self.points if point.verdict == index)
 
@@ -272,25 +346,23 @@ class Report:
     @cached_property
     def recordings(self) -> dict[int, Recording]:
         """Run (0 nominal, 1, 2, ... varied) -> its recording, where there is one."""
-        found = self.beside.recordings
+        found = self.artifacts.recordings
         return {run: r for run, r in found.items() if isinstance(r, Recording)}
 
     @cached_property
     def subject(self) -> Subject:
         """The subject of the runs; the default scene where that is not installed any more."""
         try:
-            return load_subject(self.beside.scene)
+            return load_subject(self.artifacts.scene)
         except KeyError:
             return load_subject(DEFAULT_SCENE)
 
     def no_recording(self, run: int) -> str:
-        """Return why a run has no recording."""
-        reason = self.beside.recordings.get(run)
+        reason = self.artifacts.recordings.get(run)
         if not isinstance(reason, Message):
             return tr("no recording lies beside it")
         return text.plain(translate(reason))
 
     @cached_property
     def output(self) -> str:
-        """The output of the node in the nominal run."""
-        return text.plain(self.beside.output)
+        return text.plain(self.artifacts.output)

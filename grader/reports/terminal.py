@@ -40,7 +40,6 @@ def render(report: Report) -> str:
 
 
 def render_error(report: ErrorReport) -> str:
-    """Return the error as plain text."""
     return _captured(lambda console: show_error(report, console))
 
 

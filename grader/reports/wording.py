@@ -55,7 +55,6 @@ _CONFINED: Final = re.compile("|".join(CONFINED))
 
 
 def word(verdict: Verdict) -> str:
-    """Return a verdict's status in words."""
     return translate(WORDS[verdict.status])
 
 
@@ -69,7 +68,6 @@ def so_many(status: str, count: int) -> str:
 
 
 def outcome_text(key: str) -> str:
-    """Return how a run ended, for people."""
     return translate(OUTCOMES.get(key, key))
 
 

@@ -100,12 +100,10 @@ class LivePage(ABC):
         self._has_been_seen.set()
 
     def begin(self) -> None:
-        """Show the scene before a run."""
         with self._lock:
             self._tell({**self._start(), "begins": True})
 
     def update(self, grading: Grading) -> None:
-        """Show the state of the grading."""
         shown = ("status", "word", "title", "rationale", "help")
         checks = [{name: getattr(each, name) for name in shown} for each in grading.judged]
         rest = {name: value for name, value in asdict(grading).items() if name != "judged"}

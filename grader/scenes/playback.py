@@ -154,7 +154,6 @@ def whole_html(page: Path) -> str:
 
 
 def _judged(item: JudgedCheck, tick_s: float) -> dict[str, Any]:
-    """Return a verdict as the script reads it."""
     return {**vars(item), "moments": [_moment(each, tick_s) for each in item.moments]}
 
 

@@ -12,10 +12,9 @@ from grader.exercise.verdict import Verdict
 from grader.recording import bag
 from grader.recording.mcap import read_mcap
 from grader.recording.subject import Subject, Trace, load_subject
-from grader.reports.beside import Beside
 from grader.reports.error_report import ErrorReport
 from grader.reports.formats import load
-from grader.reports.report import Report
+from grader.reports.report import Artifacts, Report
 from grader.text.message import NOTHING, Message, msg, plain_text
 
 
@@ -82,6 +81,6 @@ def _reports() -> Iterator[tuple[Message, Report | ErrorReport]]:
         help = NOTHING if status == "passed" else seen
         verdict = Verdict("moves", title, status, score, 10.0, seen, help)  # type: ignore[arg-type]
         result = Result("square", "node.py", score, 10.0, (verdict,), run)
-        yield what, Report(result, Beside(result, nowhere))
+        yield what, Report(result, Artifacts(result, nowhere))
     error = ErrorResult("grader", seen, 10.0)
     yield msg("an aborted grading"), ErrorReport(error, nowhere, ("moves",))

@@ -14,7 +14,7 @@ from pathlib import PurePath
 
 from grader import Recording
 from grader.exercise import ErrorResult, RunSummary, View
-from grader.reports import Beside, ErrorReport, Report, points, render
+from grader.reports import Artifacts, ErrorReport, Report, points, render
 from grader.system import files
 from grader.text import LANGUAGES, Message, msg, shown, tr, translate
 from grader_class.entry import Entry
@@ -94,7 +94,7 @@ class Feedback:
         return Report(result, _WithoutRecordings(result, entry.folder), self.view)
 
 
-class _WithoutRecordings(Beside):
+class _WithoutRecordings(Artifacts):
     """Picture and output alone, without recordings; of what has no picture, words."""
 
     @property

@@ -91,12 +91,10 @@ class RunView(Drawing):
 
     @property
     def output_end(self) -> str:
-        """The last lines of the node's output."""
         return "\n".join(self.output.splitlines()[-_PAPER_LINES:])[-_PAPER_LIMIT:]
 
     @property
     def has_plane(self) -> bool:
-        """Whether the plane has anything to show."""
         return bool(self.picture or self.pins or (self.animation and self.animation.tracks))
 
     @property
@@ -183,7 +181,6 @@ def _outcomes(subject: Subject) -> dict[str, str]:
 
 
 def _script_words() -> dict[str, str]:
-    """Return the words that the page's script writes."""
     return {
         "play": tr("Play"),
         "pause": tr("Pause"),
@@ -194,7 +191,6 @@ def _script_words() -> dict[str, str]:
 
 
 def render_error(report: ErrorReport) -> str:
-    """Return a page with the error."""
     return _environment().get_template("error.html").render(report=report)
 
 

@@ -112,7 +112,6 @@ class Turnable:
 
 
 def turnable(solid: Solid) -> Turnable:
-    """Prepare a solid of a recording for the page."""
     data = {
         "t": [round(time_ns / 1e9, 2) for time_ns in solid.times_ns],
         "frames": [

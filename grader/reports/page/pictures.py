@@ -24,7 +24,7 @@ _LIMIT_BYTES = 150_000
 
 def canvas_uri(report: Report) -> str:
     """Return the final window of the nominal run; '' where there is no picture."""
-    path = report.beside.canvas_file
+    path = report.artifacts.canvas_file
     if path is not None:
         try:
             with Image.open(path, formats=["PNG"]) as image:

@@ -83,12 +83,10 @@ class Calls:
 
     @property
     def has_text(self) -> bool:
-        """Whether a row has a text: what was asked for."""
         return any(row.text for row in self.rows)
 
     @property
     def has_place(self) -> bool:
-        """Whether a row has a place."""
         return any(row.where for row in self.rows)
 
 
@@ -140,18 +138,12 @@ def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """Keep at most four points a column: its first, lowest, highest and last; none is smoothed."""
     if len(x) <= 2 * _COLUMNS:
         return x, y
-    # a row of a table for each column of the plot; those of the first are one longer, if need be
-    each, more = divmod(len(x), _COLUMNS)
-    edges = np.arange(_COLUMNS + 1) * each
-    edges += np.minimum(np.arange(_COLUMNS + 1), more)
-    first, size = edges[:-1, np.newaxis], np.diff(edges)[:, np.newaxis]
-    places = np.arange(each + 1)
-    values = y[np.minimum(first + places, len(y) - 1)]
-    counts = np.isfinite(values) & (places < size)
-    lowest = first[:, 0] + np.argmin(np.where(counts, values, np.inf), axis=1)
-    highest = first[:, 0] + np.argmax(np.where(counts, values, -np.inf), axis=1)
-    chosen = np.concatenate((edges[:-1], lowest, highest, edges[1:] - 1))
-    rows = np.array(sorted(set(chosen.tolist())))  # np.unique would import masked arrays
+    chosen = set[int]()
+    for column in np.array_split(np.arange(len(x)), _COLUMNS):
+        chosen |= {int(column[0]), int(column[-1])}
+        if len(finite := column[np.isfinite(y[column])]):
+            chosen |= {int(finite[np.argmin(y[finite])]), int(finite[np.argmax(y[finite])])}
+    rows = np.array(sorted(chosen))  # np.unique would import masked arrays
     # A point in the middle of a level line adds nothing.
     inner = (y[rows[1:-1]] == y[rows[:-2]]) & (y[rows[1:-1]] == y[rows[2:]])
     rows = rows[~np.concatenate(([False], inner, [False]))]
@@ -217,15 +209,15 @@ def expected(report: Report, plots: Plots | None) -> dict[str, Drawn]:
     wanted = {
         translate(each.curve): each for verdict in report.verdicts for each in verdict.expected
     }
-    found = {}
-    for plot in plots.curves:
-        each = wanted.get(plot.title)
-        if each is not None:
-            bands, lines = _bands(plot, each.within), _lines(plot, each.beyond)
-            found[plot.title] = Drawn(
-                text.clip(text.plain(translate(each.text)), _LONGEST), bands, lines
-            )
-    return found
+    return {
+        plot.title: Drawn(
+            text.clip(text.plain(translate(each.text)), _LONGEST),
+            _bands(plot, each.within),
+            _lines(plot, each.beyond),
+        )
+        for plot in plots.curves
+        if (each := wanted.get(plot.title)) is not None
+    }
 
 
 def _bands(plot: Plot, within: tuple[float, float] | None) -> tuple[tuple[float, float], ...]:

@@ -73,12 +73,10 @@ class BesideTheTemplates(FileSystemBytecodeCache):
         super().__init__(*os.path.split(cache))
 
     def load_bytecode(self, bucket: Bucket) -> None:
-        """Called by jinja2: fill the bucket, if there is something for it."""
         with suppress(Exception):  # a damaged file raises anything
             super().load_bytecode(bucket)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
-        """Called by jinja2: keep what is in the bucket."""
         if not sys.dont_write_bytecode:
             with suppress(OSError):
                 Path(self.directory).mkdir(exist_ok=True)

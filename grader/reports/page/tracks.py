@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grader.recording.view import Floats, Rest, Times, Track, View
-from grader.text.translations import translate
+from grader.recording.view import Floats, Times, Track, View
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000
@@ -42,7 +41,6 @@ class SampledTrack:
     stretches: tuple[Stretch, ...]
 
     def path(self) -> str:
-        """Return the track as the `d` of an SVG path."""
         return svg_path(self.x, self.y)
 
     def lifted(self) -> str:
@@ -62,17 +60,13 @@ class Animation:
         times: of the samples [s].
         tracks: the one of the exercise first.
         cleared: samples at which everything drawn before vanished.
-        background: the picture's colour.
-        rest: where the first track stood still at the end, if it had moved before.
-        drawn: what the picture shows at the end, in words.
+        view: what they are of.
     """
 
     times: Floats
     tracks: tuple[SampledTrack, ...]
     cleared: tuple[int, ...]
-    background: str
-    rest: Rest | None
-    drawn: tuple[str, ...]
+    view: View
 
 
 def animation(view: View, duration_ns: int) -> Animation:
@@ -86,9 +80,7 @@ def animation(view: View, duration_ns: int) -> Animation:
         times_ns / 1e9,
         tuple(_sampled(track, times_ns) for track in view.tracks[:_TRACKS]),
         tuple(sorted({int(np.searchsorted(times_ns, time_ns)) for time_ns in view.cleared})),
-        view.background,
-        view.rest,
-        tuple(map(translate, view.drawn)),
+        view,
     )
 
 
@@ -118,9 +110,9 @@ def _samples(duration_ns: int, step_ns: int) -> Times:
 def _sampled(track: Track, times_ns: Times) -> SampledTrack:
     at = np.searchsorted(track.times_ns, times_ns)
     there = np.isin(times_ns, track.times_ns)
-    x, y, theta = (np.full(len(times_ns), np.nan) for _ in range(3))
-    for sampled, values in ((x, track.x), (y, track.y), (theta, track.theta)):
-        sampled[there] = values[at[there]]
+    sampled = np.full((3, len(times_ns)), np.nan)
+    sampled[:, there] = np.array([track.x, track.y, track.theta])[:, at[there]]
+    x, y, theta = sampled
     return SampledTrack(x, y, theta, _stretches(track, times_ns))
 
 

@@ -57,7 +57,6 @@ class TimelinePage(LivePage):
         return {"t": self._time_s, **self._shown, "items": []}
 
     def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
-        """Show what is new in a run."""
         changed: dict[str, Mapping[str, Any]] = {}
         with self._lock:
             for each in news:

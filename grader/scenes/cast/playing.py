@@ -81,7 +81,6 @@ class Playing:
 
     @property
     def has_met(self) -> bool:
-        """Whether the program has made a node."""
         return bool(self._types_of)
 
     @property
@@ -94,7 +93,6 @@ class Playing:
         self._recorder.meet(endpoints)
 
     def record(self) -> None:
-        """Record what the program has sent."""
         for message in self._wire.heard():
             self._recorder.heard(*message)
 
@@ -114,11 +112,9 @@ class Playing:
         return max(0, math.ceil((first_ns - self._wire.now_ns) / STEP_NS) - 1)
 
     def trace(self, ticks: int) -> CastTrace:
-        """Return what was recorded up to now."""
         self.record()
         names = self._wire.names
         return self._recorder.trace(ticks, (peer.name for peer in self._peers), names)
 
     def _type_of(self, kind: str, name: str) -> str:
-        """Return the type of a channel that the program uses; '' for none."""
         return self._types_of.get(f"{kind} {name}", "")

@@ -121,7 +121,6 @@ class CastRecorder:
         self._messages.append(SentMessage(time_ns, topic, kind, node, canonical))
 
     def said(self, topic: str, kind: str, node: str, message: Any) -> None:
-        """Add a message of a peer's."""
         self._types.use(kind)
         data = serialise(message)
         if self._is_of_type(topic, kind) and self._has_room(len(data), 1):

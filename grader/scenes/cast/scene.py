@@ -94,14 +94,12 @@ class GraphScene(Scene):
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
     ) -> Simulation:
-        """Make the simulation; ROS is up, and the cast plays."""
         return GraphSimulation(limits, hooks)
 
     def untouched(self, start: Start | None) -> Trace:
         return CastTrace()
 
     def definitions_of(self, made: Trace) -> Mapping[str, str]:
-        """Return those of its messages."""
         assert isinstance(made, CastTrace)
         return made.definitions
 
@@ -125,20 +123,17 @@ class GraphScene(Scene):
         return View(parts=(Table(msg("What went from one to another"), headings, rows, note),))
 
     def live_page(self, port: int) -> LivePage:
-        """Serve a page that shows the timeline as it grows."""
         from grader.scenes.cast.pages import TimelinePage
 
         return TimelinePage.serve(port)
 
     @property
     def player(self) -> Callable[[Playback], str]:
-        """The function that renders the page that plays runs."""
         from grader.scenes.cast.pages import render
 
         return render
 
     def how_to_try(self, program: str, package: str) -> str:
-        """Alone, and what `ros2` shows of it."""
         parts = [
             tr("From the folder above this one, with the arguments that the task names:"),
             f"    {command_by_hand(program, package)}",
@@ -156,7 +151,6 @@ class GraphScene(Scene):
         return "\n\n".join(parts)
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        """Return traces of odd nodes, and of some that do nothing."""
         from grader.scenes.cast.odd import odd_traces
 
         return odd_traces()
@@ -165,7 +159,6 @@ class GraphScene(Scene):
         return [(trace.EVENTS, trace.STRING)]
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
-        """Return a trace as messages, by time."""
         assert isinstance(made, CastTrace)
         return trace.to_messages(made)
 

@@ -70,7 +70,6 @@ class _Typed:
 
     @property
     def types(self) -> tuple[str, ...]:
-        """The types that it may have."""
         return (self.type,) if isinstance(self.type, str) else tuple(self.type)
 
 
@@ -332,7 +331,6 @@ def _peer(name: Any, parts: Any, at: tuple[str, ...]) -> Peer:
 
 
 def _entry(kind: str, values: Any, at: tuple[str, ...]) -> Any:
-    """Parse one thing that a peer has."""
     made_of, known = KINDS[kind]
     try:
         made: Any = strict_json.from_json(made_of, values, OURS)

@@ -65,7 +65,6 @@ class CastTrace:
 
     @property
     def duration_ns(self) -> int:
-        """The length of the recording [simulated ns]."""
         return self.ticks * STEP_NS
 
     def sha256(self) -> str:
@@ -100,7 +99,6 @@ class CastTrace:
         ]
 
     def is_peer(self, message: SentMessage) -> bool:
-        """Whether a peer has sent a message."""
         return message.node in self.peers
 
     def values(self, message: SentMessage) -> Any:
@@ -116,7 +114,6 @@ class CastTrace:
 
 
 def to_messages(trace: CastTrace) -> list[BagMessage]:
-    """Return all messages of a bag, by time."""
     topics, nodes = dict[str, int](), dict[str, int]()  # -> their numbers
     order = [
         [topics.setdefault(each.topic, len(topics)), nodes.setdefault(each.node, len(nodes))]
@@ -169,7 +166,6 @@ def _checked(event: Any) -> Event:
 
 
 def from_channels(channels: Sequence[Channel], duration_ns: int) -> CastTrace:
-    """Read a trace from the channels of a bag."""
     by_topic = {channel.topic: channel for channel in channels}
     *listed, last = (strict_json.loads(string_of(e)) for e in by_topic.pop(EVENTS).messages())
     events = [_checked(event) for event in listed]

@@ -98,13 +98,11 @@ class Recorder:
         arena.listeners.append(self._listen)
 
     def record(self, readings: dict[str, Reading]) -> None:
-        """Record what every turtle has published in a tick."""
         self.ticks += 1
         for name, reading in readings.items():
             self._readings[name].append((self.ticks, reading))
 
     def trace(self) -> TurtleTrace:
-        """Return the recording up to now."""
         arena = self._arena
         return TurtleTrace(
             ticks=self.ticks,
@@ -212,7 +210,6 @@ ODDITIES: Final[Mapping[str, Controller]] = {
 
 
 def odd_traces(start: Start | None) -> Mapping[str, Trace]:
-    """Return the trace of each odd controller, from a start."""
     return {
         f"a node that {what}": drive(controller, TICKS, start)[0]
         for what, controller in ODDITIES.items()

@@ -98,11 +98,9 @@ class Allowance:
 
     @property
     def flags(self) -> tuple[Message, ...]:
-        """Remarks for the result: requests of the submission that were refused."""
         return tuple(self._flags)
 
     def refuse(self, remark: Message) -> None:
-        """Note a refusal, with the remark for the result."""
         if len(self._flags) < MOST_FLAGS:
             self._flags[remark] = None
 
@@ -113,16 +111,13 @@ class Allowance:
 
     @property
     def is_used_up(self) -> bool:
-        """Whether nothing more will be served."""
         return not self._allow(self.events < MOST_EVENTS, _NOT_ALL)
 
     def may_log(self) -> bool:
-        """Whether the simulator may log another line."""
         self.logs += 1
         return self._allow(self.logs <= MOST_LOGS, _FIRST_LINES)
 
     def may_save(self) -> bool:
-        """Whether another picture may be written."""
         self.pictures += 1
         return self._allow(self.pictures <= MOST_PICTURES, _NO_MORE_PICTURES)
 
@@ -265,7 +260,6 @@ class GradedNode(TurtlesimNode):
         return super()._on_reset(request, response)
 
     def accepts_goal(self) -> bool:
-        """Whether there are not too many goals."""
         if sum(each.action.known for each in self._endpoints.values()) < MOST_GOALS:
             return True
         self.allowance.refuse(

@@ -30,7 +30,6 @@ _OF_THE_NODE = frozenset(("clear", "reset", "spawn", "kill"))
 
 
 def render(playback: Playback) -> str:
-    """Return the page, with an animation of each run in it."""
     data = {
         "sprites": {SPRITE: base64.b64encode(picture.sprite(SPRITE).tobytes()).decode()},
         "sprite": SPRITE,
@@ -131,7 +130,6 @@ class TurtlesimPage(LivePage):
         return {"tick": self._state["tick"], "drawn": [], "calls": []}
 
     def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
-        """Apply changes of a `Feed`, and deliver them as one."""
         if not news:
             return
         drawn: list[Any] = []

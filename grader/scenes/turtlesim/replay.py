@@ -136,7 +136,6 @@ class _Replay:
         return self._rows.get(self._frame, {})
 
     def _record(self, poses: Mapping[str, Pose]) -> None:
-        """Record a frame with these turtles in it."""
         self.animation.background(self._frame, self._arena.background)
         for name, pose in poses.items():
             turtle = self._arena.turtles[name]
@@ -232,7 +231,6 @@ class Animation:
         part.poses.append(pose)
 
     def pen(self, frame: int, name: str, pen: Pen, is_on: bool) -> None:
-        """Set the pen of a turtle that `turtle` has placed in this frame."""
         pens = self._parts[name].pens
         now = [pen.r, pen.g, pen.b, pen.width, int(not is_on)]
         if not pens or pens[-1][1:] != now:

@@ -116,7 +116,6 @@ class Turtlesim(Scene):
         return "\n\n".join(parts) + "\n"
 
     def preload(self) -> None:
-        """Import the node, decode the picture of the turtle."""
         from grader.scenes.turtlesim import graded_node, simulation  # noqa: F401
 
         picture.sprite(SPRITE)
@@ -135,7 +134,6 @@ class Turtlesim(Scene):
         return drive(lambda *_: None, 0, start)[0]
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
-        """List the topics of every turtle, even if it published nothing."""
         for turtle in TurtleTrace.of(made).trajectories:
             yield from messages.topics(turtle).items()
 
@@ -146,7 +144,6 @@ class Turtlesim(Scene):
         return messages.from_channels(channels, duration_ns // TICK_NS)
 
     def scenario(self, made: Trace) -> dict[str, Any]:
-        """Return the inputs for `python -m turtlesim_py.scenario`."""
         events = TurtleTrace.of(made).events
         within = [to_json(event) for event in events if 1 <= event.tick <= made.ticks]
         return {"ticks": made.ticks, "events": within}
@@ -155,7 +152,6 @@ class Turtlesim(Scene):
         return endpoints_of(TurtleTrace.of(made), interfaces)
 
     def pictures(self, made: Trace) -> Pictures:
-        """Return the original's window, and the path alone."""
         trace = TurtleTrace.of(made)
         return Pictures(trace.window, {"path": trace.canvas})
 

@@ -45,12 +45,10 @@ class TurtlesimSimulation(Simulation):
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether turtle1 has moved, and rests now."""
         return self._end.is_at_rest
 
     @property
     def flags(self) -> tuple[Message, ...]:
-        """Requests of the submission that were refused."""
         return self.node.allowance.flags
 
     @property
@@ -58,7 +56,6 @@ class TurtlesimSimulation(Simulation):
         return self._recorder.ticks
 
     def tick(self, now_ns: int | None = None) -> Reason:
-        """Serve what has arrived and let a tick pass; return why the run is over, or ''."""
         if self.records and (events := self._script.get(self._recorder.ticks + 1)):
             self.node.play(events, now_ns)
         readings = self.node.tick(now_ns)
@@ -78,7 +75,6 @@ class TurtlesimSimulation(Simulation):
         return {FIRST_TURTLE: poses[FIRST_TURTLE]} if FIRST_TURTLE in poses else {}
 
     def foresee(self, most: int) -> Forecast:
-        """Return at most so many of the next ticks that are certain if nothing arrives."""
         end = copy(self._end)
         ticks = count(self._recorder.ticks + 1)
 
@@ -90,7 +86,6 @@ class TurtlesimSimulation(Simulation):
         return self.node.foresee(most, goes_on)
 
     def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
-        """Let a foreseen tick pass without publishing; return as `tick`, and the messages."""
         readings = self.node.pass_tick(now_ns)
         if self._feed is not None:
             self._feed.after_tick(readings)
@@ -98,7 +93,6 @@ class TurtlesimSimulation(Simulation):
         return self._record(readings), poses
 
     def trace(self) -> TurtleTrace:
-        """Return the recording up to now."""
         return self._recorder.trace()
 
 
@@ -148,7 +142,6 @@ class EndOfRun:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether the turtle has moved, and rests now."""
         return self._moved and self._still_ticks > 0
 
     def after(self, tick: int, poses: Mapping[str, Pose], gone_tick: int | None = None) -> Reason:

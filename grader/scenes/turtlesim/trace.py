@@ -84,7 +84,6 @@ class TurtleTrace:
 
     @property
     def duration_ns(self) -> int:
-        """The recorded time [ns]."""
         return self.ticks * TICK_NS
 
     def of_kind(self, kind: type[SomeEvent], turtle: str = FIRST_TURTLE) -> list[SomeEvent]:
@@ -115,7 +114,6 @@ class TurtleTrace:
 
 
 def stands_still(command: CmdVel) -> bool:
-    """Whether a velocity command stops the turtle."""
     return not command.linear[0] and not command.angular[2]
 
 

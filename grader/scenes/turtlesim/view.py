@@ -23,7 +23,6 @@ PLANE = Plane(SIZE_PX, METER_PX, SIZE_M)
 
 
 def view(trace: TurtleTrace) -> View:
-    """Return all that a page shows of a run."""
     names = list(trace.trajectories)
     first = FIRST_TURTLE if FIRST_TURTLE in names else next(iter(names), None)
     names.sort(key=lambda name: (name != first, name))

@@ -8,7 +8,7 @@ from grader.exercise.result.result import Result
 from grader.recording import saving
 from grader.recording.recording import Recordings
 from grader.reports import Report, names, render
-from grader.reports.beside import Beside
+from grader.reports.report import Artifacts
 
 #: The formats that are installed.
 FORMATS = names()
@@ -104,7 +104,7 @@ def report(*verdicts, **more):
 def report_in(folder, data):
     """A report of what a result file in a folder would hold."""
     made = Result.from_json(data)
-    return Report(made, Beside(made, folder))
+    return Report(made, Artifacts(made, folder))
 
 
 def graded(folder, recording, *verdicts, varied=(), output="", **more):

@@ -57,7 +57,7 @@ def test_checks_that_look_the_same_or_have_no_name_can_be_told_apart():
 
 def test_a_result_is_read_with_what_lies_beside_it(tmp_path, recording):
     report = read_report(samples.graded(tmp_path, recording, varied=(recording,), output="hi\x07"))
-    assert report.beside.canvas_path == tmp_path.resolve() / "canvas.png"
+    assert report.artifacts.canvas_path == tmp_path.resolve() / "canvas.png"
     assert list(report.recordings) == [0, 1]
     assert report.output == "hi\ufffd"
 
@@ -107,5 +107,5 @@ def test_only_files_below_the_results_folder_are_opened(tmp_path, path):
     os.mkfifo(folder / "pipe.png")
     result = samples.result(artifacts={"canvas": path, "output": path})
     report = samples.report_in(folder, result)
-    assert report.beside.canvas_path is None
+    assert report.artifacts.canvas_path is None
     assert report.output == ""

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from grader.exercise.result.result import Result
 from grader.reports import Report, render
-from grader.reports.beside import Beside
+from grader.reports.report import Artifacts
 from tests.grader.reports import samples
 from tests.grader.reports.drawn import (
     TEXTS,
@@ -24,7 +24,7 @@ COMMANDS = re.compile(r"^\s*::[a-z-]+[ :]|##\[|##vso\[", re.MULTILINE | re.IGNOR
 CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
-class Printed(Beside):
+class Printed(Artifacts):
     """Nothing lies beside the result but what the node printed."""
 
     def __init__(self, result, printed):

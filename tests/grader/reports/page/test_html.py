@@ -248,7 +248,7 @@ def test_a_turtle_that_is_not_a_number_is_left_out(tmp_path, good):
     (judged,) = result.verdicts
     nowhere = replace(judged.evidence[0], x=math.nan)
     result = replace(result, verdicts=(replace(judged, evidence=(nowhere,)),))
-    content = html.render(Report(result, read.beside))
+    content = html.render(Report(result, read.artifacts))
     readers.html(content)
     assert "an unknown place: lost" in content
     assert not elements(content, "circle")  # no pin, no place of rest

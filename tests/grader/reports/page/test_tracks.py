@@ -57,15 +57,15 @@ def test_other_turtles_are_drawn_from_when_they_are_there_and_what_was_cleared_i
             arena.clear()
 
     shown = animation_of(drive(controller, ticks=100))
-    assert (shown.background, shown.cleared) == ("#4556ff", (49,))
+    assert (shown.view.background, shown.cleared) == ("#4556ff", (49,))
     _, second = shown.tracks
     assert np.isnan(second.x[:48]).all()
     assert second.x[-1] == pytest.approx(90)
 
 
 def test_the_rest_is_where_the_turtle_stands_at_the_end():
-    rest = animation_of(drive(Spiral())).rest
+    rest = animation_of(drive(Spiral())).view.rest
     assert min(rest.x, rest.y, SIZE_M - rest.x, SIZE_M - rest.y) < 0.5
     assert rest.time_s > 30
-    assert animation_of(drive(Spiral(), ticks=300)).rest is None
-    assert animation_of(drive(lambda *_: None, ticks=10)).rest is None
+    assert animation_of(drive(Spiral(), ticks=300)).view.rest is None
+    assert animation_of(drive(lambda *_: None, ticks=10)).view.rest is None
