@@ -163,9 +163,10 @@ def _collected(futures: dict[Future, Task], address: str) -> Iterator[Done]:
 
 
 def _cannot_grade(worker: Message, why: object) -> UsageError:
-    advice = msg("Install the same there as where the class is")
     return UsageError(
-        "{worker} cannot grade ({why}). {advice}", worker=worker, why=str(why), advice=advice
+        "{worker} cannot grade ({why}). Install the same there as where the class is",
+        worker=worker,
+        why=str(why),
     )
 
 

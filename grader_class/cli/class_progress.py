@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -19,7 +18,6 @@ from grader_class.batch import Planned
 from grader_class.entry import Entry, HandIn, State
 from grader_class.store import Store
 
-MINUTE_S = 60.0
 #: The time that is left follows from the speed within the last so many [s].
 SPEED_OF_S = 3600.0
 _STATES: dict[State, Message] = {
@@ -66,12 +64,10 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
 
 @contextmanager
 def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[[HandIn], None]]:
-    began = time.monotonic()
-    over = failed = 0
+    failed = 0
     with Progress(
         TextColumn(tr("{done} of {total}", done="{task.completed}", total="{task.total}")),
         BarColumn(),
-        TextColumn("{task.fields[rate]}"),
         TextColumn("{task.fields[failed]}", style="red"),
         TimeRemainingColumn(),
         TextColumn("{task.description}"),
@@ -81,20 +77,17 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
     ) as progress:
         # those that need no run are over at once, and tell nothing of the time that runs take
         done = len(planned.done) + len(planned.trivial)
-        bar = progress.add_task("", total=planned.hand_ins, completed=done, rate="", failed="")
+        bar = progress.add_task("", total=planned.hand_ins, completed=done, failed="")
 
         def show(hand_in: HandIn) -> None:
-            nonlocal over, failed
+            nonlocal failed
             if hand_in.path is None:
                 return
-            over += 1
             entry = Entry.read(store.student(hand_in.id))
             failed += entry.state == "failed"
-            a_minute = over * MINUTE_S / max(time.monotonic() - began, 1e-3)
             progress.update(
                 bar,
                 advance=1,
-                rate=tr("{a_minute:.0f} a minute", a_minute=a_minute),
                 failed=tr("{failed} failed", failed=failed) if failed else "",
                 description=clip(for_terminal(f"{hand_in.known_as}: {_outcome(entry)}"), 60),
             )
@@ -116,14 +109,8 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
     console.print(summary)
     scores = [e.score for e in entries if e.state == "judged" and e.score is not None]
     if scores:
-        most = points(entries[0].max_score)
-        console.print(
-            tr(
-                "Mean of those judged: {points} of {most}.",
-                points=points(round(mean(scores), 2)),
-                most=most,
-            )
-        )
+        of = {"points": points(round(mean(scores), 2)), "most": points(entries[0].max_score)}
+        console.print(tr("Mean of those judged: {points} of {most}.", **of))
     for entry in entries:
         if entry.state == "failed":
             text = tr(

@@ -15,6 +15,10 @@ from grader_class.find.roster import Roster, RosterMember, letters
 NOT_HANDED_IN = msg("Nothing was handed in.")
 #: The problem of a member to whom an unmatched hand-in may belong: there is no grade.
 UNCLEAR = msg("It is not clear which hand-in, if any, is this person's.")
+NOT_CLEAR = msg(
+    "It is not clear which hand-in is theirs: {people}. They have no grade in any import; make "
+    "clear in the roster, or in the names of the files, who is who."
+)
 #: Columns of an export that identify a person.
 _KEYS = ("ID", "SID", "Email", "email", "Identifier")
 #: Prefix of `Attempt.whose` for members of the roster: an id in the roster and the name of an
@@ -57,13 +61,8 @@ def joined(attempts: Sequence[Attempt], roster: Roster) -> tuple[list[Attempt], 
             )
         )
     if unclear := [person for person in missing if person.id in ambiguous]:
-        notes.append(
-            msg(
-                "It is not clear which hand-in is theirs: {names}. They have no grade in any "
-                "import; make clear in the roster, or in the names of the files, who is who.",
-                names=listed(f"{person.name} ({person.id})".strip() for person in unclear),
-            )
-        )
+        who = listed(f"{person.name} ({person.id})".strip() for person in unclear)
+        notes.append(NOT_CLEAR.given(people=who))
     return found, notes
 
 

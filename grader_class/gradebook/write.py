@@ -22,7 +22,7 @@ from grader.reports import cell, table
 from grader.system import files
 from grader.text import Message, clip, listed, msg, plain_all, translate
 from grader_class.entry import Entry
-from grader_class.find.joining import UNCLEAR
+from grader_class.find.joining import NOT_CLEAR, UNCLEAR
 from grader_class.gradebook import canvas, moodle
 from grader_class.gradebook.feedback import Feedback, has_feedback
 from grader_class.gradebook.grade import (
@@ -214,11 +214,7 @@ def _of_grades(grades: Sequence[Grade]) -> Iterator[Message]:
             people=_people(doubles),
         )
     if unclear := [grade for grade in grades if grade.entry.hand_in.problem == UNCLEAR]:
-        yield msg(
-            "{people} without a grade, and in no import: a hand-in that is nobody's may be theirs. "
-            "Make clear in the roster, or in the names of the files, who is who.",
-            people=_people(unclear),
-        )
+        yield NOT_CLEAR.given(people=_people(unclear))
 
 
 def _of_moodle(grades: Sequence[Grade]) -> Iterator[Message]:

@@ -36,6 +36,8 @@ from grader_robots.robot_py.urdf import parse
 
 checks = Checks()
 PUBLISHER = "robot_state_publisher"
+#: The parameter that it reads, and the topic that it publishes.
+DESCRIPTION = "robot_description"
 JOINT_SOURCES = ("joint_state_publisher", "joint_state_publisher_gui")
 #: What each part of it is worth here: without a description nothing shows.
 WORTH = {"description": 1.0, "joints": 0.25, "rviz": 0.25}
@@ -93,21 +95,17 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
         robot = of_text(launch.file, text)
         if not robot.share:
             return robot
-    if faults := list(lacking(facts, launch)):
+    if faults := list(_lacking(facts, launch)):
         return without(launch.file, faults, WORTH)
-    rationale = msg(
-        "{best} starts {publisher} with the description, and what belongs to it.",
-        best=launch.file,
-        publisher=PUBLISHER,
-    )
-    return Finding(1, rationale)
+    said = msg("{best} starts {publisher} with the description, and what belongs to it.")
+    return Finding(1, said.given(best=launch.file, publisher=PUBLISHER))
 
 
 def starts_nothing(facts: PackageFacts, launch: LaunchFile) -> Finding | None:
     """Of a launch file with which `ros2 launch` ends with an error; None where it does not."""
     if _ends_early(launch):
         assert launch.problem is not None
-        return ends(launch.file, launch.problem, 0)
+        return ends(launch.file, launch.problem)
     if (fault := not_started(facts, launch)) is None:
         return None
     consequence = msg("`ros2 launch` starts nothing of {file}.", file=launch.file)
@@ -150,12 +148,10 @@ def _is_handed_on(facts: PackageFacts, launch: LaunchFile, lacks: Lacking) -> bo
     return any(lacks.name.removeprefix(f"{EMPTY}/") in word for word in words)
 
 
-def ends(file: str, problem: Obstacle, share: float) -> Finding:
-    """Of a launch file that comes to no end; `share` of the points is left."""
-    what_happens = how_it_ends(file, problem)
-    return Finding(
-        share, msg("{what_happens}.", what_happens=what_happens), advice(str(problem.text))
-    )
+def ends(file: str, problem: Obstacle) -> Finding:
+    """Of a launch file that comes to no end."""
+    rationale = msg("{what_happens}.", what_happens=how_it_ends(file, problem))
+    return Finding(0, rationale, advice(str(problem.text)))
 
 
 def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float]) -> Finding:
@@ -167,7 +163,7 @@ def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float
     return Finding(share, rationale, faults[0].help)
 
 
-def lacking(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
+def _lacking(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
     """What of the three parts a launch file does not have."""
     if not refused(facts, launch) and (undescribed := no_description(facts, launch)):
         yield undescribed
@@ -191,18 +187,13 @@ def is_publisher(node: LaunchedNode) -> bool:
 
 def handed_on(facts: PackageFacts, launch: LaunchFile) -> list[str]:
     nodes = filter(is_publisher, launch.nodes)
-    return [facts.text(p.text) for n in nodes for p in n.parameters if is_description(p.name)]
+    return [facts.text(p.text) for n in nodes for p in n.parameters if p.name == DESCRIPTION]
 
 
 def refused(facts: PackageFacts, launch: LaunchFile) -> Obstacle | None:
     """Why xacro makes no description of the file that would be handed on."""
     problems = (each.problem for each in facts.descriptions if each.by == launch.file)
     return next((each for each in problems if each is not None), None)
-
-
-def is_description(name: str) -> bool:
-    """Whether a parameter is the one that robot_state_publisher reads."""
-    return name == "robot_description"
 
 
 def moves(facts: PackageFacts, texts: list[str]) -> bool:
@@ -233,14 +224,10 @@ def is_joint_source(facts: PackageFacts, node: LaunchedNode) -> bool:
 
 def _not_followed(launch: LaunchFile) -> str:
     """A launch file of another package of which it is not known what it starts; '' for none."""
-    return next(
-        (
-            f"{each.package}/{each.file}"
-            for each in launch.includes
-            if each.file not in FILES.get(each.package, ()) and not each.file.endswith("()")
-        ),
-        "",
-    )
+    for each in launch.includes:
+        if each.file not in FILES.get(each.package, ()) and not each.file.endswith("()"):
+            return f"{each.package}/{each.file}"
+    return ""
 
 
 def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
@@ -254,7 +241,7 @@ def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | No
         return None
     names = [each.name for each in publishers[0].parameters]
     found = msg("it gets no parameter.")
-    if any(map(is_description, names)):
+    if DESCRIPTION in names:
         found = msg("it is empty.")
     elif names:
         found = msg("its parameters are {names}.", names=shown(", ".join(names)))

@@ -16,7 +16,7 @@ from grader_robots.exercises.description_package.facts import (
     of_package,
 )
 from grader_robots.exercises.description_package.launching import (
-    is_description,
+    DESCRIPTION,
     is_publisher,
     starts_nothing,
 )
@@ -116,10 +116,10 @@ def _faults(facts: PackageFacts, launch: LaunchFile, node: LaunchedNode) -> Iter
             )
     if "-topic" in received:
         topic = received["-topic"].rsplit("/", 1)[-1]
-        if topic == "robot_description" and not any(map(_is_published, facts.launches)):
-            yield msg("waits for the topic robot_description, and no launch file publishes it.")
         remapped = (each for node in launch.nodes for each in node.remappings)
-        if topic != "robot_description" and not any(each.endswith(topic) for each in remapped):
+        if topic == DESCRIPTION and not any(map(_is_published, facts.launches)):
+            yield msg("waits for the topic robot_description, and no launch file publishes it.")
+        elif topic != DESCRIPTION and not any(each.endswith(topic) for each in remapped):
             yield msg(
                 "waits for the topic {topic!r}, which nobody publishes; "
                 "robot_state_publisher publishes robot_description.",
@@ -162,6 +162,6 @@ def _is_number(text: str) -> bool:
 
 def _is_published(launch: LaunchFile) -> bool:
     return any(
-        is_publisher(node) and any(is_description(p.name) for p in node.parameters)
+        is_publisher(node) and any(p.name == DESCRIPTION for p in node.parameters)
         for node in launch.nodes
     ) or any(each.package == "urdf_launch" for each in launch.includes)

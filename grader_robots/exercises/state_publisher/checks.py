@@ -16,12 +16,15 @@ from grader_robots.exercises.description_package.facts import (
     not_followed,
     nothing,
 )
-from grader_robots.exercises.description_package.launching import JOINT_SOURCES, PUBLISHER
+from grader_robots.exercises.description_package.launching import (
+    DESCRIPTION,
+    JOINT_SOURCES,
+    PUBLISHER,
+)
 from grader_robots.exercises.description_package.robots import of_text
 from grader_robots.exercises.state_publisher import joints, timing, transforms
 
 checks = Checks(*(part.checks for part in (timing, joints, transforms)))
-DESCRIPTION = "robot_description"
 #: What each part of a launch file is worth here.
 WORTH = {"description": 0.4, "own": 0.4, "places": 0.2}
 _TWO_NODES = msg(
@@ -109,7 +112,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
     if launch.problem is not None:
-        return launching.ends(launch.file, launch.problem, 0)
+        return launching.ends(launch.file, launch.problem)
     stopped = launching.starts_nothing(facts, launch)
     if faults := list(_faults(facts, launch)):
         found = launching.without(launch.file, faults, WORTH)

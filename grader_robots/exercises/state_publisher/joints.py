@@ -11,7 +11,7 @@ import numpy as np
 
 from grader import Checks, Evidence, Expected, Finding, Tolerances
 from grader.recording import Floats
-from grader.text import NOTHING, Message, msg, msg_many
+from grader.text import NOTHING, Message, joined, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import (
     RobotRun,
     finite,
@@ -74,30 +74,21 @@ def joint_names(seen: RobotRun, tolerances: Tolerances) -> Finding:
     note = msg("names {joints}", joints=listed(sorted(set(states[0].names))))
     where = (seen.moment(states[0].tick, note),)
     share = len(wanted & found) / len(wanted | found)
-    return Finding(share, _mixed_up(missing, foreign), help, where)
-
-
-def _mixed_up(missing: list[str], foreign: list[str]) -> Message:
-    names = {"missing": listed(missing), "foreign": listed(foreign)}
-    if not foreign:
-        return msg("The messages on /joint_states name never {missing}.", **names)
-    if not missing:
-        return msg_many(
+    texts = []
+    if foreign:
+        several = msg_many(
             "The messages on /joint_states name {foreign}, which is none of the robot's moving "
             "joints.",
             "The messages on /joint_states name {foreign}, which are none of the robot's moving "
             "joints.",
             len(foreign),
-            **names,
+            foreign=listed(foreign),
         )
-    return msg_many(
-        "The messages on /joint_states name {foreign}, which is none of the robot's moving "
-        "joints, and never {missing}.",
-        "The messages on /joint_states name {foreign}, which are none of the robot's moving "
-        "joints, and never {missing}.",
-        len(foreign),
-        **names,
-    )
+        texts.append(several)
+    if missing:
+        never = msg("The messages on /joint_states name never {missing}.")
+        texts.append(never.given(missing=listed(missing)))
+    return Finding(share, joined(texts, " "), help, where)
 
 
 @checks()
@@ -152,25 +143,19 @@ def _wanted(seen: RobotRun, name: str, tolerances: Tolerances) -> Expected:
     kind = seen.moving[name].type
     curve = curve_of(name)
     if kind == JointType.CONTINUOUS:
-        text = msg(
-            "turns on, one way, by {least:.4g} rad at least and {most:.4g} rad/s at most",
-            least=rounded(tolerances["turn_least_rad"]),
-            most=rounded(tolerances["turn_most"]),
-        )
-        return Expected(curve, text)
+        text = msg("turns on, one way, by {least:.4g} rad at least and {most:.4g} rad/s at most")
+        least, most = (rounded(tolerances[name]) for name in ("turn_least_rad", "turn_most"))
+        return Expected(curve, text.given(least=least, most=most))
     unit, (least, most) = _width(kind, tolerances)
-    text = msg(
-        "to and fro, {least:.4g} to {most:.4g} {unit} wide",
-        least=rounded(least),
-        most=rounded(most),
-        unit=unit,
-    )
+    text = msg("to and fro, {least:.4g} to {most:.4g} {unit} wide")
+    text = text.given(least=rounded(least), most=rounded(most), unit=unit)
     positions = finite(seen.joints[name].positions) if name in seen.joints else np.empty(0)
     if not len(positions):
         return Expected(curve, text)
     middle = float(positions.min() + positions.max()) / 2
     return Expected(
-        *(curve, text),
+        curve,
+        text,
         within=(middle - most / 2, middle + most / 2),
         beyond=(middle - least / 2, middle + least / 2),
     )
@@ -228,17 +213,10 @@ def _swings(
     wide = high - low
     seen = {"low": rounded(low), "high": rounded(high), "unit": unit}
     if wide > span[1]:
-        if unit == "rad":
-            return msg(
-                "goes from {low:.4g} to {high:.4g} {unit}, {wide:.3g} {unit} wide, as if in "
-                "degrees",
-                wide=wide,
-                **seen,
-            ), NOTHING
         return msg(
-            "goes from {low:.4g} to {high:.4g} {unit}, {wide:.3g} {unit} wide, as if in "
-            "centimetres",
+            "goes from {low:.4g} to {high:.4g} {unit}, {wide:.3g} {unit} wide, as if in {meant}",
             wide=wide,
+            meant="°" if unit == "rad" else "cm",
             **seen,
         ), NOTHING
     if wide < span[0]:

@@ -29,6 +29,7 @@ _ONE_TRANSFORM = msg(
     "sends one transform, from {odom!r} to the root link, and no other.",
     odom=ODOM,
 )
+_EACH_TIME = msg("Does your node send its TransformStamped each time, by a TransformBroadcaster?")
 
 
 class WayFault(NamedTuple):
@@ -74,14 +75,12 @@ def odometry(seen: RobotRun, tolerances: Tolerances) -> Finding:
         )
     _, _, radius, _ = fitted(way.places[:, :2])
     height = float(np.median(way.places[:, 2]))
-    rationale = msg(
+    said = msg(
         "{root} goes in a circle of {radius:.2f} m at a height of {height:.2f} "
-        "m, upright and looking where it goes.",
-        root=seen.root,
-        radius=radius,
-        height=height,
+        "m, upright and looking where it goes."
     )
-    return Finding(1, rationale, expected=wanted)
+    said = said.given(root=seen.root, radius=radius, height=height)
+    return Finding(1, said, expected=wanted)
 
 
 def _wanted(tolerances: Tolerances) -> tuple[Expected, ...]:
@@ -109,7 +108,7 @@ def _absent(seen: RobotRun) -> Finding:
             "The parent, {parent!r}, stands in header.frame_id; the child in child_frame_id.",
             parent=ODOM,
         )
-    elif any(each == ("/tf_static", ODOM, seen.root) for each in others):
+    elif ("/tf_static", ODOM, seen.root) in others:
         rationale = msg(
             "The transform from {parent!r} to {child!r} came on /tf_static, and what is static "
             "never moves.",
@@ -134,10 +133,10 @@ def _absent(seen: RobotRun) -> Finding:
             len(way),
             **ends,
         )
-        help = msg("Does your node go on to send its TransformStamped, time after time?")
+        help = _EACH_TIME
     else:
         rationale = msg("No transform from {parent!r} to {child!r} came on /tf.", **ends)
-        help = msg("Does your node send its TransformStamped each time, by a TransformBroadcaster?")
+        help = _EACH_TIME
     return Finding(0, rationale, help)
 
 
@@ -287,19 +286,15 @@ def reachable(seen: RobotRun, tolerances: Tolerances) -> Finding:
                 for t in seen.trace.transforms
                 if bare(t.child) == child and t.publisher != "scene" and not why_refused(t)
             )
-            rationale = (
-                msg(
-                    "The frame {frame!r} has two parents on /tf, {parents}.",
-                    frame=child,
-                    parents=listed(sorted(frame.parents)),
-                )
-                if len(frame.parents) > 1
-                else msg(
-                    "The frame {frame!r} is sent on /tf by your node and by robot_state_publisher, "
-                    "and jumps between the two.",
-                    frame=child,
-                )
+            rationale = msg(
+                "The frame {frame!r} is sent on /tf by your node and by robot_state_publisher, "
+                "and jumps between the two.",
+                frame=child,
             )
+            if len(frame.parents) > 1:
+                rationale = msg("The frame {frame!r} has two parents on /tf, {parents}.")
+                parents = listed(sorted(frame.parents))
+                rationale = rationale.given(frame=child, parents=parents)
             where = (seen.moment(first.tick, msg("{frame} has two places", frame=child)),)
             return Finding(0, rationale, _ONE_TRANSFORM, where)
     reached = {ODOM, *below(ODOM, frames)}

@@ -12,7 +12,7 @@ import numpy as np
 
 from grader import Checks, Finding, Tolerances
 from grader.submission import shown
-from grader.text import NOTHING, Message, msg
+from grader.text import NOTHING, Message, Text, msg
 from grader_robots.exercises.description_package import checks as of_packages
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
@@ -38,8 +38,6 @@ _MOVED_M = 1e-6
 _ASIDE = 0.25
 #: The masses of so many links are told one by one.
 _FEW = 6
-#: Instead of a link, where none moves along.
-_NOTHING = "nothing"
 
 checks = Checks(of_packages.checks, wheels.checks)
 
@@ -110,22 +108,11 @@ def _fault(name: str, model: Model, texts: dict[str, str]) -> tuple[Message, Mes
             name=name,
         )
         return msg("doubling {name} changes the size of nothing", name=name), advice
-    stays = next(_staying(model, other), "")
-    if not stays:
+    if not (stays := next(_staying(model, other), "")):
         return NOTHING, NOTHING
-    fault = msg(
-        "doubling {name} changes the size of a part, and {link} does not move along",
-        name=name,
-        link=shown(stays),
-    )
-    if stays == _NOTHING:
-        fault = msg(
-            "doubling {name} changes the size of a part, and nothing does not move along", name=name
-        )
-    advice = msg(
-        "Write the origins of wheels and caster with ${{{name}}}, not as numbers.", name=name
-    )
-    return fault, advice
+    fault = msg("doubling {name} changes the size of a part, and {link} does not move along")
+    advice = msg("Write the origins of wheels and caster with ${{{name}}}, not as numbers.")
+    return fault.given(name=name, link=stays), advice.given(name=name)
 
 
 def _varied(facts: PackageFacts, number: int) -> dict[str, str]:
@@ -146,7 +133,7 @@ def _sizes(model: Model) -> list[object]:
     ]
 
 
-def _staying(one: Model, other: Model) -> Iterator[str]:
+def _staying(one: Model, other: Model) -> Iterator[Text]:
     """Links that should move along with a part that has changed its size, and do not.
 
     They hang on it away from its middle, along the side that has changed. Of a part that is no
@@ -154,7 +141,7 @@ def _staying(one: Model, other: Model) -> Iterator[str]:
     """
     boxes = [(name, *both) for name in one.links if (both := _boxes(one, other, name))]
     if not boxes and not _has_moved(one, other):
-        yield _NOTHING
+        yield msg("what hangs on it")
     for part, before, after in boxes:
         for joint in one.joints.values():
             if joint.parent != part or joint.name not in other.joints:
@@ -165,7 +152,7 @@ def _staying(one: Model, other: Model) -> Iterator[str]:
                 later = other.joints[joint.name].origin.xyz[axis] - after.origin.xyz[axis]
                 has_changed = abs(after.geometry.size[axis] / 2 - half) > _MOVED_M
                 if has_changed and abs(offset) > _ASIDE * half and abs(later - offset) <= _MOVED_M:
-                    yield joint.child
+                    yield shown(joint.child)
 
 
 def _boxes(one: Model, other: Model, link: str) -> tuple[_Shape, _Shape] | None:

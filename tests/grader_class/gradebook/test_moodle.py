@@ -141,4 +141,4 @@ def test_whose_hand_in_is_not_clear_gets_no_grade():
     table = moodle.grade_import(everybody, "Spiral", Feedback())
     assert "900" in table
     assert "901" not in table
-    assert "Mia without a grade, and in no import" in str(notes(everybody, "Spiral")[0])
+    assert "not clear which hand-in is theirs: Mia" in str(notes(everybody, "Spiral")[0])
