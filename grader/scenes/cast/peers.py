@@ -20,10 +20,9 @@ from rclpy.task import Future
 
 from grader.ros.messages import make, plain, plain_value
 from grader.scenes.cast import script
-from grader.scenes.cast.recorder import CastRecorder
+from grader.scenes.cast.recorder import CastRecorder, NoType, Types
 from grader.scenes.cast.script import absolute
 from grader.scenes.cast.trace import TF
-from grader.scenes.cast.types import NoType, Types
 from grader.system.expressions import ExpressionError, filled
 
 #: So often a peer is served in a tick at most; and after its last message: a callback of a future

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Protocol
 
 from grader.scenes.cast.peers import PeerNode
-from grader.scenes.cast.recorder import CastRecorder
+from grader.scenes.cast.recorder import CastRecorder, Types
 from grader.scenes.cast.script import Peer, endpoints, heard
 from grader.scenes.cast.trace import CastTrace
-from grader.scenes.cast.types import Types
 from grader.scenes.scene import STEP_NS
 from grader.text.message import Message
 

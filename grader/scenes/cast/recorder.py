@@ -1,4 +1,4 @@
-"""Keeps what the program and the peers exchange in a run; in the simulator's process.
+"""Keeps what the program and the peers exchange, and its types; in the simulator's process.
 
 | event | its values |
 |---|---|
@@ -20,15 +20,13 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
-from grader.ros.messages import deserialise, plain, serialise
-from grader.scenes.cast.trace import EVENTS, ROSOUT, CastTrace, Event, SentMessage
-from grader.scenes.cast.types import NoType, Types
+from grader.ros.definitions import Definitions, is_installed, slot_of
+from grader.ros.messages import deserialise, members, plain, serialise, value_type
+from grader.scenes.cast.trace import EVENTS, OBLIGATORY, ROSOUT, CastTrace, Event, SentMessage
 from grader.text.message import Message, msg
 
 #: The most messages, bytes of them and of what is in events, and events of a recording.
 MOST_MESSAGES, MOST_BYTES, MOST_EVENTS = 20_000, 20_000_000, 10_000
-#: What is recorded of a reader or writer.
-ENDPOINT: Final = ("node", "channel", "type", "writes", "reliability", "durability", "depth")
 _FULL: Final = msg("of what was exchanged, the first {n:,} messages and {m:,} bytes were recorded")
 
 
@@ -82,7 +80,7 @@ class CastRecorder:
             kind, _, name = each.channel.partition(" ")
             if each not in self._endpoints and len(self._endpoints) <= MOST_EVENTS:
                 self._endpoints.add(each)
-                self.event("endpoint", **dict(zip(ENDPOINT, each, strict=False)))
+                self.event("endpoint", **dict(zip(OBLIGATORY["endpoint"], each, strict=False)))
                 self._programs.setdefault(each.node, set()).add(each.id)
             if kind == "topic" and each.writes:
                 self._writers.setdefault(name, set()).add((each.node, each.id))
@@ -155,3 +153,75 @@ class CastRecorder:
             if names
         }
         return CastTrace(ticks, messages, events, tuple(peers), dict(self._types.used), programs)
+
+
+# The classes of types that a cast speaks, and their definitions -----------------------------------
+
+#: Basic types, where a definition has other names.
+_BASIC: Final = {"boolean": "bool", "octet": "uint8", "float": "float32", "double": "float64"}
+
+
+class NoType(LookupError):
+    """There is no type of this name here."""
+
+
+class Types:
+    """The classes of types: those of an exercise and a hand-in, else installed ones.
+
+    Args:
+        texts: the definitions of the former, by names such as 'my_interfaces/msg/Num'.
+        are_compiled: whether these can be imported as installed ones can.
+    """
+
+    def __init__(self, texts: Mapping[str, str], *, are_compiled: bool = False) -> None:
+        self._texts = texts
+        self._own = Definitions({} if are_compiled else texts)
+        #: definitions of all messages that were asked for, and of their fields
+        self.used: dict[str, str] = {}
+
+    def find(self, name: str) -> Any:
+        """Return the class of a type.
+
+        Raises:
+            NoType: there is none.
+        """
+        try:
+            if name not in self._texts and not is_installed(slot_of(name)):
+                raise ImportError(name)  # else any module would be imported
+            return self._own.type(name)
+        except (ImportError, AttributeError) as error:
+            raise NoType(f"there is no type {name}: {error}") from None
+
+    def use(self, name: str) -> Any:
+        """Return the class of a message, whose definition a recording is to have.
+
+        Raises:
+            NoType: there is none.
+        """
+        if name.split("/")[1] != "msg":  # a service's, on a topic
+            raise NoType(f"{name} is no message")
+        found = self.find(name)
+        if name not in self.used:
+            inner = [value_type(slot) for _, slot in members(found)]
+            text = "".join(f"{_written(slot)} {field}\n" for field, slot in members(found))
+            for each in inner:
+                if hasattr(each, "namespaces"):
+                    self.use("/".join((*each.namespaces, each.name)))
+            self.used[name] = text
+        return found
+
+
+def _written(slot: Any) -> str:
+    """Return a field's type as readers of bags know it, which have no bounds and no wstring."""
+    inner = value_type(slot)
+    if hasattr(inner, "namespaces"):
+        base = f"{inner.namespaces[0]}/{inner.name}"
+    elif hasattr(inner, "typename"):
+        base = _BASIC.get(inner.typename, inner.typename)
+    elif "WString" not in type(inner).__name__:
+        base = "string"
+    elif inner is slot:
+        return "uint32[]"  # as it is in CDR
+    else:
+        raise NoType("no reader of bags knows lists of wstring")
+    return base if inner is slot else f"{base}[{getattr(slot, 'size', '')}]"

@@ -9,8 +9,10 @@ from typing import Any, ClassVar
 from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage, Start, Trace
 from grader.recording.view import Cell, Table, View
-from grader.scenes.cast import trace
-from grader.scenes.cast.trace import CastTrace
+from grader.ros.bag_types import BagTypes
+from grader.ros.cdr import string
+from grader.scenes.cast import timeline, trace
+from grader.scenes.cast.trace import STRING, CastTrace, SentMessage
 from grader.scenes.live import LivePage
 from grader.scenes.playback import Playback
 from grader.scenes.scene import (
@@ -61,8 +63,6 @@ class GraphSimulation(Simulation):
 
     def _tell(self, send: Callable[[Mapping[str, Any]], None]) -> None:
         """Send viewers the items that are new or have changed."""
-        from grader.scenes.cast import timeline
-
         made = self.trace()
         # what was told last may have been joined by a message of before, which came late
         items = timeline.items(made, self._told_ns - 2 * STEP_NS)
@@ -106,8 +106,6 @@ class GraphScene(Scene):
     def view(self, made: Trace) -> View:
         """Return a table of what was exchanged, as much of it as a page shows at once."""
         assert isinstance(made, CastTrace)
-        from grader.scenes.cast import timeline
-
         listed = timeline.items(made)
         headings = (msg("time [s]"), msg("what"), msg("values"))
         rows = tuple(
@@ -123,15 +121,11 @@ class GraphScene(Scene):
         return View(parts=(Table(msg("What went from one to another"), headings, rows, note),))
 
     def live_page(self, port: int) -> LivePage:
-        from grader.scenes.cast.pages import TimelinePage
-
-        return TimelinePage.serve(port)
+        return timeline.TimelinePage.serve(port)
 
     @property
     def player(self) -> Callable[[Playback], str]:
-        from grader.scenes.cast.pages import render
-
-        return render
+        return timeline.render
 
     def how_to_try(self, program: str, package: str) -> str:
         parts = [
@@ -151,12 +145,10 @@ class GraphScene(Scene):
         return "\n\n".join(parts)
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        from grader.scenes.cast.odd import odd_traces
-
-        return odd_traces()
+        return _odd_traces()
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
-        return [(trace.EVENTS, trace.STRING)]
+        return [(trace.EVENTS, STRING)]
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
         assert isinstance(made, CastTrace)
@@ -169,6 +161,63 @@ class GraphScene(Scene):
 def _hop(item: Mapping[str, Any]) -> str:
     to = f" → {', '.join(item['to'])}" if item["to"] else ""
     return f"{item['from']}{to}: {item['what']}"
+
+
+# Odd nodes, whose traces the checks of an exercise have to survive --------------------------------
+
+_FLOAT, _LOG = "std_msgs/msg/Float64", "rcl_interfaces/msg/Log"
+_TYPES = BagTypes({})
+_ENDPOINT = {"type": STRING, "reliability": 1, "durability": 2, "depth": 10}
+
+
+def _odd_traces() -> Mapping[str, CastTrace]:
+    long = "x" * 20_000
+    names = ("/topic", "/tf", "/latest", "/turtle1/cmd_vel")
+    writers = [_endpoint("/node", f"topic {name}") for name in names]
+    return {
+        "nothing at all": CastTrace(),
+        "a node that does nothing": _trace(_endpoint("/node", "topic /parameter_events")),
+        "a thousand nodes": _trace(*(_endpoint(f"/n{n}", "topic /x") for n in range(1000))),
+        "a node with a very long name": _trace(_endpoint(f"/{long[:600]}", f"topic /{long[:300]}")),
+        "odd qualities of service": _trace(_endpoint("/node", "topic /latest", depth=2**32 - 1)),
+        "texts where something else belongs": _trace(*writers, sent=[
+            SentMessage(10**9, name, STRING, "/node", string("\x1b[2J \ud800")) for name in names
+        ]),
+        "numbers that are none": _trace(*writers, sent=[
+            SentMessage(10**8 * n, name, _FLOAT, "/node", _TYPES.data(_FLOAT, {"data": value}))
+            for n, value in enumerate((float("nan"), float("inf"), -1e308, 0.0))
+            for name in names
+        ]),
+        "log lines of no level": _trace(sent=[
+            SentMessage(10**9 + n, trace.ROSOUT, _LOG, "", _log(n * 17 % 256, text))
+            for n, text in enumerate(("", long, "\n\r\t", "Hello World: 0"))
+        ]),
+        "everything at once": _trace(*writers, sent=[
+            SentMessage(0, "/topic", STRING, "/node", string("Hello World: 0")) for _ in range(50)
+        ]),
+        "peers that could do nothing": _trace(
+            {"kind": "refused", "time_ns": 0, "peer": "/peer", "what": "x", "why": "y"}
+        ),
+        "more than is recorded": _trace({"kind": "full", "time_ns": 10**9}),
+        "a message that nobody sent": _trace(sent=[
+            SentMessage(2 * 10**9, "/topic", STRING, "", string("?"))
+        ]),
+    }  # fmt: skip
+
+
+def _trace(*events: Mapping[str, Any], sent: list[SentMessage] | None = None) -> CastTrace:
+    messages = tuple(sorted(sent or [], key=lambda each: each.time_ns))
+    return CastTrace(300, messages, events, ("/peer",))
+
+
+def _endpoint(node: str, channel: str, **more: Any) -> dict[str, Any]:
+    facts = {"kind": "endpoint", "time_ns": 0, "node": node, "channel": channel, "writes": True}
+    return {**facts, **_ENDPOINT, **more}
+
+
+def _log(level: int, text: str) -> bytes:
+    line = {"stamp": {"sec": 1, "nanosec": 0}, "level": level, "name": "node", "msg": text}
+    return _TYPES.data(_LOG, {**line, "file": "", "function": "", "line": 1})
 
 
 SCENE = GraphScene()

@@ -1,17 +1,24 @@
-"""What was exchanged in a run, hop by hop, as plain data for a page: lanes, and what is on them.
+"""What was exchanged in a run, hop by hop, as plain data: lanes, and what is on them.
 
 An item has a time [s], perhaps an end, the lane that it comes from, the lanes that it reaches, what
 it is about, and its values in a line. An item may still change while a run goes on; its id stays.
+
+One page plays it afterwards: one file, without network, and with one script. Another shows it live
+as it grows.
 """
 
 from __future__ import annotations
 
 import json
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, ClassVar, Final
 
 from grader.scenes.cast.trace import ROSOUT, CastTrace, Event
+from grader.scenes.live import LivePage
+from grader.scenes.playback import Playback, PlayedRun, render_page
+from grader.scenes.scene import STEP_NS
 
 #: So many items a page has, so many characters of the values of each, so many nodes of a program.
 MOST_ITEMS, LONGEST, MOST_NODES = 12_000, 200, 24
@@ -21,6 +28,7 @@ PROGRAM: Final = "/"
 OTHERS: Final = "…"
 _LEVELS: Final = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 _SECOND: Final = 1e9
+PAGE: Final = Path(__file__).with_name("page")
 
 
 def lanes(trace: CastTrace) -> list[str]:
@@ -122,3 +130,55 @@ def clipped(value: Any) -> str:
     text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
     text = text.encode("utf-8", "replace").decode()
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 4]} ..."
+
+
+# Pages ----------------------------------------------------------------------------------------
+
+
+def render(playback: Playback) -> str:
+    """Return the page, with a timeline of each run in it."""
+    other = playback.other
+    others = () if other is None else tuple((f"{other.title}: {r.title}", r) for r in other.runs)
+    data = {"runs": [_run(*each) for each in (*((r.title, r) for r in playback.runs), *others)]}
+    live = PAGE / "live"
+    return render_page(
+        playback, PAGE / "replay.html", data, STEP_NS / 1e9, [PAGE, live], [live / "timeline.css"]
+    )
+
+
+def _run(title: str, run: PlayedRun) -> dict[str, Any]:
+    trace = run.trace
+    assert isinstance(trace, CastTrace)
+    return {
+        **{"title": title, "outcome": run.outcome, "ticks": trace.ticks},
+        **{"lanes": lanes(trace), "labels": labels(trace)},
+        "items": items(trace),
+    }
+
+
+class TimelinePage(LivePage):
+    """The items of a run in another process, by their ids."""
+
+    PAGE: ClassVar = PAGE / "live"
+
+    def _start(self) -> Mapping[str, Any]:
+        self._shown: dict[str, Any] = {"lanes": [], "labels": {}}
+        self._items: dict[str, Mapping[str, Any]] = {}
+        self._time_s = 0.0
+        return self._nothing_new()
+
+    def _everything(self) -> tuple[Mapping[str, Any], None]:
+        return {**self._nothing_new(), "items": [*self._items.values()], "begins": True}, None
+
+    def _nothing_new(self) -> Mapping[str, Any]:
+        return {"t": self._time_s, **self._shown, "items": []}
+
+    def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
+        changed: dict[str, Mapping[str, Any]] = {}
+        with self._lock:
+            for each in news:
+                self._time_s = each["t"]
+                self._shown = {name: each[name] for name in self._shown}
+                changed.update((item["id"], item) for item in each["items"])
+            self._items.update(changed)
+            self._tell({**self._nothing_new(), "items": [*changed.values()]})

@@ -128,7 +128,7 @@ def to_messages(trace: CastTrace) -> list[BagMessage]:
 
 
 #: What each kind of event has from the start, and of which type each value is.
-_OBLIGATORY: Final[Mapping[str, tuple[str, ...]]] = {
+OBLIGATORY: Final[Mapping[str, tuple[str, ...]]] = {
     "offers": ("node", "what", "name", "type"),
     "endpoint": ("node", "channel", "type", "writes", "reliability", "durability", "depth"),
     "call": ("peer", "id", "service", "type"),
@@ -152,9 +152,9 @@ _TYPES: Final[Mapping[str, type | tuple[type, ...]]] = {
 
 def _checked(event: Any) -> Event:
     """Return an event; raise ValueError for what no recorder writes."""
-    if not isinstance(event, dict) or event.get("kind") not in _OBLIGATORY:
+    if not isinstance(event, dict) or event.get("kind") not in OBLIGATORY:
         raise ValueError(f"no event: {event!r:.100}")
-    needed = [*_OBLIGATORY[event["kind"]], "time_ns"]
+    needed = [*OBLIGATORY[event["kind"]], "time_ns"]
     needed += ["feedback"] if event["kind"] == "goal" and "sent_ns" in event else []
     wrong = [n for n, value in event.items() if not isinstance(value, _TYPES.get(n, object))]
     if wrong or not event.keys() >= {*needed}:

@@ -11,7 +11,7 @@ from rosbags.typesys import Stores, get_typestore
 from grader.ros.bag_types import OF_ROS, BagTypes
 from grader.ros.cdr import MARK
 from grader.ros.messages import make, serialise
-from grader.scenes.cast.types import Types
+from grader.scenes.cast.recorder import Types
 from tests.grader.recording.slow_bag import plain, types_of
 
 PACKAGES = Path(__file__).parents[3] / "interfaces" / "packages"

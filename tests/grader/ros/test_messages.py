@@ -7,7 +7,7 @@ import pytest
 
 from grader.ros.bag_types import BagTypes
 from grader.ros.messages import deserialise, make, plain, serialise
-from grader.scenes.cast.types import NoType, Types
+from grader.scenes.cast.recorder import NoType, Types
 from tests.grader.recording.slow_bag import plain as plain_of_rosbags
 from tests.grader.recording.slow_bag import types_of
 

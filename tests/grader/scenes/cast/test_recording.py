@@ -18,9 +18,8 @@ from grader.ros.cdr import string
 from grader.ros.messages import plain, serialise
 from grader.run.lockstep.protocol import EndpointInfo
 from grader.scenes.cast import recorder
-from grader.scenes.cast.recorder import CastRecorder
+from grader.scenes.cast.recorder import CastRecorder, Types
 from grader.scenes.cast.trace import EVENTS, CastTrace, from_channels
-from grader.scenes.cast.types import Types
 
 STRING = "std_msgs/msg/String"
 TALKS = EndpointInfo("/node", "topic /chatter", STRING, True)

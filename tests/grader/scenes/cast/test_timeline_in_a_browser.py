@@ -9,7 +9,7 @@ import pytest
 
 from grader.exercise.loading import load_exercise
 from grader.scenes.cast import timeline
-from grader.scenes.cast.pages import TimelinePage, render
+from grader.scenes.cast.timeline import TimelinePage, render
 from grader.scenes.live import Grading
 from grader.scenes.playback import JudgedCheck, Moment, Playback, PlayedRun
 from tests import runs

@@ -5,13 +5,13 @@ import json
 import pytest
 
 from grader.scenes import playback
-from grader.scenes.cast import pages
+from grader.scenes.cast import timeline
 from grader.text.translations import ENGLISH, catalogue
 
 #: Of each page its name, its first module, and the folders of its modules before those of others.
 PAGES = [
     ("player.html", "player", [playback.PLAYER]),
-    ("replay.html", "replay", [pages.PAGE, pages.PAGE / "live", playback.PLAYER]),
+    ("replay.html", "replay", [timeline.PAGE, timeline.PAGE / "live", playback.PLAYER]),
 ]
 
 
