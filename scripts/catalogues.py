@@ -100,7 +100,7 @@ def of_html(path: Path) -> Iterator[Sentence]:
 def of_grader() -> Iterator[Sentence]:
     """Yield the sentences of the grader and its robots; not those that its players share."""
     yield from of_code(ROOT / "turtlesim_py" / "ros" / "source.py")
-    players = [ROOT / "grader" / "scenes" / "turtlesim" / "player" / "page", HOPS.parent, HOPS]
+    players = [ROOT / "grader" / "scenes" / "turtlesim" / "page", HOPS.parent, HOPS]
     shared = set(of_simulator())
     for player in players:
         yield from (each for each in of_page(player) if each not in shared)

@@ -11,7 +11,6 @@ from typing import Any
 
 from grader.errors import RecordingError
 from grader.recording import bag
-from grader.recording.beside import CastKeeper, apart
 from grader.recording.observations import Observations
 from grader.recording.recording import (
     OwnInterfaces,
@@ -35,6 +34,7 @@ from grader.recording.saving import (
     SCHEMA,
     varied_in,
 )
+from grader.recording.scene_and_cast import CastKeeper, split
 from grader.recording.subject import (
     DEFAULT_SCENE,
     PACKAGE_SCENE,
@@ -46,7 +46,7 @@ from grader.recording.subject import (
 )
 from grader.system import content, limited, strict_json
 from grader.system.limited import WorkLimits
-from grader.text.message import Message, msg
+from grader.text.message import Message
 
 #: The files that are read, and their most bytes. A minute's usual run is 0.2 MB.
 SIZES = {
@@ -111,29 +111,23 @@ def _folder(path: Path) -> Path:
 
 def _facts(folder: Path) -> dict[str, Any]:
     """Read run.json and circumstances.json, and validate them by the schema."""
-    has_bag, has_run = (folder / METADATA).exists(), (folder / RUN).exists()
-    if not has_run:
-        words = {"folder": str(folder), "run": RUN}
-        raise RecordingError(
-            msg("{folder} is a rosbag, but no recording of the grader: it has no {run}", **words)
-            if has_bag
-            else msg("{folder} is no recording: it has no {run}", **words)
-        )
-    if not has_bag:
-        raise RecordingError(
-            "{folder} is incomplete: it has no {metadata}, which is saved last",
-            folder=str(folder),
-            metadata=METADATA,
-        )
+    for name in (RUN, METADATA):  # this one is saved last
+        if not (folder / name).exists():
+            raise RecordingError(
+                "{folder} is no recording of the grader, or an incomplete one: it has no {file}",
+                folder=str(folder),
+                file=name,
+            )
     for name, most in SIZES.items():
         path = folder / name
-        if path.exists() and not path.is_file():  # a pipe would be waited for, for ever
-            raise RecordingError("{path} is damaged: it is no ordinary file", path=str(path))
-        if path.is_symlink() and not path.resolve().is_relative_to(folder.resolve()):
+        # a pipe would be waited for, for ever; a link may lead to anybody's file
+        is_plain = path.is_file() and path.resolve().is_relative_to(folder.resolve())
+        if not is_plain and (path.exists() or path.is_symlink()):
             raise RecordingError(
-                "{path} is no part of a recording: it leads somewhere else", path=str(path)
+                "{path} is no part of a recording: it is no ordinary file in its folder",
+                path=str(path),
             )
-        if path.exists() and (size := path.stat().st_size) > most:
+        if is_plain and (size := path.stat().st_size) > most:
             raise RecordingError(
                 "{path} has {size} bytes; expected {most} at most",
                 path=str(path),
@@ -174,10 +168,10 @@ def _refusing(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise RecordingError(msg("cannot read the recording: {error}", error=str(error))) from None
+        raise RecordingError("cannot read the recording: {error}", error=str(error)) from None
     except (ValueError, TypeError, RecursionError) as error:
         raise RecordingError(
-            msg("{path} is damaged: {error}", path=str(path), error=str(error))
+            "{path} is damaged: {error}", path=str(path), error=str(error)
         ) from None
 
 
@@ -253,7 +247,7 @@ def _recording(header: _Header, trace: Trace) -> Recording:
     with scene_at_work(header.subject.name, RecordingError):
         _must_agree(header.folder, "ticks", header.run.ticks, trace.ticks)
         _must_agree(header.folder, "trace_sha256", header.run.trace_sha256, trace.sha256())
-    own, cast = apart(trace)
+    own, cast = split(trace)
     return Recording(
         trace=own,
         cast=cast,

@@ -29,8 +29,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.recording import bag
-from grader.recording.beside import together
 from grader.recording.recording import Recording, Recordings
+from grader.recording.scene_and_cast import merge
 from grader.recording.subject import DEFAULT_SCENE, PACKAGE_SCENE, load_subject
 from grader.system import content
 from grader.system.removal import remove
@@ -107,7 +107,7 @@ def _put(made: Path, folder: Path) -> None:
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     scene = load_subject(recording.scene)
-    mcap = bag.write(*together(recording.trace, recording.cast, scene), folder)
+    mcap = bag.write(*merge(recording.trace, recording.cast, scene), folder)
     run = to_json(recording.run, OURS)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     if recording.provenance is not None:

@@ -15,7 +15,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from grader.errors import GraderFailure
-from grader.recording.beside import apart
 from grader.recording.observations import Observations
 from grader.recording.recording import (
     LONGEST_OUTPUT,
@@ -26,6 +25,7 @@ from grader.recording.recording import (
     Recording,
     Run,
 )
+from grader.recording.scene_and_cast import split
 from grader.recording.subject import Trace, load_subject, scene_at_work
 from grader.run.evidence import EvidencePage
 from grader.run.handover import Plan, keeper
@@ -310,7 +310,7 @@ def record(
     observations: Observations = NO_OBSERVATIONS,
 ) -> Recording:
     """Put together the recording of a run that is over."""
-    own, cast = apart(trace)
+    own, cast = split(trace)
     with scene_at_work(plan.scene):
         run = replace(
             ending.run,

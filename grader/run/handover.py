@@ -16,9 +16,9 @@ from typing import Any, Self
 
 from grader.errors import GraderFailure, SceneFailure
 from grader.recording import bag
-from grader.recording.beside import CastKeeper, together
 from grader.recording.mcap import read_mcap
 from grader.recording.recording import PublishedTopic
+from grader.recording.scene_and_cast import CastKeeper, merge
 from grader.recording.subject import Start, Subject, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
 from grader.scenes.scene import Limits
@@ -121,7 +121,7 @@ def leave(
         cast: that of the run (`grader.scenes.cast.playing`); None for none.
     """
     is_beside = cast is not None and not scene.has_cast
-    kept, by = together(trace, cast.trace(trace.ticks) if is_beside else None, scene)
+    kept, by = merge(trace, cast.trace(trace.ticks) if is_beside else None, scene)
     topics = {topic: kind for topic, kind in sorted(published.items()) if topic not in USUAL}
     facts = strict_json.to_json(_Facts(topics, kept.duration_ns, kept.sha256()), strict_json.OURS)
     head = json.dumps(facts).encode()

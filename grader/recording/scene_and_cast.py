@@ -16,7 +16,7 @@ PREFIX: Final = "/cast"
 
 
 @dataclass(frozen=True)
-class Both:
+class TwoTraces:
     """Two traces of one run."""
 
     trace: Trace
@@ -46,17 +46,17 @@ class CastKeeper(Subject):
         return self._scene.name
 
     def untouched(self, start: Start | None) -> Trace:
-        return Both(self._scene.untouched(start), self._cast.untouched(None))
+        return TwoTraces(self._scene.untouched(start), self._cast.untouched(None))
 
     def definitions_of(self, trace: Trace) -> Mapping[str, str]:
-        assert isinstance(trace, Both)
+        assert isinstance(trace, TwoTraces)
         others = self._cast.definitions_of(trace.cast)
         # those of ROS's own may have constants that a cast does not record: a scene's log
         usual = {name: text for name, text in OF_ROS.items() if name in others}
         return {**others, **usual, **self._scene.definitions_of(trace.trace)}
 
     def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
-        assert isinstance(trace, Both)
+        assert isinstance(trace, TwoTraces)
         others = self._cast.bag_topics(trace.cast)
         return [
             *self._scene.bag_topics(trace.trace),
@@ -64,7 +64,7 @@ class CastKeeper(Subject):
         ]
 
     def to_messages(self, trace: Trace) -> list[BagMessage]:
-        assert isinstance(trace, Both)
+        assert isinstance(trace, TwoTraces)
         others = self._cast.to_messages(trace.cast)
         made = self._scene.to_messages(trace.trace)
         made += [each._replace(topic=PREFIX + each.topic) for each in others]
@@ -78,16 +78,16 @@ class CastKeeper(Subject):
             for each in channels
             if each.topic.startswith(prefix)
         ]
-        return Both(
+        return TwoTraces(
             self._scene.from_channels(own, duration_ns),
             self._cast.from_channels(others, duration_ns),
         )
 
 
-def together(trace: Trace, cast: Trace | None, subject: Subject) -> tuple[Trace, Subject]:
+def merge(trace: Trace, cast: Trace | None, subject: Subject) -> tuple[Trace, Subject]:
     """Return a trace with that of the cast beside it, if there is one, and who keeps it."""
-    return (trace, subject) if cast is None else (Both(trace, cast), CastKeeper(subject))
+    return (trace, subject) if cast is None else (TwoTraces(trace, cast), CastKeeper(subject))
 
 
-def apart(kept: Trace) -> tuple[Trace, Trace | None]:
-    return (kept.trace, kept.cast) if isinstance(kept, Both) else (kept, None)
+def split(kept: Trace) -> tuple[Trace, Trace | None]:
+    return (kept.trace, kept.cast) if isinstance(kept, TwoTraces) else (kept, None)
