@@ -94,8 +94,8 @@ class Thumb:
 def thumb(recordings: Recordings) -> bytes:
     """Return the file's content, of the nominal run."""
     run = recordings.nominal
-    picture, solid = _picture(run), draw(run).turnable
-    words = clip(translate(solid.solid.text), _MOST_WORDS) if solid and not picture else ""
+    picture, solid = _picture(run), draw(run).solid
+    words = clip(translate(solid.text), _MOST_WORDS) if solid and not picture else ""
     return strict_json.line(Thumb(picture, words, _path(run)))
 
 

@@ -30,10 +30,9 @@ from grader.reports import readable, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.formats import Format
 from grader.reports.page import templating
-from grader.reports.page.parts import DrawnTree, Turnable, drawn, turnable
+from grader.reports.page.animation import Animation, animation, solid_data
 from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, recorded_uri
 from grader.reports.page.plots import HEIGHT, WIDTH, Drawn, Plots, expected, plots
-from grader.reports.page.tracks import Animation, animation
 from grader.reports.report import Report
 from grader.scenes.scene import Scene
 from grader.text import strings as text
@@ -54,14 +53,13 @@ class Drawing:
 
     Attributes:
         animation, plots: None without a recording.
-        turnable: a solid to turn, where the scene has one.
-        trees, tables: the other parts of the view.
+        solid, trees, tables: the parts of the view; one solid can be turned.
     """
 
     animation: Animation | None = None
     plots: Plots | None = None
-    turnable: Turnable | None = None
-    trees: tuple[DrawnTree, ...] = ()
+    solid: Solid | None = None
+    trees: tuple[Tree, ...] = ()
     tables: tuple[Table, ...] = ()
 
 
@@ -100,7 +98,7 @@ class RunView(Drawing):
     @property
     def can_be_seen(self) -> bool:
         """Whether there is a plane, or curves whose time can be chosen below it."""
-        return self.has_plane or bool(self.plots and self.plots.curves and not self.turnable)
+        return self.has_plane or bool(self.plots and self.plots.curves and not self.solid)
 
 
 def render(report: Report) -> str:
@@ -117,8 +115,8 @@ def render(report: Report) -> str:
             runs=runs,
             animations={r.number: _script_data(r.animation) for r in runs if r.animation},
             pinned={pin.point.number for run in runs if run.can_be_seen for pin in run.pins},
-            has_parts=any(run.turnable or run.trees or run.tables for run in runs),
-            has_solids=any(run.turnable for run in runs),
+            has_parts=any(run.solid or run.trees or run.tables for run in runs),
+            has_solids=any(run.solid for run in runs),
             has_no_scene=not isinstance(report.subject, Scene),
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
@@ -202,6 +200,7 @@ def _environment() -> jinja2.Environment:
         solid_script=Markup(code),
         solid_digest=base64.b64encode(hashlib.sha256(code.encode()).digest()).decode(),
         parts_style=Markup((_TEMPLATES / "parts.css").read_text(encoding="utf-8")),
+        solid_data=solid_data,
         all_passed=wording.all_passed,
         see_first=wording.SEE_FIRST,
         place=text.place,
@@ -228,12 +227,11 @@ def draw(recording: Recording) -> Drawing:
     if drawing is None:
         view = load_subject(recording.scene).view(recording.trace)
         duration_ns = recording.trace.duration_ns
-        solids = [part for part in view.parts if isinstance(part, Solid)]
         drawing = Drawing(
             animation(view, duration_ns),
             plots(view, duration_ns),
-            turnable(solids[0]) if solids else None,
-            tuple(drawn(part) for part in view.parts if isinstance(part, Tree)),
+            next((part for part in view.parts if isinstance(part, Solid)), None),
+            tuple(part for part in view.parts if isinstance(part, Tree)),
             tuple(part for part in view.parts if isinstance(part, Table)),
         )
         drawings[current()] = drawing

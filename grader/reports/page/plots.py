@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grader.recording.view import Call, Curve, Floats, View
-from grader.reports.page.tracks import svg_path
+from grader.reports.page.animation import svg_path
 from grader.reports.report import Report
 from grader.text import strings as text
 from grader.text.translations import tr, translate

@@ -6,12 +6,9 @@ import re
 import pytest
 
 from grader.recording.recording import Recording, Recordings, Run
-from grader.recording.view import Tree, TreeNode
 from grader.reports import read as read_report
 from grader.reports.page import html
-from grader.reports.page.parts import DEEPEST, WIDTH, drawn
 from grader.submission.trace import Description, LaunchedNode, LaunchFile, PackageTrace, Parameter
-from grader.text.message import plain_text
 from grader_class.gradebook.feedback import Feedback
 from grader_class.page.thumb import THUMB, Thumb, thumb
 from grader_class.reports import gradescope
@@ -103,10 +100,10 @@ def test_where_a_robot_cannot_be_drawn_it_is_told(tmp_path):
     assert "The robot arm with 1 link: base" in Feedback().page(of_class).decode()
 
 
-def test_frames_are_a_drawing_with_words(robot):
-    (words,) = re.findall(r'<svg class="tree" [^>]*aria-label="([^"]*)"', robot)
-    assert "- axis: 31.2 Hz, your node" in words
-    assert "<title>axis: 31.2 Hz, your node</title>" in robot
+def test_frames_are_a_list_with_levels(robot):
+    assert re.search(
+        r'<li aria-level="2"[^>]*>\s*<b>axis</b><br>\s*<small>31.2 Hz, your node<', robot
+    )
 
 
 def test_what_is_expected_stands_at_its_curve(robot):
@@ -142,11 +139,3 @@ def test_a_page_of_turtles_or_without_a_recording_has_nothing_of_it():
     page = html.render(samples.report(verdict("a")))
     for part in (".solid", "turning", "aspect-ratio: 1", "data-heading", "<canvas", '="still"'):
         assert part not in page
-
-
-def test_a_deep_tree_stays_in_its_width():
-    nodes = tuple(TreeNode(depth, "n" * 60, plain_text("t" * 200)) for depth in range(40))
-    made = drawn(Tree(plain_text("deep"), nodes))
-    assert max(node.x for node in made.nodes) < WIDTH / 2
-    assert len({node.x for node in made.nodes}) == DEEPEST + 1
-    assert all(len(node.name) * 8 + node.x < WIDTH + 20 for node in made.nodes)

@@ -1,12 +1,13 @@
-"""The tracks of a run as a page animates them: sampled, and divided by pen."""
+"""What moves in a page: the tracks of a run, sampled and divided by pen, and a solid."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from grader.recording.view import Floats, Times, Track, View
+from grader.recording.view import Floats, Placing, Shape, Solid, Times, Track, View
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000
@@ -130,3 +131,40 @@ def _stretches(track: Track, times_ns: Times) -> tuple[Stretch, ...]:
         start = end
         pen = change or pen
     return tuple(stretches)
+
+
+# Solids -----------------------------------------------------------------------------------------
+
+#: Kept decimals: of a place [m], of a quaternion, of a size [m].
+_PLACE, _TURN, _SIZE = 4, 4, 5
+_KINDS = {"box": 0, "cylinder": 1, "sphere": 2, "triangles": 3}
+
+
+def solid_data(solid: Solid) -> dict[str, Any]:
+    """Return a solid as the script reads it.
+
+    `t` are the times [s], `frames` each its parent and placings, `shapes` each its kind, frame,
+    placing, sizes, colour and alpha; `ground` and `way`.
+    """
+    return {
+        "t": [round(time_ns / 1e9, 2) for time_ns in solid.times_ns],
+        "frames": [
+            [frame.parent, [_placing(each) for each in frame.placings]] for frame in solid.frames
+        ],
+        "shapes": [_shape(each) for each in solid.shapes],
+        "ground": None if solid.ground_m is None else round(solid.ground_m, _PLACE),
+        "way": solid.way.round(3).tolist(),
+    }
+
+
+def _shape(shape: Shape) -> list[Any]:
+    sizes = [round(size, _SIZE) for size in shape.sizes]
+    placing = _placing(shape.placing)
+    return [_KINDS[shape.kind], shape.frame, placing, sizes, shape.color, round(shape.alpha, 2)]
+
+
+def _placing(placing: Placing | None) -> list[float] | None:
+    if placing is None:
+        return None
+    at = [round(value, _PLACE) + 0.0 for value in placing.at]
+    return [*at, *(round(value, _TURN) + 0.0 for value in placing.turned)]

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from grader.reports.page.tracks import animation, svg_path
+from grader.reports.page.animation import animation, svg_path
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import view
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
