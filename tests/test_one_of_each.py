@@ -15,7 +15,7 @@ ONE = {
     "what a process uses is looked up": (r"/proc/[^ ]*/stat\"", "system/linux.py"),
     "a process is controlled": (r"\.prctl|\"prctl\"", "system/linux.py"),
     "an expression is evaluated": (r"operator\.truediv", "system/expressions.py"),
-    "a traceback is parsed": (r"Traceback \(most recent", "recording/printed.py"),
+    "a traceback is parsed": (r"Traceback \(most recent", "recording/observations.py"),
     "a resource is limited": (r"\.setrlimit\(", "system/linux.py"),
     "the C library is called": (r"CDLL\(None", "system/linux.py"),
     "a process of a run is begun": (r"os\.execvpe?\(", "run/processes/fork_server_main.py"),

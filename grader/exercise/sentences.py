@@ -11,8 +11,7 @@ from pathlib import PurePath
 from typing import Final
 
 from grader.exercise.verdict import Finding
-from grader.recording.observations import Raised
-from grader.recording.printed import last_exception
+from grader.recording.observations import Raised, last_exception
 from grader.recording.recording import Provenance, Recording, Recordings
 from grader.recording.subject import load_subject
 from grader.submission.error_texts import described

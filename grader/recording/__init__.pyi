@@ -8,9 +8,9 @@ from grader.recording.observations import Raised as Raised
 from grader.recording.observations import RanFile as RanFile
 from grader.recording.observations import SourceLine as SourceLine
 from grader.recording.observations import Standstill as Standstill
-from grader.recording.printed import is_library as is_library
-from grader.recording.printed import last_exception as last_exception
-from grader.recording.printed import thread_exception as thread_exception
+from grader.recording.observations import is_library as is_library
+from grader.recording.observations import last_exception as last_exception
+from grader.recording.observations import thread_exception as thread_exception
 from grader.recording.recording import NOT_THERE as NOT_THERE
 from grader.recording.recording import Clock as Clock
 from grader.recording.recording import ProgramRun as ProgramRun

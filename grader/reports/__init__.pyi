@@ -1,7 +1,7 @@
 from grader.reports.csv import cell as cell
 from grader.reports.csv import is_safe_id as is_safe_id
 from grader.reports.csv import table as table
-from grader.reports.error_report import ErrorReport as ErrorReport
+from grader.reports.formats import ErrorReport as ErrorReport
 from grader.reports.formats import Format as Format
 from grader.reports.formats import load as load
 from grader.reports.formats import names as names

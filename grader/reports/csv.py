@@ -8,8 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
+from grader.reports.formats import ErrorReport, Format
 from grader.reports.report import Report
 from grader.reports.wording import WORDS
 from grader.text import strings as text

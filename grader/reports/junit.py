@@ -7,8 +7,7 @@ from typing import Final
 from xml.etree import ElementTree
 
 from grader.exercise.verdict import Verdict
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
+from grader.reports.formats import ErrorReport, Format
 from grader.reports.report import Report
 from grader.reports.wording import score_text, word
 from grader.text import strings as text

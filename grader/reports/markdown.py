@@ -7,8 +7,7 @@ from typing import Final
 
 from grader.exercise.verdict import Verdict
 from grader.reports import wording
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
+from grader.reports.formats import ErrorReport, Format
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
 from grader.text import strings as text

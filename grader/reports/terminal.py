@@ -19,8 +19,7 @@ from rich.text import Text
 
 from grader.exercise.verdict import Verdict
 from grader.reports import wording
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
+from grader.reports.formats import ErrorReport, Format
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
 from grader.text.message import msg

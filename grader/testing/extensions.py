@@ -12,8 +12,7 @@ from grader.exercise.verdict import Verdict
 from grader.recording import bag
 from grader.recording.mcap import read_mcap
 from grader.recording.subject import Subject, Trace, load_subject
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import load
+from grader.reports.formats import ErrorReport, load
 from grader.reports.report import Artifacts, Report
 from grader.text.message import NOTHING, Message, msg, plain_text
 

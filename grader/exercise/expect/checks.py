@@ -135,7 +135,10 @@ def _entries(
     """Yield what peers have of a kind, by its id or else by its name."""
     for peer in peers.values():
         for key, entry in getattr(peer, part).items():
-            yield key if has_id else script.absolute(getattr(entry, script.NAMED_BY[part])), entry
+            yield (
+                key if has_id else script.absolute(getattr(entry, script.KINDS[part].named_by)),
+                entry,
+            )
 
 
 def _check(name: str, expectation: Expectation) -> Any:

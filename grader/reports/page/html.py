@@ -27,8 +27,7 @@ from grader.recording.recording import Recording
 from grader.recording.subject import Subject, load_subject
 from grader.recording.view import Floats, Plane, Solid, Table, Tree
 from grader.reports import readable, wording
-from grader.reports.error_report import ErrorReport
-from grader.reports.formats import Format
+from grader.reports.formats import ErrorReport, Format
 from grader.reports.page import templating
 from grader.reports.page.animation import Animation, animation, solid_data
 from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, recorded_uri

@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any, Final
 
 from action_msgs.msg import GoalStatus
-from geometry_msgs.msg import TransformStamped
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.action import ActionClient, ActionServer, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -198,22 +197,23 @@ class PeerNode:
         publisher = self.node.create_publisher(kind, entry.topic, _qos(quality))
 
         def say() -> None:
-            now_ns = self._now_ns()
-            values = self._filled([*entry.translation, *entry.rotation], {"t": now_ns / 1e9})
-            try:
-                numbers = [float(each) for each in values or ()]
-            except (TypeError, ValueError, OverflowError) as error:
-                self._refuse(entry.child, str(error)[:300])
-                numbers = []
-            if not numbers:
+            numbers = [*entry.translation, *entry.rotation]
+            values = self._filled(numbers, {"t": self._now_ns() / 1e9})
+            if values is None:
                 return
-            made = TransformStamped(child_frame_id=entry.child)
-            made.header.frame_id = entry.parent
-            stamp = self.node.get_clock().now().to_msg()
-            made.header.stamp = stamp
-            moved, turned = made.transform.translation, made.transform.rotation
-            moved.x, moved.y, moved.z, turned.x, turned.y, turned.z, turned.w = numbers
-            message = kind(transforms=[made])
+            stamp = plain(self.node.get_clock().now().to_msg())
+            moved, turned = (
+                zip("xyz", values[:3], strict=True),
+                zip("xyzw", values[3:], strict=True),
+            )
+            frame = {
+                "header": {"stamp": stamp, "frame_id": entry.parent},
+                "child_frame_id": entry.child,
+                "transform": {"translation": dict(moved), "rotation": dict(turned)},
+            }
+            message = self._made(kind, {"transforms": [frame]})
+            if message is None:
+                return
             publisher.publish(message)
             self._recorder.said(entry.topic, TF, self.name, message)
 

@@ -15,7 +15,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, fields, replace
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Final, Literal, NamedTuple
 
 from grader.recording.subject import Endpoint, EndpointKind, Role, RoleKind
 from grader.scenes.cast.trace import TF
@@ -221,39 +221,39 @@ class Peer:
     frames: Mapping[str, PeerFrame] = field(default_factory=dict)
 
 
-#: A kind of thing that a peer has -> its class, and the names that its templates may use; None for
-#: any: those of a message that is only known in the run.
-KINDS: Final[Mapping[str, tuple[type, set[str] | None]]] = {
-    "publishers": (PeerPublisher, {"n", "t"}),
-    "subscriptions": (PeerSubscription, set()),
-    "services": (PeerService, None),
-    "calls": (PeerCall, {"t"}),
-    "goals": (PeerGoal, {"t"}),
-    "actions": (PeerAction, None),
-    "parameters": (PeerParameters, set()),
-    "frames": (PeerFrame, {"t"}),
+class Kind(NamedTuple):
+    """A kind of thing that a peer has.
+
+    Attributes:
+        named_by: the attribute that names it; where that is '', the name that it is listed by does.
+        values: the names that its templates may use; None for any: those of a message that is only
+            known in the run.
+        met: what of it a program may meet.
+        facing: what faces it in a program.
+    """
+
+    entry: type
+    named_by: str = ""
+    values: Set[str] | None = frozenset()
+    met: EndpointKind | None = None
+    facing: RoleKind | None = None
+
+
+KINDS: Final[Mapping[str, Kind]] = {
+    "publishers": Kind(PeerPublisher, "topic", {"n", "t"}, "publisher", "subscription"),
+    "subscriptions": Kind(PeerSubscription, "topic", set(), "subscription", "publisher"),
+    "services": Kind(PeerService, "service", None, "service", "client"),
+    "calls": Kind(PeerCall, "service", {"t"}, None, "service"),
+    "goals": Kind(PeerGoal, "action", {"t"}, None, "action"),
+    "actions": Kind(PeerAction, "action", None, "action", "action_client"),
+    "parameters": Kind(PeerParameters),
+    "frames": Kind(PeerFrame, values={"t"}),
 }
-#: What of it a program may meet.
-_MET: Final[Mapping[str, EndpointKind]] = {
-    **{"publishers": "publisher", "subscriptions": "subscription"},
-    **{"services": "service", "actions": "action"},
-}
-#: What faces it in a program.
-_FACING: Final[Mapping[str, RoleKind]] = {
-    **{"publishers": "subscription", "subscriptions": "publisher"},
-    **{"services": "client", "calls": "service", "actions": "action_client", "goals": "action"},
-}
-#: Which attribute names it; where that is '', the name that it is listed by does.
-NAMED_BY: Final = {
-    **dict.fromkeys(("publishers", "subscriptions"), "topic"),
-    **dict.fromkeys(("services", "calls"), "service"),
-    **dict.fromkeys(("goals", "actions"), "action"),
-}
-#: What has a type, with an example.
-TYPES: Final = {
-    **dict.fromkeys(("publishers", "subscriptions"), "std_msgs/msg/String"),
-    **dict.fromkeys(("services", "calls"), "example_interfaces/srv/AddTwoInts"),
-    **dict.fromkeys(("goals", "actions"), "example_interfaces/action/Fibonacci"),
+#: Types of what has one, for a mistake.
+_EXAMPLES: Final = {
+    "topic": "std_msgs/msg/String",
+    "service": "example_interfaces/srv/AddTwoInts",
+    "action": "example_interfaces/action/Fibonacci",
 }
 
 
@@ -291,11 +291,13 @@ def heard(peers: Mapping[str, Peer], hears: Iterable[str]) -> list[str]:
 def endpoints(peers: Mapping[str, Peer]) -> Iterator[Endpoint]:
     """Yield what a program may meet, once for each type that it may have."""
     for node, peer in peers.items():
-        for kind, met in _MET.items():
-            for entry in getattr(peer, kind).values():
-                name = absolute(getattr(entry, NAMED_BY[kind]))
+        for key, kind in KINDS.items():
+            if kind.met is None:
+                continue
+            for entry in getattr(peer, key).values():
+                name = absolute(getattr(entry, kind.named_by))
                 for each in entry.types:
-                    yield Endpoint(met, name, each, absolute(node), entry.begin)
+                    yield Endpoint(kind.met, name, each, absolute(node), entry.begin)
         for frame in peer.frames.values():
             yield Endpoint("publisher", frame.topic, TF, absolute(node))
 
@@ -303,9 +305,10 @@ def endpoints(peers: Mapping[str, Peer]) -> Iterator[Endpoint]:
 def roles(peers: Mapping[str, Peer]) -> Iterator[Role]:
     """Yield what a program has on the graph that faces these peers."""
     for peer in peers.values():
-        for kind, role in _FACING.items():
-            for entry in getattr(peer, kind).values():
-                yield Role(role, absolute(getattr(entry, NAMED_BY[kind])))
+        for key, kind in KINDS.items():
+            if kind.facing is not None:
+                for entry in getattr(peer, key).values():
+                    yield Role(kind.facing, absolute(getattr(entry, kind.named_by)))
         for frame in peer.frames.values():
             yield Role("subscription", frame.topic)
         for each in peer.parameters.values():
@@ -331,13 +334,13 @@ def _peer(name: Any, parts: Any, at: tuple[str, ...]) -> Peer:
 
 
 def _entry(kind: str, values: Any, at: tuple[str, ...]) -> Any:
-    made_of, known = KINDS[kind]
+    made_of, named_by, known, *_ = KINDS[kind]
     try:
         made: Any = strict_json.from_json(made_of, values, OURS)
     except ValueError as error:
         raise Mistake(at, msg("{what}", what=str(error))) from None
-    if (key := NAMED_BY.get(kind)) and not getattr(made, key):
-        made = replace(made, **{key: at[-1]})
+    if named_by and not getattr(made, named_by):
+        made = replace(made, **{named_by: at[-1]})
     for each in fields(made_of):
         value = getattr(made, each.name)
         if each.name in ("topic", "service", "action", "node"):
@@ -345,7 +348,7 @@ def _entry(kind: str, values: Any, at: tuple[str, ...]) -> Any:
             expect(_TOPIC.fullmatch(value) is not None, (*at, each.name), what, value)
         elif each.name == "type":
             listed = _flat(value)
-            example = TYPES[kind]
+            example = _EXAMPLES[named_by]
             are_types = isinstance(listed, list) and all(
                 TYPE.fullmatch(str(one)) and str(one).split("/")[1] == example.split("/")[1]
                 for one in listed

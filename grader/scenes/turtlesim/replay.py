@@ -139,9 +139,7 @@ class _Replay:
         self.animation.background(self._frame, self._arena.background)
         for name, pose in poses.items():
             turtle = self._arena.turtles[name]
-            where = turtle.x_m * METER_PX, turtle.y_down_m * METER_PX, turtle.heading_rad
-            self.animation.turtle(self._frame, name, where, pose)
-            self.animation.pen(self._frame, name, turtle.pen, turtle.pen_on)
+            self.animation.turtle(self._frame, name, pose, turtle)
 
     def _end(self) -> None:
         """Replace the drawing in the last frame by the recorded picture."""
@@ -220,21 +218,19 @@ class Animation:
         if not self._backgrounds or self._backgrounds[-1][1] != list(color):
             self._backgrounds.append([frame, list(color)])
 
-    def turtle(self, frame: int, name: str, place: Place, pose: Pose) -> None:
-        """Place a turtle in this frame: centre [px, y down], heading [rad], and its pose."""
+    def turtle(self, frame: int, name: str, pose: Pose, turtle: Turtle) -> None:
         part = self._parts.setdefault(name, _TurtleFrames())
         if part.stretches and part.stretches[-1][1] == frame - 1:
             part.stretches[-1][1] = frame
         else:
             part.stretches.append([frame, frame])
+        place = turtle.x_m * METER_PX, turtle.y_down_m * METER_PX, turtle.heading_rad
         part.places.append(place)
         part.poses.append(pose)
-
-    def pen(self, frame: int, name: str, pen: Pen, is_on: bool) -> None:
-        pens = self._parts[name].pens
-        now = [pen.r, pen.g, pen.b, pen.width, int(not is_on)]
-        if not pens or pens[-1][1:] != now:
-            pens.append([frame, *now])
+        pen = turtle.pen
+        now = [pen.r, pen.g, pen.b, pen.width, int(not turtle.pen_on)]
+        if not part.pens or part.pens[-1][1:] != now:
+            part.pens.append([frame, *now])
 
     def to_json(self, last: int) -> dict[str, Any]:
         """Return all frames up to `last`, as `page/animation.js` reads them."""
