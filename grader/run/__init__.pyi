@@ -2,5 +2,3 @@ from grader.run.opening import marks_of as marks_of
 from grader.run.processes import cores as cores
 from grader.run.processes import levels as levels
 from grader.run.processes import started_process as started_process
-from grader.run.processes.levels import ADVICE as ADVICE
-from grader.run.processes.levels import LEVELS as LEVELS
