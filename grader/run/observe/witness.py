@@ -204,7 +204,9 @@ class Witness:
         self._account.write()
 
     def made_timer(self, timer: Any) -> None:
-        """Note a timer that the program has made."""
+        """Note a timer of the program; that of a spin with a timeout has no callback."""
+        if timer.callback is None:
+            return
         frame = _maker(sys._getframe())
         place = self._files.place(frame)
         if frame is not None and place is not None:

@@ -105,6 +105,10 @@ def test_who_waits_for_messages_without_spinning_has_heard_them(recorded):
     assert heard == [("/turtle1/pose", 1)] * 3
 
 
+def test_the_timer_of_a_spin_with_a_timeout_is_none_of_the_programs(recorded):
+    assert recorded("styles/own_parameters").observations.timers == ()
+
+
 def test_a_callback_that_sleeps_is_told_by_its_longest_line(recorded):
     seen = recorded("observed/sleeps_in_callback").observations
     place = SourceLine("sleeps_in_callback.py", 12, "pause", "time.sleep(0.15)")
