@@ -120,7 +120,7 @@ for arguments in json.loads(sys.argv[2]):
 def refuses(module: str, refused: Sequence[tuple[Sequence[str], str]]) -> None:
     """A program ends with code 2, and a complaint, for each of these arguments."""
     asked = json.dumps([arguments for arguments, _ in refused])
-    words = [sys.executable, "-c", CALLS, f"robot_py.{module}", asked]
+    words = [sys.executable, "-c", CALLS, f"grader_robots.robot_py.{module}", asked]
     ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
     *said, rest = ended.stderr.split("code 2\n")
     assert (len(said), rest, "Traceback" in ended.stderr) == (len(refused), "", False)
