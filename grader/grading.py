@@ -241,12 +241,12 @@ def plan(
     interfaces = ""
     if isinstance(scene, Scene):
         interfaces = scene.interfaces_for(imports.surely, imports.perhaps)
-    usual, *others = exercise.cases
+    (usual, drawn), *others = exercise.drawn_cases(seed)
     own = {} if usual.cast is None else submission.interfaces.importable
     nominal = Plan(
         exercise.limits,
         scene=exercise.scene,
-        seed=used if starts and not hides_seed else None,
+        seed=used if exercise.has_chance and not hides_seed else None,
         interfaces=interfaces,
         setting=exercise.setting,
         looks_at_package=exercise.looks_at_package and submission.package is not None,
@@ -256,12 +256,13 @@ def plan(
         hears=usual.hears,
         own_definitions=own,
         arguments=usual.arguments,
+        drawn=drawn,
         budget=budget,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
-    for each in others:
+    for each, drawn in others:
         own_part = replace(nominal, cast=each.cast, hears=each.hears, arguments=each.arguments)
-        varied.append(replace(own_part, case=each.name, seed=None))
+        varied.append(replace(own_part, case=each.name, drawn=drawn, seed=None))
     missing = missing_neighbours(
         submission.name, submission.copy, (*imports.surely, *imports.perhaps)
     )
@@ -284,7 +285,7 @@ def provenance(
         submission_sha256="" if copy is None else content.of_folder(copy.folder, copy.installed),
         exercise=exercise.name,
         exercise_sha256=exercise.sha256,
-        seed=used if exercise.varied.count and not hides_seed else None,
+        seed=used if exercise.has_chance and not hides_seed else None,
         conditions=exercise.conditions,
     )
 

@@ -19,6 +19,7 @@ from grader.errors import ExerciseError
 from grader.exercise import places, policies
 from grader.exercise.cases import RunCase, read_cases
 from grader.exercise.check import Checks
+from grader.exercise.draws import Draw, read_draws
 from grader.exercise.exercise import INSPECTIONS, INSPECTS, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
 from grader.exercise.policies import Amount, amount
@@ -113,8 +114,9 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     plain: _Plain = decoded(_Plain, given)
     limits = _limits(data, plain, subject, scene)
     tolerances = decoded(Mapping[str, Any], data.get("tolerances") or {}, "tolerances")
-    cases = read_cases(data, interfaces, limits.total_s, has_cast=subject.has_cast)
-    checks, heard = _checks(data, place, cases, interfaces, limits.total_s)
+    draws = read_draws(data)
+    cases = read_cases(data, interfaces, limits.total_s, draws, has_cast=subject.has_cast)
+    checks, heard = _checks(data, place, cases, interfaces, limits.total_s, draws)
     cases = [each.hearing(heard) for each in cases]
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
@@ -141,6 +143,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         fits=plain.fits.files,
         interfaces=interfaces,
         cases=tuple(cases),
+        draws=draws,
         is_to_end=any("exits" in each for each in data.get(EXPECT, {}).values()),
         title=authored(str(data["title"])),
         task=authored(plain.task),
@@ -239,6 +242,7 @@ def _checks(
     cases: Sequence[RunCase],
     definitions: Mapping[str, str],
     end_s: float,
+    draws: Mapping[str, Draw],
 ) -> tuple[Checks, set[str]]:
     """Return the checks of checks.py and those of what is expected, and the topics of these."""
     if EXPECT not in data:
@@ -248,7 +252,7 @@ def _checks(
 
     has_own = (place.folder / places.CHECKS).is_file()
     checks = places.import_checks(place).copy() if has_own else Checks()
-    return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s)
+    return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s, draws)
 
 
 def _programs(plain: _Plain) -> tuple[str, ...]:

@@ -6,7 +6,8 @@
       triangle: {cast: {caller: {calls: {draw: {request: {sides: 3}}}}}}
 
 The exercise itself is the first case, `usual`. Each further one is a varied run, and says in what
-it differs: what it names takes the place of what is there, null takes it away.
+it differs: what it names takes the place of what is there, null takes it away. `drawn: 3` are three
+runs, for each of which values are drawn (`grader.exercise.draws`).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
+from grader.exercise.draws import DRAWN, Draw, Drawn, examples, put_in
 from grader.recording.subject import Endpoint, Role
 from grader.system.yaml_file import Mistake, decoded, expect
 from grader.text.message import msg
@@ -41,12 +43,21 @@ class RunCase:
             none and nothing is recorded.
         hears: topics that are recorded besides.
         arguments: those that the program is started with.
+        written: the cast and the arguments with what is drawn for each run; with the examples these
+            are those above.
     """
 
     name: str = ""
     cast: Mapping[str, Any] | None = field(default=None, hash=False)
     hears: tuple[str, ...] = ()
     arguments: tuple[str, ...] = ()
+    written: Mapping[str, Any] = field(default_factory=dict, hash=False)
+
+    def with_drawn(self, drawn: Drawn) -> RunCase:
+        """Return the case of one run."""
+        made = put_in(self.written, drawn)
+        arguments = tuple(map(str, made.get(ARGUMENTS, ())))
+        return replace(self, cast=made.get(CAST, self.cast), arguments=arguments)
 
     @property
     def endpoints(self) -> tuple[Endpoint, ...]:
@@ -72,7 +83,12 @@ class RunCase:
 
 
 def read_cases(
-    data: Mapping[str, Any], definitions: Mapping[str, str], end_s: float, *, has_cast: bool
+    data: Mapping[str, Any],
+    definitions: Mapping[str, str],
+    end_s: float,
+    draws: Mapping[str, Draw],
+    *,
+    has_cast: bool,
 ) -> list[RunCase]:
     """Read the cases of an exercise's description, the usual one first.
 
@@ -91,15 +107,23 @@ def read_cases(
     usual = {key: data[key] for key in (CAST, HEARS, ARGUMENTS) if key in data}
     if has_cast or HEARS in data or "expect" in data:
         usual.setdefault(CAST, {})
-    cases = [_case("", usual, definitions, end_s, ())]
+    cases = [_case("", usual, definitions, end_s, draws, ())]
     for name, change in given.items():
         at = (CASES, str(name))
         is_name = isinstance(name, str) and _NAME.fullmatch(name) and name != USUAL
         expect(bool(is_name), at, "expected a name such as triangle, found {found}", name)
-        is_known = isinstance(change, dict) and change.keys() <= {CAST, HEARS, ARGUMENTS}
+        known = (CAST, HEARS, ARGUMENTS, DRAWN)
+        is_known = isinstance(change, dict) and change.keys() <= {*known}
         what = "expected some of {known}, found {found}"
-        expect(is_known, at, what, change, known=", ".join((CAST, HEARS, ARGUMENTS)))
-        cases.append(_case(name, _changed(usual, change), definitions, end_s, at))
+        expect(is_known, at, what, change, known=", ".join(known))
+        count = change.get(DRAWN, 1)
+        fits = isinstance(count, int) and count > 0 and (bool(draws) or DRAWN not in change)
+        what = "expected how many runs, of an exercise with `draw`; found {found}"
+        expect(fits, (*at, DRAWN), what, count)
+        cases += count * [_case(name, _changed(usual, change), definitions, end_s, draws, at)]
+    fits = len(cases) <= MOST_CASES + 1
+    expect(fits, (CASES,), "expected at most {most} runs, found {found}", len(cases) - 1,
+           most=MOST_CASES)  # fmt: skip
     return cases
 
 
@@ -108,15 +132,22 @@ def _case(
     data: Mapping[str, Any],
     definitions: Mapping[str, str],
     end_s: float,
+    draws: Mapping[str, Draw],
     at: tuple[str, ...],
 ) -> RunCase:
-    cast = _cast(data, definitions, end_s, at)
-    return RunCase(name, cast, _texts(data, HEARS, at), _texts(data, ARGUMENTS, at))
+    written = {key: data[key] for key in (CAST, ARGUMENTS) if data.get(key)}
+    made = {key: put_in(value, examples(draws), (*at, key)) for key, value in written.items()}
+    made = {**data, **made}
+    cast = _cast(made, definitions, end_s, at)
+    arguments = _texts(made, ARGUMENTS, at)
+    return RunCase(name, cast, _texts(data, HEARS, at), arguments, written if draws else {})
 
 
 def _changed(usual: Mapping[str, Any], change: Mapping[str, Any]) -> dict[str, Any]:
     made = dict(usual)
     for key, value in change.items():
+        if key == DRAWN:
+            continue
         before = made.pop(key, None)
         if isinstance(before, dict) and isinstance(value, dict):
             made[key] = _changed(before, value)

@@ -18,6 +18,7 @@ from typing import Annotated, Any, Literal, TypedDict
 from grader.errors import ExerciseError
 from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks
+from grader.exercise.draws import Draw, Drawn, draw
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
 from grader.recording.subject import Endpoint, Role, Start, Subject, load_subject
@@ -122,6 +123,7 @@ class Exercise:
         interfaces: a type that it brings along, 'my_interfaces/msg/Num' -> its definition.
         setting: the text of the file that it is set up with; '' for none.
         cases: what plays beside a program in the nominal run, and in further ones.
+        draws: the values that are drawn anew for each of these.
         is_to_end: whether a program is to end by itself.
         looks_at_package: whether the package around what is started is inspected as well.
         inspections: the names of the inspectors that examine packages.
@@ -156,6 +158,7 @@ class Exercise:
     fits: tuple[str, ...] = ()
     interfaces: Mapping[str, str] = field(default_factory=dict)
     cases: tuple[RunCase, ...] = (RunCase(),)
+    draws: Mapping[str, Draw] = field(default_factory=dict)
     is_to_end: bool = False
 
     @property
@@ -268,6 +271,19 @@ class Exercise:
         text = f"{known} {unicodedata.normalize('NFC', student_id)}"
         digest = hashlib.sha256(text.encode("utf-8", "surrogatepass")).digest()
         return int.from_bytes(digest[: 6 if secret else 4], "big")
+
+    @property
+    def has_chance(self) -> bool:
+        """Whether its runs depend on a seed."""
+        return bool(self.varied.count or self.draws)
+
+    def drawn_cases(self, seed: int | None = None) -> list[tuple[RunCase, Drawn]]:
+        """Return the case of each run with what was drawn for it; see `starts`."""
+        if not self.draws:
+            return [(case, {}) for case in self.cases]
+        used = self.varied.seed if seed is None else seed
+        drawn = [draw(self.draws, used, number) for number in range(len(self.cases))]
+        return [(case.with_drawn(d), d) for case, d in zip(self.cases, drawn, strict=True)]
 
     def starts(self, seed: int | None = None) -> list[Start]:
         """Return how the varied runs start; None uses the exercise's seed. See `seed_for`."""

@@ -14,6 +14,7 @@ from typing import Any
 from grader.errors import ExerciseError
 from grader.exercise import cases, places
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, build
+from grader.exercise.draws import DRAW
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, Exercise
 from grader.exercise.places import DESCRIPTION, Place, names
 from grader.exercise.translated import read_translations, translate
@@ -32,7 +33,7 @@ from grader.text.message import reason
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", INSPECTS, CPU),
-    *(INSPECTIONS, INTERFACES, *cases.KEYS, EXPECT),
+    *(INSPECTIONS, INTERFACES, DRAW, *cases.KEYS, EXPECT),
     *("points", "visible", "late", "tolerances", "starter", "program", "programs", FITS),
 )
 #: Keys of an edited copy -> what it replaces, for which the original's translations do not fit.

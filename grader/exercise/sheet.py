@@ -202,7 +202,16 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
         varied.count,
         the_thing=translate(subject.the_thing),
     )
+    drawn = tr(
+        "What others send and ask is drawn anew for each run: {values}.",
+        values="; ".join(
+            tr("{name}, {what}, such as {example}", name=f"`{name}`", what=translate(each.range_text),
+               example=each.example)
+            for name, each in exercise.draws.items()
+        ),
+    )  # fmt: skip
     more = {
+        drawn: exercise.draws,
         elsewhere: varied.count and not varied.runs,
         others: len(exercise.cases) > 1,
         otherwise: varied.runs,

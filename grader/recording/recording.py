@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
-from typing import Final, Literal
+from typing import Annotated, Any, Final, Literal
 
 from grader.recording.observations import Observations
 from grader.recording.subject import Start, Trace, load_subject
@@ -28,6 +28,16 @@ NOT_THERE: Final = msg(
 )
 #: So many programs a run may have at once: they share its limits.
 MOST_PROGRAMS: Final = 8
+
+
+def _a_scalar(value: Any) -> Any:
+    """For `Annotated`: a number, a text, true or false."""
+    if type(value) not in (bool, int, float, str):
+        raise ValueError(f"expected a number or a text, found {value!r:.80}")
+    return value
+
+
+Scalar = Annotated[Any, _a_scalar]
 
 
 @dataclass(frozen=True)
@@ -68,6 +78,7 @@ class Run:
         seed: chose where the varied runs start; None where there are none.
         interfaces: with which the scene was run; '' where it has no choice, or had none.
         case: of the exercise; '' for the usual one.
+        drawn: the values that were drawn for this run, by their names.
         programs: of the submission, in the order of their start.
     """
 
@@ -83,6 +94,7 @@ class Run:
     seed: int | None = None
     interfaces: str = field(default="", metadata=SPARSE)
     case: str = field(default="", metadata=SPARSE)
+    drawn: Mapping[str, Scalar] = field(default_factory=dict, hash=False, metadata=SPARSE)
     programs: tuple[ProgramRun, ...] = field(default=(), metadata=SPARSE)
 
 

@@ -322,6 +322,7 @@ def record(
             seed=plan.seed,
             interfaces=plan.interfaces,
             case=plan.case,
+            drawn=plan.drawn,
         )
     kept = (own, run, topics, ending.output, plan.start, plan.scene, observations)
     return Recording(*kept, cast=cast)

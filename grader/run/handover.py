@@ -17,7 +17,7 @@ from typing import Any, Self
 from grader.errors import GraderFailure, SceneFailure
 from grader.recording import bag
 from grader.recording.mcap import read_mcap
-from grader.recording.recording import PublishedTopic
+from grader.recording.recording import PublishedTopic, Scalar
 from grader.recording.scene_and_cast import CastKeeper, merge
 from grader.recording.subject import Start, Subject, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
@@ -47,6 +47,7 @@ class Plan:
         own_definitions: a hand-in's interfaces, for a cast alone: nothing imports them.
         arguments: those that the program is started with.
         case: of the exercise; '' for the usual one.
+        drawn: the values that were drawn for it.
         budget: that of the whole grading, which the simulator's process does not know.
     """
 
@@ -69,6 +70,9 @@ class Plan:
     )
     arguments: tuple[str, ...] = field(default=(), metadata=strict_json.SPARSE)
     case: str = field(default="", metadata=strict_json.SPARSE)
+    drawn: Mapping[str, Scalar] = field(
+        default_factory=dict, hash=False, metadata=strict_json.SPARSE
+    )
     budget: CpuBudget = field(
         default_factory=CpuBudget, compare=False, metadata=strict_json.UNSTORED
     )

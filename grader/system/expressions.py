@@ -365,6 +365,47 @@ def looked_up(template: Any, name: str) -> set[str]:
     return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
 
 
+def with_fields(template: Any, name: str, fields: Mapping[str, Any]) -> Any:
+    """Return a template in which the fields of a name are constants; what is constant is computed.
+
+    Raises:
+        ExpressionError: it needs another field of that name, or cannot be computed.
+    """
+    if isinstance(template, Mapping):
+        return {key: with_fields(value, name, fields) for key, value in template.items()}
+    if isinstance(template, (list, tuple)):
+        return [with_fields(each, name, fields) for each in template]
+    if not isinstance(template, str) or f"{name}." not in template:
+        return template
+    if template.startswith("="):
+        made = parse(_with_constants(template[1:], name, fields))
+        return f"={made.text}" if made.names else made.value({})
+
+    def written(hole: re.Match[str]) -> str:
+        text, form = _split(hole[1])
+        # in brackets, since {2} is a pattern's
+        constant = f"({_with_constants(text, name, fields)})"
+        return f"{{{constant}:{form}}}" if form else f"{{{constant}}}"
+
+    made = _HOLE.sub(written, template)
+    return made if is_pattern(made) or check(made, has_patterns=True) else filled(made, {})
+
+
+def _with_constants(text: str, name: str, fields: Mapping[str, Any]) -> str:
+    class Constants(ast.NodeTransformer):
+        def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+            if _name(node.value) != name:
+                self.generic_visit(node)
+                return node
+            if node.attr not in fields:
+                raise ExpressionError(msg("there is no value {name} here, only {known}",
+                    name=f"{name}.{node.attr}", known=", ".join(fields) or "none"))  # fmt: skip
+            return ast.Constant(fields[node.attr])
+
+    parse(text)  # which says what is wrong with it
+    return ast.unparse(Constants().visit(ast.parse(text.strip(), mode="eval")))
+
+
 def filled(
     template: Any,
     names: Mapping[str, Any],

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from grader.exercise.cases import USUAL, RunCase
 from grader.exercise.check import Checks
+from grader.exercise.draws import Draw, Drawn, examples, put_in
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import Expectation, ExpectedTopic, parse
 from grader.exercise.known_types import KnownTypes, check_time
@@ -38,6 +39,7 @@ def add_checks(
     cases: Sequence[RunCase],
     known: KnownTypes,
     end_s: float,
+    draws: Mapping[str, Draw],
 ) -> set[str]:
     """Add a check for each entry; return the topics that they judge.
 
@@ -58,7 +60,7 @@ def add_checks(
         at = (*keys, str(name))
         is_name = isinstance(name, str) and name.isidentifier()
         expect(is_name, at, "expected a name such as talks, found {found}", name)
-        expectation = made[name] = parse(values, at)
+        expectation = made[name] = parse(put_in(values, examples(draws), at), at)
         unknown = sorted({*expectation.cases} - {*named})
         what = "expected some of {known}, found {found}"
         expect(not unknown, (*at, "cases"), what, unknown, known=", ".join(named))
@@ -68,7 +70,7 @@ def add_checks(
         if begin_s > until_s > 0:
             raise Mistake((*at, "end"), "{end:g} s is before `begin`, {begin:g} s",
                           end=until_s, begin=begin_s)  # fmt: skip
-        check = _check(str(name), expectation)
+        check = _check(str(name), expectation, values if draws else None)
         try:
             checks(after=expectation.after)(check)
         except ValueError as error:
@@ -141,11 +143,18 @@ def _entries(
             )
 
 
-def _check(name: str, expectation: Expectation) -> Any:
-    """Return the function of a check."""
+def _check(name: str, expectation: Expectation, written: Any) -> Any:
+    """Return the function of a check.
+
+    Args:
+        written: the entry, where values are drawn; `expectation` is that of the examples.
+    """
+
+    def of_run(drawn: Drawn) -> Expectation:
+        return parse(put_in(written, drawn), (name,)) if drawn and written else expectation
 
     def check(recordings: Recordings, tolerances: Mapping[str, Any]) -> Finding:
-        return judging.judge(expectation, recordings)
+        return judging.judge(of_run, recordings)
 
     check.__name__ = name
     title = expectation.title or name.replace("_", " ").capitalize()

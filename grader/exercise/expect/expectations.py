@@ -197,14 +197,14 @@ class ExpectedOutcome(Expectation):
     """What becomes of a peer's goal, by its id; expressions use the goal's fields.
 
     Attributes:
-        feedback: of each, in order; None for any.
+        feedback: a list of each, in order; None for any.
         within: from the goal to its result [s].
     """
 
     goal: str
     accepted: bool = True
     status: Literal["", "succeeded", "canceled", "aborted"] = ""
-    feedback: tuple[Any, ...] | None = None
+    feedback: Any = None
     result: Any = None
     within: Seconds = 1e9
     tolerance: Tolerance = None

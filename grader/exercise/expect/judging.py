@@ -17,6 +17,7 @@ from typing import Any, Final
 
 from grader.exercise.cases import USUAL
 from grader.exercise.comparing import LONGEST_MATCHED, differences, shown
+from grader.exercise.draws import Drawn
 from grader.exercise.expect import expectations as e
 from grader.exercise.verdict import Evidence, Finding
 from grader.recording.recording import Recording, Recordings
@@ -67,11 +68,15 @@ class Lacks(Exception):
         self.finding = Finding(share, text, help_, seen)
 
 
-def judge(expectation: e.Expectation, recordings: Recordings) -> Finding:
-    """Judge an expectation by each case in which it is expected; the worst counts."""
+def judge(of_run: Callable[[Drawn], e.Expectation], recordings: Recordings) -> Finding:
+    """Judge an expectation by each case in which it is expected; the worst counts.
+
+    Args:
+        of_run: returns what is expected in a run for which these values were drawn.
+    """
     worst: Finding | None = None
     for number, recording in enumerate(recordings):
-        case = recording.run.case or USUAL
+        case, expectation = recording.run.case or USUAL, of_run(recording.run.drawn)
         if not expectation.cases or case in expectation.cases:
             found = _in_case(_judged(expectation, recording), recording.run.case, number)
             if worst is None or found.share < worst.share:
@@ -599,7 +604,7 @@ def _goal(trace: CastTrace, wanted: e.ExpectedOutcome, _: Recording) -> Message:
         what = msg("The result of {goal}", goal=shown(event["goal"]))
         _compare(what, event.get("result"), right_result, wanted.tolerance, ended_ns)
     if wanted.feedback is not None:
-        expected = _filled(list(wanted.feedback), names, ended_ns)
+        expected = _filled(wanted.feedback, names, ended_ns)
         what = msg("The feedback to {goal}", goal=shown(event["goal"]))
         found_feedback = [values for _, values in event["feedback"]]
         if len(found_feedback) != len(expected):

@@ -1,0 +1,142 @@
+"""Values that are drawn anew for each run: the key `draw` of an exercise.yaml.
+
+    draw:
+      a: {integer: [1, 99], example: 2}
+      speed: {number: [0.5, 2], example: 1.0}
+      name: {word: 6, example: orange}
+      side: {one_of: [left, right], example: left}
+
+`drawn.a` is a value in every expression of `cast`, `arguments` and `expect`: `"=drawn.a + 1"`,
+`"{drawn.name}"`. Before a run, and before its recording is judged, what was drawn takes its place,
+so that neither the cast nor a check knows that anything was drawn. The sheet shows the examples.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from string import ascii_lowercase
+from typing import Annotated, Any, Final
+
+from grader.system.expressions import ExpressionError, with_fields
+from grader.system.yaml_file import Mistake, decoded, expect
+from grader.text.message import Message, msg
+
+#: The key, the name in expressions; of a case, how many further runs it has.
+DRAW, DRAWN = "draw", "drawn"
+#: So many values an exercise may draw; a word has so many letters at most.
+MOST_DRAWS, LONGEST_WORD = 20, 40
+#: Digits of a drawn number behind the point.
+DIGITS: Final = 2
+_NAME: Final = re.compile(r"[a-z]\w{0,40}", re.ASCII)
+_TEXT: Final = re.compile(r"[\w .-]{1,100}", re.ASCII)
+
+
+def _a_value(value: Any) -> Any:
+    """For `Annotated`: a number, true, false, or a text that means nothing in a template."""
+    is_text = isinstance(value, str) and _TEXT.fullmatch(value) is not None
+    if not is_text and type(value) not in (bool, int, float):
+        raise ValueError(f"expected a number or a word, found {value!r:.80}")
+    return value
+
+
+Value = Annotated[Any, _a_value]
+#: What was drawn for a run, by its names.
+Drawn = Mapping[str, Value]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Draw:
+    """How a value is drawn: by one of four keys.
+
+    Attributes:
+        example: what the sheet shows; no run has it where another value can be drawn.
+        integer, number: from which on and to which; numbers have two digits behind the point.
+        word: of so many letters.
+        one_of: these.
+    """
+
+    example: Value
+    integer: tuple[int, int] | None = None
+    number: tuple[float, float] | None = None
+    word: int = 0
+    one_of: tuple[Value, ...] = ()
+
+    def __post_init__(self) -> None:
+        ways = [self.integer is not None, self.number is not None, self.word != 0]
+        if sum((*ways, bool(self.one_of))) != 1:
+            raise ValueError("expected one of integer, number, word, one_of")
+        low, high = self.integer or self.number or (0, 0)
+        if low > high or not 0 <= self.word <= LONGEST_WORD:
+            raise ValueError(f"expected two numbers, the lower first, or at most {LONGEST_WORD}")
+
+    @property
+    def range_text(self) -> Message:
+        """What it is, for the sheet."""
+        if self.word:
+            return msg("a word of {n} letters", n=self.word)
+        if self.one_of:
+            return msg("one of {values}", values=", ".join(map(str, self.one_of)))
+        low, high = self.integer or self.number or (0, 0)
+        if self.integer:
+            return msg("a whole number from {low} to {high}", low=low, high=high)
+        return msg("a number from {low:g} to {high:g}", low=low, high=high)
+
+    def value(self, chance: random.Random) -> Value:
+        """Draw one."""
+        drawn: Value = self.example
+        for _ in range(100):
+            drawn = self._any(chance)
+            if drawn != self.example:
+                break
+        return drawn
+
+    def _any(self, chance: random.Random) -> Value:
+        if self.integer is not None:
+            return chance.randint(*self.integer)
+        if self.number is not None:
+            return round(chance.uniform(*self.number), DIGITS)
+        if self.word:
+            return "".join(chance.choices(ascii_lowercase, k=self.word))
+        return chance.choice(self.one_of)
+
+
+def read_draws(data: Mapping[str, Any]) -> dict[str, Draw]:
+    """Read the values that an exercise draws.
+
+    Raises:
+        Mistake: something in it is wrong.
+    """
+    given = data.get(DRAW) or {}
+    fits = isinstance(given, dict) and len(given) <= MOST_DRAWS
+    what = "expected names, each with how it is drawn, at most {most}; found {found}"
+    expect(fits, (DRAW,), what, given, most=MOST_DRAWS)
+    for name in given:
+        is_name = isinstance(name, str) and _NAME.fullmatch(name) is not None
+        expect(is_name, (DRAW, str(name)), "expected a name such as a, found {found}", name)
+    draws: dict[str, Draw] = decoded(dict[str, Draw], given, DRAW)
+    return draws
+
+
+def examples(draws: Mapping[str, Draw]) -> Drawn:
+    """Return the examples, by their names."""
+    return {name: each.example for name, each in draws.items()}
+
+
+def draw(draws: Mapping[str, Draw], seed: int, run: int) -> Drawn:
+    """Draw the values of a run: of the same number and seed always the same."""
+    return {n: each.value(random.Random(f"{n} {seed} {run}")) for n, each in draws.items()}
+
+
+def put_in(template: Any, drawn: Drawn, at: tuple[str, ...] = ()) -> Any:
+    """Return plain data in which drawn values stand in place of `drawn.NAME`.
+
+    Raises:
+        Mistake: an expression uses one that there is not, or cannot be computed.
+    """
+    try:
+        return with_fields(template, DRAWN, drawn)
+    except ExpressionError as error:
+        raise Mistake(at, error.message) from None
