@@ -205,8 +205,8 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
     drawn = tr(
         "What others send and ask is drawn anew for each run: {values}.",
         values="; ".join(
-            tr("{name}, {what}, such as {example}", name=f"`{name}`", what=translate(each.range_text),
-               example=each.example)
+            tr("{name}, {what}, such as {example}",
+               name=f"`{name}`", what=translate(each.range_text), example=each.example)
             for name, each in exercise.draws.items()
         ),
     )  # fmt: skip

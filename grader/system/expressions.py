@@ -378,8 +378,8 @@ def with_fields(template: Any, name: str, fields: Mapping[str, Any]) -> Any:
     if not isinstance(template, str) or f"{name}." not in template:
         return template
     if template.startswith("="):
-        made = parse(_with_constants(template[1:], name, fields))
-        return f"={made.text}" if made.names else made.value({})
+        computed = parse(_with_constants(template[1:], name, fields))
+        return f"={computed.text}" if computed.names else computed.value({})
 
     def written(hole: re.Match[str]) -> str:
         text, form = _split(hole[1])
