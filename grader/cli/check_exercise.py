@@ -76,6 +76,13 @@ def _print(examination: Examination, console: Console) -> None:
     for trial in examination.trials:
         for remark in trial.remarks:
             say(console, f"{trial.solution.name}: {translate(remark)}")
+    for trial in examination.parrots:
+        passed = [f"{v.check} {v.score:g}" for v in trial.verdicts if v.score]
+        text = tr("Who repeats what {solution} sent, and hears nothing, has {points:g} points: "
+                  "{checks}",
+                  solution=trial.solution.name, points=sum(v.score for v in trial.verdicts),
+                  checks=", ".join(passed) or tr("(none)"))  # fmt: skip
+        say(console, text)
     for problem in examination.problems:
         say(console, tr("To fix: {problem}", problem=problem.text))
     count = tr(

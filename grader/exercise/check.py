@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Final
 
 from grader.errors import CheckFailed
 from grader.exercise import asking
@@ -32,6 +32,8 @@ class Check:
         title: the first line of its docstring.
         rubric: the rest of it: what is measured and how partial credit is computed, for students;
             `{name}` stands for a tolerance, `{name%}` for one in percent.
+        parrot: why a program passes it that only repeats what a right one has sent; '' where none
+            may (`grader.testing.parrot`).
     """
 
     name: str
@@ -39,8 +41,11 @@ class Check:
     function: CheckFunction
     depends_on: tuple[str, ...]
     rubric: Message = NOTHING
+    parrot: str = ""
 
 
+#: Of a check that judges files, why a parrot passes it.
+OF_FILES: Final = "it is in the files, whatever a program sends"
 #: Returns the finding of a check by its name; see `grader.exercise.asking.Answers`.
 Ask = Callable[[str], Finding]
 
@@ -94,9 +99,12 @@ class Checks:
         return None
 
     def __call__(
-        self, *wrong: object, after: tuple[str, ...] = ()
+        self, *wrong: object, after: tuple[str, ...] = (), parrot: str = ""
     ) -> Callable[[CheckFunction], CheckFunction]:
         """Register the decorated function; `after` names the checks it depends on.
+
+        Args:
+            parrot: see `Check`.
 
         Raises:
             ValueError: one of them is not defined above it, or the function's own name is taken.
@@ -122,7 +130,7 @@ class Checks:
                 what = f"{name}: expected (recordings, tolerances), found {found}"
                 raise TypeError(what) from None
             heading, rest = authored(title.strip().rstrip(".")), authored(rubric.strip())
-            self._checks.append(Check(name, heading, function, tuple(after), rest))
+            self._checks.append(Check(name, heading, function, tuple(after), rest, parrot))
             return function
 
         return register

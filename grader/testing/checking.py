@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from grader.exercise.asking import Answers, NoFinding, NotReached
-from grader.exercise.check import answers, judge_by
+from grader.exercise.check import OF_FILES, answers, judge_by
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import describe
@@ -20,6 +22,7 @@ from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.subject import CAST_SCENE, Start, Trace, load_subject
 from grader.run.opening import open_submission
 from grader.system.scratch import make_folder
+from grader.testing import parrot
 from grader.testing.examination import Examination, Fault, Problem, Trial
 from grader.testing.extensions import changed_in_a_bag
 from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
@@ -31,6 +34,8 @@ AGAIN = "again"
 #: From a wall to the middle it is 5.54 m. Who stops 2.1 m or less from a wall in two runs from
 #: the middle, by the same commands, has driven at most 5.54 / (5.54 - 2.1) times as large a circle.
 LARGER = 1.62
+#: The share of points that a parrot may have where others send or ask something.
+MOST_EXCUSED = 0.25
 
 
 def check_exercise(
@@ -58,7 +63,7 @@ def check_exercise(
     """
     asked = exercise if isinstance(exercise, Exercise) else load_exercise(exercise)
     solutions = read_solutions(asked, None if mutants is None else Path(mutants))
-    recorded = _run(asked, solutions, jobs or os.cpu_count() or 1, progress)
+    recorded, parroted = _run(asked, solutions, jobs or os.cpu_count() or 1, progress)
     faults: dict[Fault, list[str]] = {}
     trials = []
     for solution in solutions:
@@ -78,9 +83,20 @@ def check_exercise(
         for fault in dict.fromkeys([*examine(asked, recordings)[1], *changed]):
             faults.setdefault(fault, []).append(what)
     problems = [Problem(fault, tuple(on)) for fault, on in faults.items()]
-    examination = Examination(asked.name, tuple(asked.points), tuple(trials), ())
+    parrots = [
+        Trial(solution, tuple(examine(asked, parroted[solution.name])[0]))
+        for solution in solutions
+        if solution.name in parroted
+    ]
+    passed: dict[Fault, list[str]] = {}
+    for trial in parrots:
+        for fault in _parroted(asked, trial):
+            passed.setdefault(fault, []).append(trial.solution.name)
+    problems += [Problem(fault, tuple(on)) for fault, on in passed.items()]
+    checks = tuple(asked.points)
+    examination = Examination(asked.name, checks, tuple(trials), (), tuple(parrots))
     problems += [Problem(fault) for fault in (*_never_failing(examination), *_too_alike(asked))]
-    return Examination(asked.name, tuple(asked.points), tuple(trials), tuple(problems))
+    return replace(examination, problems=tuple(problems))
 
 
 def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
@@ -109,19 +125,25 @@ def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
 
 def _run(
     exercise: Exercise, solutions: Sequence[Solution], jobs: int, progress: Progress | None
-) -> Mapping[str, Recordings]:
-    """Run all solutions, and the first once more."""
+) -> tuple[Mapping[str, Recordings], Mapping[str, Recordings]]:
+    """Run all solutions, and the first once more; and the parrots of the right ones."""
     with make_folder() as folder, ThreadPoolExecutor(jobs) as pool:
 
-        def run(solution: Solution) -> Recordings:
-            with open_submission(paths[solution.name], **exercise.opening) as submission:
-                return run_all(submission, exercise, runner(exercise, "virtual"))
+        def run(solution: Solution, name: str) -> Recordings:
+            path = paths[solution.name]
+            with open_submission(path, **exercise.opening) as submission:
+                recordings = run_all(submission, exercise, runner(exercise, "virtual"))
+            if solution.is_right and exercise.is_started and name != AGAIN:
+                at = folder / "parrots" / name
+                parroted[name] = parrot.record(path, exercise, recordings, at)
+            return recordings
 
         paths = {solution.name: solution.lay_out(folder) for solution in solutions}
+        parroted: dict[str, Recordings] = {}
         tasks: dict[Future[Recordings], str] = {}
         try:
             for name, solution in [(AGAIN, solutions[0]), *((s.name, s) for s in solutions)]:
-                tasks[pool.submit(run, solution)] = name
+                tasks[pool.submit(run, solution, name)] = name
             for count, task in enumerate(as_completed(tasks), start=1):
                 task.result()
                 if progress:
@@ -130,7 +152,7 @@ def _run(
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-        return {name: task.result() for task, name in tasks.items()}
+        return {name: task.result() for task, name in tasks.items()}, parroted
 
 
 def _changed(exercise: Exercise, recording: Recording) -> Fault | None:
@@ -207,6 +229,34 @@ def _twice(
     for once, again in zip(trial.verdicts, examine(exercise, second)[0], strict=True):
         if once != again:
             yield Fault(once.check, msg("two equal runs get different findings"))
+
+
+def _parroted(exercise: Exercise, trial: Trial) -> Iterator[Fault]:
+    """Yield the checks that a parrot passes, and that do not say why."""
+    excuses = {check.name: check.parrot for check in exercise.checks}
+    excused = 0.0
+    for verdict in trial.verdicts:
+        if not verdict.score:
+            continue
+        if why := excuses[verdict.check]:
+            excused += verdict.score if why != OF_FILES else 0.0
+            continue
+        text = msg(
+            "a program that repeats what a right one sent, and hears nothing, gets {score:g} of "
+            "{max_score:g} points: draw what it has to hear, or say why with `parrot`",
+            score=verdict.score,
+            max_score=verdict.max_score,
+        )
+        yield Fault(verdict.check, text)
+    is_told = any(has_something_to_hear(case.cast) for case in exercise.cases)
+    if is_told and excused > MOST_EXCUSED * exercise.max_score:
+        text = msg("`parrot` excuses {n:g} points; at most a quarter may be", n=excused)
+        yield Fault("", text)
+
+
+def has_something_to_hear(cast: Mapping[str, Any] | None) -> bool:
+    """Whether peers send, ask or serve anything."""
+    return any({*peer} - {"subscriptions"} for peer in (cast or {}).values())
 
 
 def _never_failing(examination: Examination) -> Iterator[Fault]:

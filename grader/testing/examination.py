@@ -67,12 +67,14 @@ class Examination:
         checks: those that are worth points, in the exercise's order.
         trials: the right solutions, then the mutants.
         problems: what to fix; empty where all is fine.
+        parrots: of the right solutions: programs that repeat what these sent, and hear nothing.
     """
 
     exercise: str
     checks: tuple[str, ...]
     trials: tuple[Trial, ...]
     problems: tuple[Problem, ...]
+    parrots: tuple[Trial, ...] = ()
 
     @property
     def is_fine(self) -> bool:
@@ -109,6 +111,10 @@ class Examination:
             ],
             "catches": {check: list(names) for check, names in self.catches.items()},
             "uncaught": list(self.uncaught),
+            "parrots": {
+                trial.solution.name: {v.check: v.score for v in trial.verdicts if v.score}
+                for trial in self.parrots
+            },
             "solutions": [
                 {
                     "name": trial.solution.name,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from grader.exercise.cases import USUAL, RunCase
 from grader.exercise.check import Checks
-from grader.exercise.draws import Draw, Drawn, examples, put_in
+from grader.exercise.draws import DRAWN, Draw, Drawn, examples, put_in
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import Expectation, ExpectedTopic, parse
 from grader.exercise.known_types import KnownTypes, check_time
@@ -31,6 +32,9 @@ _OF_PEERS: Final[Mapping[str, tuple[str, bool, Mapping[str, tuple[str, str | Non
     "got": ("subscriptions", False, {}),
     "heard": ("publishers", False, {}),
 }
+
+#: What of an entry names a drawn value, or something heard.
+_WORD: Final = re.compile(rf"{DRAWN}\.|\bheard\b")
 
 
 def add_checks(
@@ -61,6 +65,9 @@ def add_checks(
         is_name = isinstance(name, str) and name.isidentifier()
         expect(is_name, at, "expected a name such as talks, found {found}", name)
         expectation = made[name] = parse(put_in(values, examples(draws), at), at)
+        is_told = _WORD.search(repr({k: v for k, v in values.items() if k != "rubric"}))
+        what = "no parrot passes what names something drawn or heard: leave it out"
+        expect(not (expectation.parrot and is_told), (*at, "parrot"), what, "")
         unknown = sorted({*expectation.cases} - {*named})
         what = "expected some of {known}, found {found}"
         expect(not unknown, (*at, "cases"), what, unknown, known=", ".join(named))
@@ -72,7 +79,7 @@ def add_checks(
                           end=until_s, begin=begin_s)  # fmt: skip
         check = _check(str(name), expectation, values if draws else None)
         try:
-            checks(after=expectation.after)(check)
+            checks(after=expectation.after, parrot=expectation.parrot)(check)
         except ValueError as error:
             raise Mistake(at, msg("{what}", what=str(error))) from None
     topics = {topic for each in made.values() for topic in each.topics}

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Final, Literal
 
+from grader.exercise.check import OF_FILES
 from grader.exercise.comparing import is_number, is_range
 from grader.scenes.cast import script
 from grader.system.strict_json import not_negative
@@ -78,6 +79,7 @@ class Expectation:
         after: the checks that have to pass before.
         cases: those of the exercise in which it is expected; empty for all.
         help: a hint for who does not have it.
+        parrot: see `grader.exercise.check.Check`; for what names nothing drawn or heard.
     """
 
     title: str = ""
@@ -85,6 +87,7 @@ class Expectation:
     after: tuple[str, ...] = ()
     cases: tuple[str, ...] = ()
     help: str = ""
+    parrot: str = ""
 
     #: Its templates.
     names: ClassVar[Names] = {}
@@ -268,6 +271,7 @@ class ExpectedInterface(Expectation):
 
     interface: str
     definition: str
+    parrot: str = OF_FILES
 
 
 @dataclass(frozen=True, kw_only=True)

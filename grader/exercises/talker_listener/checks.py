@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.exercise.check import Checks, Tolerances
+from grader.exercise.check import OF_FILES, Checks, Tolerances
 from grader.exercise.sentences import unless_unknown
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recordings
@@ -14,7 +14,7 @@ from grader.text.message import joined, msg
 checks = Checks()
 
 
-@checks()
+@checks(parrot=OF_FILES)
 def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """A launch file starts both nodes.
 

@@ -1,0 +1,229 @@
+"""Makes a parrot of a right solution: it sends what that one sent in a run, and hears nothing.
+
+In a run for which other values are drawn a parrot does no task: the points that it gets, anybody
+gets who has seen one run. What it cannot send is nothing a task asks for: it has no subscriptions,
+and looks at no request, no answer and no parameter.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Final
+
+from grader.exercise.exercise import Exercise
+from grader.grading import gather, plan, runner, start
+from grader.recording.recording import Recording, Recordings
+from grader.run.opening import open_submission
+from grader.scenes.cast.trace import ROSOUT, CastTrace, SentMessage
+from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.submission.program import EntryPoint, Program
+from turtlesim_py.world import events
+from turtlesim_py.world.turtle import TICK_S
+
+PROGRAM: Final = Path(__file__).with_name("parrot_program.py")
+#: Kinds of a turtle's inputs -> its service below the turtle's name, and the type.
+_SERVICES: Final[Mapping[type[events.Event], tuple[str, str]]] = {
+    events.SetPen: ("set_pen", "turtlesim/srv/SetPen"),
+    events.TeleportAbsolute: ("teleport_absolute", "turtlesim/srv/TeleportAbsolute"),
+    events.TeleportRelative: ("teleport_relative", "turtlesim/srv/TeleportRelative"),
+    events.Spawn: ("", "turtlesim/srv/Spawn"),
+    events.Kill: ("", "turtlesim/srv/Kill"),
+    events.Clear: ("", "std_srvs/srv/Empty"),
+}
+#: What each node has that is none of a program's.
+_USUAL: Final = ("_parameters", "/get_parameter_types", "/get_type_description", "/_action/")
+
+
+def record(path: Path, exercise: Exercise, recordings: Recordings, folder: Path) -> Recordings:
+    """Run the parrots of a right solution, one for each of its runs, with another seed.
+
+    Args:
+        recordings: of the solution.
+        folder: where they are laid out.
+    """
+    seed, made = exercise.varied.seed + 1, []
+    with open_submission(path, **exercise.opening) as submission:
+        programs = submission.programs
+    for number, recording in enumerate(recordings):
+        parrot = lay_out(path, programs, recording, folder / str(number))
+        with open_submission(parrot, **exercise.opening) as submission:
+            plans = plan(submission, exercise, seed)
+            with start(submission, plans[number : number + 1], runner(exercise, "virtual")) as runs:
+                made += [(number, each) for _, each in runs]
+    return gather(made)
+
+
+def lay_out(path: Path, programs: Iterable[Program], recording: Recording, folder: Path) -> Path:
+    """Return the path of a copy of a right solution whose programs are parrots.
+
+    Args:
+        path: the solution, a file or a folder.
+        programs: those that a submission of it starts.
+        recording: of the run that they repeat.
+        folder: where it is laid out, a new one.
+    """
+    copy = folder / path.name
+    folder.mkdir(parents=True, exist_ok=True)
+    if path.is_dir():
+        shutil.copytree(path, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    else:
+        shutil.copy(path, copy)
+    for program in programs:
+        made = source(recording, program.name)
+        entry = program.entry
+        if isinstance(entry, EntryPoint):
+            made += f"\n\n{entry.function} = main\n"
+            module = f"{entry.module.replace('.', '/')}.py"
+            file = next(iter(sorted(copy.rglob(module))), copy) if copy.is_dir() else copy
+        else:
+            assert entry is not None
+            made += f"\n\n{entry.function or 'main'} = main\n"
+            made += "" if entry.function else '\n\nif __name__ == "__main__":\n    main()\n'
+            file = next(iter(sorted(copy.rglob(entry.path.name))), copy) if copy.is_dir() else copy
+        file.write_text(made, encoding="utf-8")
+    return copy
+
+
+def source(recording: Recording, program: str) -> str:
+    """Return the source of one program's parrot."""
+    text = PROGRAM.read_text(encoding="utf-8")
+    facts = _recorded(recording, program)
+    # by name: interfaces of a hand-in's own are there for who imports them
+    types = {each for node in facts["nodes"] for each in _types(node[2])}
+    imports = "".join(f"import {name}\n" for name in sorted(types))
+    return text.replace("RECORDED: dict[str, Any] = {}\n", f"{imports}RECORDED = {facts!r}\n")
+
+
+def _types(node: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the modules of a node's types: 'std_msgs.msg'."""
+    for key in ("topics", "services", "calls", "actions", "goals"):
+        for _, kind, *_rest in node[key]:
+            name = kind if isinstance(kind, str) else kind[0]
+            yield ".".join(name.split("/")[:2])
+
+
+def _recorded(recording: Recording, program: str) -> dict[str, Any]:
+    run = recording.run
+    is_one = len(run.programs) < 2
+    own = next((each for each in run.programs if each.name == program), run)
+    cast = recording.trace if recording.cast is None else recording.cast
+    nodes: dict[str, dict[str, Any]] = {}
+    if isinstance(cast, CastTrace):
+        whose = cast.programs
+        endpoints = cast.of_kind("endpoint")
+        for name in dict.fromkeys(e["node"] for e in endpoints if e["node"] != "/"):
+            if is_one or program in whose.get(name, "").split(", "):
+                nodes[name] = _node(cast, name, recording.trace)
+    if isinstance(recording.trace, TurtleTrace) and (is_one or run.programs[0].name == program):
+        node = next(iter(nodes.values()), None) or nodes.setdefault("/parrot", _nothing())
+        _drive(node, recording.trace, cast if isinstance(cast, CastTrace) else None)
+    listed = [(n.rpartition("/")[2], n.rpartition("/")[0], facts) for n, facts in nodes.items()]
+    return {
+        "nodes": listed,
+        "ends": own.outcome in ("exited", "crashed"),
+        "exit_code": own.exit_code or 0,
+    }
+
+
+def _nothing() -> dict[str, Any]:
+    keys = ("topics", "logs", "services", "calls", "actions", "goals")
+    return {"parameters": {}, **{key: [] for key in keys}}
+
+
+def _node(cast: CastTrace, name: str, trace: object) -> dict[str, Any]:
+    """Return what a node has sent."""
+    made = _nothing()
+    for event in cast.of_kind("endpoint", node=name):
+        kind, _, channel = event["channel"].partition(" ")
+        action = channel.removesuffix("/_action/send_goal")
+        if action != channel:
+            base = event["type"].removesuffix("_SendGoal")
+            if kind == "request" and not event["writes"]:
+                goals = [_goal(each) for each in _in_order(cast.of_kind("goal", action=action))]
+                made["actions"].append((action, base, goals))
+            elif kind == "request":
+                sent = cast.of_kind("action", action=action)
+                made["goals"].append((action, base, [_at(e, "goal") for e in sent]))
+        elif any(part in channel for part in _USUAL) or channel == "/parameter_events":
+            continue
+        elif kind == "topic" and event["writes"] and not _is_command(channel, trace):
+            quality = (event["type"], event["reliability"], event["durability"], event["depth"])
+            messages = [m for m in cast.sent(channel) if m.node in (name, "")]
+            said = [(m.time_ns / 1e9, m.data.hex()) for m in messages if m.type == event["type"]]
+            made["topics"].append((channel, quality, said))
+        elif kind == "request" and not event["writes"]:
+            calls = _in_order(cast.of_kind("call", service=channel))
+            answers = [each.get("response", {}) for each in calls]
+            made["services"].append((channel, event["type"], answers))
+        elif kind == "request":
+            asked = cast.of_kind("served", service=channel)
+            made["calls"].append((channel, event["type"], [_at(e, "request") for e in asked]))
+    for event in cast.of_kind("parameter", node=name):
+        for key, value in event.get("values", {}).items():
+            made["parameters"].setdefault(key, value)
+    made["logs"] = [*_logs(cast, name)]
+    return made
+
+
+def _in_order(events: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    return sorted((e for e in events if "sent_ns" in e), key=lambda event: event["sent_ns"])
+
+
+def _at(event: Mapping[str, Any], key: str) -> tuple[float, Any]:
+    return event["time_ns"] / 1e9, event[key]
+
+
+def _goal(event: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "accepted": event.get("accepted", False),
+        "feedback": [values for _, values in event["feedback"]],
+        "status": event.get("status", ""),
+        "result": event.get("result", {}),
+    }
+
+
+def _logs(cast: CastTrace, name: str) -> Iterable[tuple[float, int, str]]:
+    logger = name.strip("/").replace("/", ".")
+    for each in cast.sent(ROSOUT):
+        values = cast.values(each)
+        if values["name"] == logger:
+            yield each.time_ns / 1e9, values["level"], values["msg"]
+
+
+def _is_command(channel: str, trace: object) -> bool:
+    return isinstance(trace, TurtleTrace) and channel.endswith("/cmd_vel")
+
+
+def _drive(node: dict[str, Any], trace: TurtleTrace, cast: CastTrace | None) -> None:
+    """Add what a program has sent to turtlesim; what peers have sent is not its own."""
+    peers: dict[tuple[str, int], int] = defaultdict(int)
+    messages: tuple[SentMessage, ...] = () if cast is None else cast.messages
+    driven = {m.topic for m in messages if cast is not None and cast.is_peer(m)}
+    for call in () if cast is None else cast.of_kind("call"):
+        peers[call["service"], round(call.get("sent_ns", 0) / 1e9 / TICK_S)] += 1
+    node["calls"] = [each for each in node["calls"] if not each[1].startswith("turtlesim/")]
+    asked: dict[tuple[str, str], list[Any]] = defaultdict(list)
+    commands: dict[str, list[Any]] = defaultdict(list)
+    for event in trace.events:
+        time_s = (event.tick - 1) * TICK_S
+        if isinstance(event, events.CmdVel):
+            topic = f"/{event.turtle}/cmd_vel"
+            if topic not in driven:
+                commands[topic].append((time_s, event.linear, event.angular))
+        elif type(event) in _SERVICES:
+            last, kind = _SERVICES[type(event)]
+            turtle = getattr(event, "turtle", "")
+            name = f"/{turtle}/{last}" if last else f"/{event.op}"
+            near = [key for key in peers if key[0] == name and abs(key[1] - event.tick) < 3]
+            if any(peers[key] for key in near):
+                continue
+            skipped = ("tick", "turtle") if last else ("tick",)
+            names = [each.name for each in fields(event) if each.name not in skipped]
+            values = {name: getattr(event, name) for name in names}
+            asked[name, kind].append((time_s, values))
+    node["calls"] += [(*key, requests) for key, requests in asked.items()]
+    node["commands"] = [*commands.items()]
