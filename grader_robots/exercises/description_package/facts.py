@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 from grader import Finding, Recordings, Tolerances
 from grader.exercise import UNKNOWN, CheckFunction, not_judged
-from grader.submission import SIMULATORS, Description, LaunchedNode, LaunchFile, PackageTrace, Setup
+from grader.submission import Description, LaunchedNode, LaunchFile, PackageTrace, Setup
 from grader.text import Message, msg
+from ros_doubles.known import SIMULATORS
 
 #: Obstacles of a launch file that may be one of several: it wants what its user knows, too.
 NO_FAULT = (UNKNOWN, "argument")
