@@ -11,7 +11,6 @@ from grader.run.lockstep.endpoints import deserialized
 from grader.run.lockstep.protocol import (
     EPOCH_NS,
     SHIFT,
-    TICK_NS,
     EndpointInfo,
     Parcel,
     Parcels,
@@ -52,7 +51,6 @@ class SimulatorEndpoints(EndpointRegistry):
         """`flag` is called with remarks for the result."""
         super().__init__(now_ns)
         self._flag = flag
-        self.tick = 0
         #: since the last call of `pop_outgoing` something was sent that may be waited for
         self.answered = False
         self._outgoing: Parcels = []
@@ -62,7 +60,6 @@ class SimulatorEndpoints(EndpointRegistry):
         #: what hidden readers have received
         self._heard: list[tuple[str, str, int, bytes, int]] = []
         self.published: dict[str, str] = {}
-        self._may_have_unread = True
 
     # What the student's side reads and publishes ----------------------------------------------
 
@@ -132,32 +129,17 @@ class SimulatorEndpoints(EndpointRegistry):
 
     # Messages ---------------------------------------------------------------------------------
 
-    def publish(self, writer: Writer, data: bytes) -> None:
-        """Send to readers in this process at once, to the student's side with the next reply."""
-        super().publish(writer, data)
-        self._may_have_unread = self._may_have_unread or bool(writer.local)
+    def send_to_others(self, writer: Writer, data: bytes) -> None:
+        """Send a topic's message once to all programs that hear the writer."""
         if writer.remote or writer.is_lasting:
-            self._send(writer.number, 0, writer.sent, data, is_answer=not writer.is_stream)
+            self.send(writer.number, 0, writer.sent, data)
 
-    def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
-        """Send a request in the same way; its response comes to the client's number."""
-        number = super().ask(writer, client, data)
-        self._may_have_unread = self._may_have_unread or bool(writer.local)
-        for reader in writer.remote:
-            self._send(reader.number, client.number, number, data)
-        return number
-
-    def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
-        """Send a response in the same way."""
-        super().respond(writer, to, data)
-        if isinstance(to.client, int):
-            self._send(to.client, 0, to.number, data)
-
-    def _send(
-        self, to: int, client: int, number: int, data: bytes, *, is_answer: bool = True
-    ) -> None:
-        self._outgoing.append(Parcel(to, client, number, self.tick * TICK_NS, data))
-        self._outgoing_bytes += len(data)
+    def send_parcel(self, parcel: Parcel) -> None:
+        """Have a message sent with the next reply."""
+        self._outgoing.append(parcel)
+        self._outgoing_bytes += len(parcel.data)
+        writer = self.own.get(parcel.endpoint)
+        is_answer = not (isinstance(writer, Writer) and writer.is_stream)
         # more than a few pictures are sent as soon as an answer would be
         self.answered = self.answered or is_answer or self._outgoing_bytes > MOST_OUTGOING
 
@@ -176,7 +158,6 @@ class SimulatorEndpoints(EndpointRegistry):
             since_ns, until_ns: of the turn, from the start of the run; the messages say themselves
                 when in it they were sent.
         """
-        self._may_have_unread = True
         for endpoint, client, number, time_ns, data in parcels:
             reader = self.own.get(endpoint)
             if not isinstance(reader, Reader):
@@ -212,6 +193,4 @@ class SimulatorEndpoints(EndpointRegistry):
 
     def has_unread(self) -> bool:
         """Whether something waits to be served."""
-        if self._may_have_unread:
-            self._may_have_unread = any(reader.items for reader in self.readers)
-        return self._may_have_unread
+        return any(reader.items for reader in self.readers)
