@@ -1,17 +1,16 @@
 """Starts a program of a submission in real time.
 
-    python main.py INTRODUCTION EVIDENCE ROOT module:function
-    python main.py INTRODUCTION EVIDENCE ROOT path/to/script.py [function]
+    python main.py EVIDENCE INTRODUCTION START
 
-INTRODUCTION is a JSON list of four lists: topics and services that have to be connected when the
-submission gets them, see `Introduced`; the program's arguments; and the folders of other packages
-of the submission. EVIDENCE is the page of its
-account, -1 for none.
+EVIDENCE is the page of its account, -1 for none. INTRODUCTION is a JSON list of two lists: topics
+and services that have to be connected when the submission gets them, see `Introduced`. START is a
+`ProgramStart` as JSON.
 
 Started by path, not with -m, and of the grader it imports only what loads and observes a program,
-so that the submission finds the interpreter as on a student's machine. ROOT comes first on the
-import path.
+so that the submission finds the interpreter as on a student's machine.
 """
+
+from __future__ import annotations
 
 import sys
 from pathlib import Path
@@ -34,18 +33,17 @@ from grader.run.student import loading
 
 def main() -> None:
     """Start a program, and leave with its exit code."""
-    _, introduction, page, root, target, *more = sys.argv
-    sys.exit(start(introduction, int(page), root, target, more[0] if more else None))
+    page, introduction, words = sys.argv[1:]
+    sys.exit(run(int(page), Introduced(*json.loads(introduction)), words))
 
 
-def start(introduction: str, page: int, root: str, target: str, function: str | None) -> int:
+def run(page: int, introduced: Introduced, words: str) -> int:
     """Run a program to its end; return its exit code."""
+    start = loading.ProgramStart(*json.loads(words))
     now_s, started_s = time.monotonic, time.monotonic()
-    witness = Witness(page, root, lambda: now_s() - started_s, hooks.is_met)
+    witness = Witness(page, start.root, lambda: now_s() - started_s, hooks.is_met)
     hooks.install_in_threads(witness)
     time.sleep = hooks.timed(witness, time.sleep)
-    topics, services, arguments, beside = json.loads(introduction)
-    introduced = Introduced(topics, services)
     code: int | None = None
 
     # registered first, so called last: when all threads have ended that Python waits for
@@ -54,7 +52,7 @@ def start(introduction: str, page: int, root: str, target: str, function: str | 
         if code is not None:
             witness.ending.returned(code)
 
-    loading.hide_the_grader(root, target, arguments, beside)
+    loading.hide_the_grader(start)
     sys.meta_path.insert(
         0,
         loading.AfterImport(
@@ -69,7 +67,7 @@ def start(introduction: str, page: int, root: str, target: str, function: str | 
         ),
     )
     witness.lines.install()
-    code = loading.call(root, target, function, witness.ending.raised)
+    code = loading.call(start, witness.ending.raised)
     return code
 
 
