@@ -12,7 +12,6 @@ import os
 import socket
 from collections import deque
 from collections.abc import Callable
-from typing import NoReturn
 
 from grader.run.clock.scheduler import Scheduler
 from grader.run.lockstep import real
@@ -73,15 +72,13 @@ class SimulatorSockets:
             data, descriptors, _, _ = socket.recv_fds(self._connection, PIECE_BYTES, 1)
         except OSError:
             data = b""
-        if not data:
-            real.leave(1)
-        packet = self._decode(data)
-        if not isinstance(packet, Table) or len(descriptors) != 1:
-            self.fail(packet, "a table")
-        os.set_inheritable(descriptors[0], False)
-        self._mailbox = socket.socket(fileno=descriptors[0])
+        table = self._decode(data)
+        assert isinstance(table, Table)
+        (mailbox,) = descriptors
+        os.set_inheritable(mailbox, False)
+        self._mailbox = socket.socket(fileno=mailbox)
         self._mailbox.setblocking(False)
-        return packet
+        return table
 
     def send(self, packet: Packet) -> None:
         try:
@@ -90,15 +87,13 @@ class SimulatorSockets:
         except OSError:
             real.leave(1)
 
-    def receive(self) -> Packet:
+    def receive(self) -> Table | Reply:
         data: bytes | None = None
         while data is None:
             try:
                 data = self._packets.read()
             except OSError:
                 data = b""
-        if not data:
-            real.leave(1)
         return self._decode(data)
 
     def mail(self, pieces: list[bytes]) -> list[bytes]:
@@ -116,19 +111,18 @@ class SimulatorSockets:
         """Write the tick where it is read after this process, even if that ends silently."""
         PROGRESS.pack_into(self._progress, 0, tick)
 
-    def fail(self, packet: object, expected: str) -> NoReturn:
-        """Refuse a wrong packet: the submission has read or written on the socket."""
-        self._break(ProtocolError(f"{packet!r:.200} where {expected} was expected"))
-
-    def _decode(self, data: bytes) -> Packet:
+    def _decode(self, data: bytes) -> Table | Reply:
+        """Decode a packet; refuse a wrong one: the submission has used the socket."""
+        if not data:
+            real.leave(1)
         try:
-            return decode(data)
+            packet = decode(data)
+            if isinstance(packet, Table | Reply):
+                return packet
+            raise ProtocolError(f"{packet!r:.200} was not expected")
         except ProtocolError as error:
-            self._break(error)
-
-    def _break(self, error: ProtocolError) -> NoReturn:
-        self._refuse(msg("broke our virtual time ({error})", error=f"{error!r:.200}"))
-        raise error
+            self._refuse(msg("broke our virtual time ({error})", error=f"{error!r:.200}"))
+            raise
 
 
 class SimulatorLink(EndpointRegistry):
@@ -235,9 +229,7 @@ class SimulatorLink(EndpointRegistry):
         now_ns = self._scheduler.now_ns
         self._sockets.send(Advance(deadline_ns, listens, self.tick, now_ns, self._has_mail))
         removed: list[int] = []
-        while not isinstance(packet := self._sockets.receive(), Reply):
-            if not isinstance(packet, Table):
-                self._sockets.fail(packet, "a reply")
+        while isinstance(packet := self._sockets.receive(), Table):
             removed += packet.removed
             self.add_others(packet)
             self._connect_anew()
