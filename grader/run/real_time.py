@@ -86,9 +86,9 @@ def run(
             ours, theirs = compiling.compile_all(known, submission.interfaces, context)
         except compiling.NotCompiled as why:
             return not_run(plan, why.message)
-        its = replace(context, env={**context.env, **ours.env})
+        its = replace(context, env={**context.env, **compiling.importing(ours, context)})
         # where interfaces were compiled, libraries have to be found that the server does not know
-        server = None if ours.env else fork_servers.server(fork_servers.SIMULATOR)
+        server = None if ours else fork_servers.server(fork_servers.SIMULATOR)
         simulator = stack.enter_context(
             start_simulator(MODULE, its, plan, (), str(FIRST_NODE_S), server=server, feed=feed)
         )
@@ -123,7 +123,7 @@ class _Programs:
         submission: Submission,
         plan: Plan,
         context: RunContext,
-        interfaces: compiling.Importable,
+        interfaces: Path | None,
         held: ExitStack,
     ) -> None:
         self.scene = load_scene(plan.scene)
@@ -149,8 +149,8 @@ class _Programs:
                 self._submission.alone(program),
                 partial(command, self.scene.introduction, self._plan, account.page),
                 (account.page,),
-                student_environment(self._interfaces.env),
-                more=self._interfaces.folders,
+                student_environment(compiling.importing(self._interfaces, self._context)),
+                more=[self._interfaces] if self._interfaces else (),
                 beside=next((each.process for each in self.running.values()), None),
             )
             self.running[number] = RunningProgram(program, moved, process, account)

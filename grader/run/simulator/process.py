@@ -63,7 +63,7 @@ class SceneRun:
         """Set up the scene; ROS is up.
 
         Args:
-            shown: a `LiveFeed.argument`.
+            shown: a `LiveFeed` argument.
             wire: a `grader.scenes.cast.playing.Wire`, for a cast.
             has_unread: as in `Hooks`.
             are_compiled: whether interfaces that are not installed were compiled for this run.
@@ -143,7 +143,7 @@ class FeedWriter:
 
     @classmethod
     def of(cls, words: str, tick_ns: int) -> Self | None:
-        """Make one from `LiveFeed.argument`; None where there is no audience."""
+        """Make one from `LiveFeed` argument; None where there is no audience."""
         return cls(**json.loads(words), tick_ns=tick_ns) if words else None
 
     def write(self, news: Mapping[str, Any]) -> None:

@@ -5,7 +5,7 @@
 It exchanges JSON lines with the grader over CONTROL, a socket: it sends `ready`, `progress` about
 once a second, and `done` when the recording lies in FILE; it receives `start` when the submission's
 process is started, and `exited` when that has ended. PLAN is a `grader.run.handover.Plan`, SHOWN a
-`LiveFeed.argument`. The clock of the run starts when the submission has its first node, has ended,
+`LiveFeed` argument. The clock of the run starts when the submission has its first node, has ended,
 or has had FIRST_NODE_S for it [s]. If the grader goes away, so does the simulator.
 """
 

@@ -43,7 +43,7 @@ def run(page: int, introduced: Introduced, words: str) -> int:
     now_s, started_s = time.monotonic, time.monotonic()
     witness = Witness(page, start.root, lambda: now_s() - started_s, hooks.is_met)
     hooks.install_in_threads(witness)
-    time.sleep = hooks.timed(witness, time.sleep)
+    hooks.time_waits(witness, time, "sleep")
     code: int | None = None
 
     # registered first, so called last: when all threads have ended that Python waits for
