@@ -28,7 +28,7 @@ class Lock:
 
     def __init__(self) -> None:
         self._locked = False
-        self._waiting: deque[Runner] | None = None
+        self._waiting = deque[Runner]()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Acquire the lock; return False where that is not possible in time."""
@@ -46,8 +46,6 @@ class Lock:
 
     def _wait(self, deadline_ns: int) -> bool:
         me = SCHEDULER.current
-        if self._waiting is None:
-            self._waiting = deque()
         while self._locked:
             if SCHEDULER.now_ns >= deadline_ns:
                 return False
@@ -77,7 +75,7 @@ class Lock:
 
     def _at_fork_reinit(self) -> None:
         self._locked = False
-        self._waiting = None
+        self._waiting.clear()
 
     acquire_lock = acquire
     release_lock = release

@@ -60,9 +60,7 @@ def reserve_core(run: int) -> Iterator[int]:
 
 
 def pin(core: int, *pids: int) -> None:
-    """Keep all threads of processes on a core; those to come follow. -1: on any."""
-    if core < 0:
-        return
+    """Keep all threads of processes on a core; those to come follow."""
     with suppress(OSError):  # not allowed, gone, or no /proc
         for thread in (each for pid in pids for each in Path(f"/proc/{pid}/task").iterdir()):
             with suppress(OSError):  # ended meanwhile

@@ -9,7 +9,6 @@ from rclpy.qos import QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
 from grader.run.lockstep.endpoints import deserialized
 from grader.run.lockstep.protocol import (
-    EPOCH_NS,
     SHIFT,
     EndpointInfo,
     Parcel,
@@ -122,7 +121,7 @@ class SimulatorEndpoints(EndpointRegistry):
     def pop_heard(self) -> list[tuple[str, str, int, bytes, int]]:
         """Return what hidden readers have received since the last call, in the order of sending.
 
-        Topic, type, when it was sent [ns, on the clock of the run], CDR, the sender's number.
+        Topic, type, when it was sent [ns from the start], CDR, the sender's number.
         """
         heard, self._heard = self._heard, []
         return heard
@@ -171,7 +170,7 @@ class SimulatorEndpoints(EndpointRegistry):
                 self._flag(msg("a message on {channel} could not be read", channel=reader.channel))
                 continue
             if reader.is_hidden:
-                sent_ns = EPOCH_NS + min(max(since_ns, time_ns), until_ns)
+                sent_ns = min(max(since_ns, time_ns), until_ns)
                 self._heard.append((reader.name, reader.type, sent_ns, data, member))
                 continue
             asked_by = client if reader.kind == "request" else None

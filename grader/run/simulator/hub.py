@@ -6,7 +6,7 @@ The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the so
 process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
 each program; PIDS a JSON list of their processes, each with its name, with the place of the one at
 whose end it is started (-1: with the run), and how long after that [ns]; CORE the
-processor core that all are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
+processor core that all are to share, PATIENCE a `grader.run.limits.Patience` as JSON.
 
 One program runs at a time, in the order in which they were started, until it asks for time
 (`grader.run.lockstep.protocol`). What it has sent goes on its way then, and who gets something, or
@@ -235,10 +235,7 @@ class Hub(SceneRun):
         self._registry.tap(topic, kind, message)
 
     def heard(self) -> list[tuple[str, str, int, bytes, int]]:
-        return [
-            (topic, kind, time_ns - EPOCH_NS, data, number)
-            for topic, kind, time_ns, data, number in self._registry.pop_heard()
-        ]
+        return self._registry.pop_heard()
 
     def has_unread(self, node: str) -> bool:
         """Whether something waits for a node of the cast's."""

@@ -17,7 +17,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final
 
 from grader.recording.subject import overdue, scene_at_work
 from grader.run import handover
@@ -63,13 +63,13 @@ class SceneRun:
         """Set up the scene; ROS is up.
 
         Args:
-            shown: a `LiveFeed` argument.
+            shown: a `LiveFeed` argument; '' where there is no audience.
             wire: a `grader.scenes.cast.playing.Wire`, for a cast.
             has_unread: as in `Hooks`.
             are_compiled: whether interfaces that are not installed were compiled for this run.
         """
         self._scene = load_scene(plan.scene)
-        self._feed = FeedWriter.of(shown, STEP_NS)
+        self._feed = FeedWriter(**json.loads(shown)) if shown else None
         self._cast: Playing | None = None
         if plan.cast is not None:
             from grader.scenes.cast import script  # here: most runs have none
@@ -126,7 +126,7 @@ class FeedWriter:
         cpu_s: the processor time that this has cost [s].
     """
 
-    def __init__(self, descriptor: int, speed: float | None, tick_ns: int) -> None:
+    def __init__(self, descriptor: int, speed: float | None) -> None:
         """Write to a socket.
 
         Args:
@@ -138,13 +138,8 @@ class FeedWriter:
         self._waiting = bytearray()
         self._patience_s = PATIENCE_S
         self._is_heard = True
-        self._tick_s = tick_ns / 1e9 / speed if speed else 0.0
+        self._tick_s = STEP_NS / 1e9 / speed if speed else 0.0
         self._due_s = 0.0
-
-    @classmethod
-    def of(cls, words: str, tick_ns: int) -> Self | None:
-        """Make one from `LiveFeed` argument; None where there is no audience."""
-        return cls(**json.loads(words), tick_ns=tick_ns) if words else None
 
     def write(self, news: Mapping[str, Any]) -> None:
         """Write some news; never waits for long."""
