@@ -186,8 +186,7 @@ def start_simulator(
     """Start `module` as the simulator's process.
 
     Args:
-        shared: descriptors that it inherits as well; their numbers follow the first three
-            arguments.
+        shared: descriptors that it inherits as well.
         more: further arguments.
         server: the server that it is forked from, if possible.
         feed: for its live reports on the run; its argument comes last.
@@ -195,12 +194,11 @@ def start_simulator(
     ours, theirs = socket.socketpair()
     with ours:
         with theirs:
-            control, *others = map(str, (theirs.fileno(), *shared))
             # /proc/self is the simulator's by then
             recording = f"/proc/self/fd/{context.recording}"
             here = Path(f"/proc/self/fd/{context.simulator_folder}")
             fds = (theirs.fileno(), *shared, context.recording, context.simulator_folder)
-            words = [control, recording, plan.to_json(), *others, *more, feed[0]]
+            words = [str(theirs.fileno()), recording, plan.to_json(), *more, feed[0]]
             command = ProcessCommand(
                 [sys.executable, "-m", module, *words],
                 simulator_environment(context.env),

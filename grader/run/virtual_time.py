@@ -116,15 +116,12 @@ def _try(
                     running.append(its)
                     links.append(link)
                 starts = [
-                    (each.process.pid, its.name, its.after, round(its.delay_s * 1e9))
-                    for each, its in zip(running, programs, strict=True)
+                    (link.fileno(), its.account.page, its.process.pid, p.name, p.after, p.delay_s)
+                    for link, its, p in zip(links, running, programs, strict=True)
                 ]
-                pids = json.dumps(starts)
-                more = (pids, str(core_id), json.dumps(asdict(patience)))
+                shared = [fd for link_fd, page, *_ in starts for fd in (link_fd, page)]
+                more = map(json.dumps, (starts, core_id, asdict(patience)))
                 server = fork_servers.server(fork_servers.SIMULATOR)
-                pages = [each.account.page for each in running]
-                shared = [fd for pair in zip(map(socket.socket.fileno, links), pages, strict=True)
-                          for fd in pair]  # fmt: skip
                 with start_simulator(
                     fork_servers.MODULE, context, plan, shared, *more, server=server, feed=feed
                 ) as simulator:

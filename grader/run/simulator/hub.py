@@ -1,12 +1,12 @@
 """The simulator's process in a run in virtual time: the hub of the submission's programs.
 
-    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PAGE ... PIDS CORE PATIENCE SHOWN
+    python -m grader.run.simulator.virtual_main FD FILE PLAN PROGRAMS CORE PATIENCE SHOWN
 
-The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to a program's
-process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
-each program; PIDS a JSON list of their processes, each with its name, with the place of the one at
-whose end it is started (-1: with the run), and how long after that [ns]; CORE the
-processor core that all are to share, PATIENCE a `grader.run.limits.Patience` as JSON.
+The first three and SHOWN as in `grader.run.simulator.real_time`; PROGRAMS is a JSON list with, of
+each, the socket to its process, the page in which that notes the tick that it has reached, its
+process id, its name, the place of the one at whose end it is started (-1: with the run), and how
+long after that [s]; CORE the processor core that all are to share, PATIENCE a
+`grader.run.limits.Patience` as JSON.
 
 One program runs at a time, in the order in which they were started, until it asks for time
 (`grader.run.lockstep.protocol`). What it has sent goes on its way then, and who gets something, or
@@ -126,7 +126,7 @@ class Hub(SceneRun):
         plan: Plan,
         share_core: Callable[[], None],
         on_met: Callable[[], None],
-        shown: str = "",
+        shown: str,
     ) -> None:
         """Set up the scene.
 
@@ -420,21 +420,20 @@ def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
     protect_process()
     control = socket.socket(fileno=int(argv[0]))
-    *ends, pids, core, patience, shown = argv[3:]
-    starts, limits = json.loads(pids), Patience(**json.loads(patience))
-    students, names = [pid for pid, *_ in starts], [name for _, name, *_ in starts]
+    programs, core, patience = map(json.loads, argv[3:6])
+    students, names = [pid for _, _, pid, *_ in programs], [each[3] for each in programs]
     links = []
-    for link, page, (pid, _, after, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
-        its = (socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
-        links.append((StudentLink(*its), after + 1, start_ns))
+    for link, page, pid, _, after, delay_s in programs:
+        its = (socket.socket(fileno=link), page, pid, Patience(**patience), {*students} - {pid})
+        links.append((StudentLink(*its), after + 1, round(delay_s * 1e9)))
 
     def share_core() -> None:
         # for all, from here: a submission's process may not choose its cores
-        cores.pin(int(core), os.getpid(), *students)
+        cores.pin(core, os.getpid(), *students)
 
     plan = Plan.from_json(argv[2])
     try:
-        hub = Hub(links, names, plan, share_core, lambda: send_message(control, "met"), shown)
+        hub = Hub(links, names, plan, share_core, lambda: send_message(control, "met"), argv[6])
         gc.freeze()
         gc.set_threshold(GARBAGE)
         send_message(control, "done", **hub.run(Path(argv[1])))
