@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 #: Where the kernel shows the quotas of control groups, and to which this process belongs.
@@ -49,14 +49,8 @@ def reserve_core(run: int) -> Iterator[int]:
     from grader.system import scratch
 
     possible = available()
-    with ExitStack() as held:
-        for core in possible:
-            if lock := scratch.acquire_lock(f"core-{core}"):
-                held.enter_context(lock)
-                break
-        else:
-            core = possible[run % len(possible)]
-        yield core
+    with scratch.hold_one("core", possible) as core:
+        yield possible[run % len(possible)] if core is None else core
 
 
 def pin(core: int, *pids: int) -> None:

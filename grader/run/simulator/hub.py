@@ -149,6 +149,7 @@ class Hub(SceneRun):
         self._waiter = waitsets.Waiter(lambda: self.now_ns)
         waitsets.install(self._waiter)
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, links[0][0].flag)
+        self.tap, self.heard = self._registry.tap, self._registry.pop_heard
         endpoints.install(self._registry)
         actions.install()
         if plan.definitions or plan.own_definitions:
@@ -228,17 +229,8 @@ class Hub(SceneRun):
         while not self._reason:
             self._make_tick()
 
-    # For a cast, see `grader.scenes.cast.playing.Wire`
-
-    def tap(self, topic: str, kind: str, message: Any) -> None:
-        """Record what the program publishes on a topic with a type."""
-        self._registry.tap(topic, kind, message)
-
-    def heard(self) -> list[tuple[str, str, int, bytes, int]]:
-        return self._registry.pop_heard()
-
     def has_unread(self, node: str) -> bool:
-        """Whether something waits for a node of the cast's."""
+        """Whether something waits for a node of the cast's; see `playing.Wire`."""
         readers = self._registry.readers
         return any(reader.items for reader in readers if reader.node == node)
 
