@@ -79,17 +79,15 @@ def _install(witness: Witness) -> None:
     future, timer = rclpy.task.Future, rclpy.timer.Timer
     made = witness.made
 
-    _after(publisher, "__init__", lambda it, _: made("publisher", it, it.topic_name, it.msg_type))
-    _after(
+    after(publisher, "__init__", lambda it, _: made("publisher", it, it.topic_name, it.msg_type))
+    after(
         subscription, "__init__", lambda it, _: made("subscription", it, it.topic_name, it.msg_type)
     )
-    _after(
-        client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type)
-    )
-    _after(timer, "__init__", lambda it, _: witness.ending.note_callback(it.callback))
-    _after(timer, "__init__", lambda it, _: witness.made_timer(it))
-    _after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
-    _after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
+    after(client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type))
+    after(timer, "__init__", lambda it, _: witness.ending.note_callback(it.callback))
+    after(timer, "__init__", lambda it, _: witness.made_timer(it))
+    after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
+    after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
     _around_wait(witness, client, "wait_for_service", lambda it, _: it, lambda _, there: there)
     # virtual time's wrapper would cost time
     is_done = inspect.unwrap(future.done)
@@ -113,8 +111,8 @@ def _install_actions(witness: Witness) -> None:
         name = client._node.resolve_service_name(client._action_name)
         witness.made("action_client", client, name, client._action_type)
 
-    _after(ActionClient, "__init__", made)
-    _after(ActionClient, "send_goal_async", lambda it, _: witness.used(it))
+    after(ActionClient, "__init__", made)
+    after(ActionClient, "send_goal_async", lambda it, _: witness.used(it))
     _around_wait(witness, ActionClient, "wait_for_server", lambda it, _: it, lambda _, there: there)
 
 
@@ -129,7 +127,7 @@ def _around(owner: Any, name: str, around: Callable[..., Any]) -> None:
     setattr(owner, name, called)
 
 
-def _after(owner: Any, name: str, call: Callable[[Any, Any], None]) -> None:
+def after(owner: Any, name: str, call: Callable[[Any, Any], None]) -> None:
     """Have a function called after each call of a method, with its object and what it returned."""
 
     def called(method: Any, self: Any, *args: Any, **kwargs: Any) -> Any:

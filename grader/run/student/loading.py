@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader.run.lockstep import faults
+from grader.run.observe import hooks
 
 #: Installed packages that a submission must never pick up in place of its own.
 OURS = ("turtlesim_challenge", "turtlesim_py", "grader")
@@ -199,15 +200,8 @@ def accept_numbers(module: Any) -> None:
     Args:
         module: `rclpy.publisher`; each type of messages is changed when a publisher is made.
     """
-    make = module.Publisher.__init__
-
-    @functools.wraps(make)
-    def made(self: Any, *args: Any, **kwargs: Any) -> None:
-        make(self, *args, **kwargs)
-        with suppress(Exception):  # rclpy decides what it accepts
-            convert_lists(self.msg_type)
-
-    module.Publisher.__init__ = made
+    # where that fails, rclpy decides what it accepts
+    hooks.after(module.Publisher, "__init__", lambda made, _: convert_lists(made.msg_type))
 
 
 def convert_lists(message: Any) -> None:

@@ -19,7 +19,6 @@ if __name__ == "__main__":
     sys.path[0] = str(Path(__file__).resolve().parents[3])
 
 import atexit
-import functools
 import json
 import time
 from collections import Counter
@@ -90,47 +89,26 @@ class Introduced:
         self.patience_s = 4.0
         #: of the very names: they are there, and will be found, unless their types are wrong
         self.sure_patience_s = 10.0
-        self._readers = Counter(topics)
-        self._topics, self._services = _with_endings(topics), _with_endings(services)
+        self._readers, self._topics, self._services = Counter(topics), topics, services
 
     def patch(self, module: Any) -> None:
-        """Replace the methods of `rclpy.node` that make publishers and clients."""
-        node = module.Node
-        create_publisher, create_client = node.create_publisher, node.create_client
+        """Add to the methods of `rclpy.node` that make publishers and clients."""
+        hooks.after(module.Node, "create_publisher", self._await_readers)
+        hooks.after(module.Node, "create_client", self._await_service)
 
-        @functools.wraps(create_publisher)
-        def connected_publisher(self_: Any, *args: Any, **kwargs: Any) -> Any:
-            publisher = create_publisher(self_, *args, **kwargs)
-            least = max(1, self._readers[publisher.topic_name])
-            is_met = lambda: publisher.get_subscription_count() >= least  # noqa: E731
-            self._await(publisher.topic_name, self._topics, is_met)
-            return publisher
+    def _await_readers(self, _: Any, publisher: Any) -> None:
+        name, least = publisher.topic_name, max(1, self._readers[publisher.topic_name])
+        self._await(name, self._topics, lambda: publisher.get_subscription_count() >= least)
 
-        @functools.wraps(create_client)
-        def connected_client(self_: Any, *args: Any, **kwargs: Any) -> Any:
-            client = create_client(self_, *args, **kwargs)
-            name = self_.resolve_service_name(client.srv_name)
-            self._await(name, self._services, client.service_is_ready)
-            return client
+    def _await_service(self, node: Any, client: Any) -> None:
+        name = node.resolve_service_name(client.srv_name)
+        self._await(name, self._services, client.service_is_ready)
 
-        node.create_publisher, node.create_client = connected_publisher, connected_client
-
-    def _await(
-        self, name: str, known: tuple[set[str], set[str]], is_connected: Callable[[], bool]
-    ) -> None:
-        names, endings = known
+    def _await(self, name: str, names: list[str], is_connected: Callable[[], bool]) -> None:
         if name in names:
             self.sure_patience_s -= _wait_for(is_connected, self.sure_patience_s)
-        elif _ending(name) in endings:
+        elif name.rpartition("/")[2] in [each.rpartition("/")[2] for each in names]:
             self.patience_s -= _wait_for(is_connected, self.patience_s)
-
-
-def _with_endings(names: list[str]) -> tuple[set[str], set[str]]:
-    return set(names), set(map(_ending, names))
-
-
-def _ending(name: str) -> str:
-    return name.rpartition("/")[2]
 
 
 def _wait_for(is_connected: Callable[[], bool], patience_s: float) -> float:
