@@ -89,9 +89,6 @@ class ThreadHandle:
         self.ident = ident
         self._alive = Lock()
 
-    def begin(self) -> None:
-        self._alive.acquire()
-
     def is_done(self) -> bool:
         return not self._alive.locked()
 
@@ -155,7 +152,7 @@ def _start_joinable_thread(
     function: Callable[[], object], handle: ThreadHandle | None = None, daemon: bool = True
 ) -> ThreadHandle:
     started = handle or ThreadHandle()
-    started.begin()
+    started._alive.acquire()
     started.ident = SCHEDULER.spawn(lambda: _quietly(function), started._set_done)
     return started
 
