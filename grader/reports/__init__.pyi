@@ -1,10 +1,6 @@
-from grader.reports.csv import cell as cell
-from grader.reports.csv import is_safe_id as is_safe_id
-from grader.reports.csv import table as table
+from grader.reports import wording as wording
 from grader.reports.formats import ErrorReport as ErrorReport
 from grader.reports.formats import Format as Format
-from grader.reports.formats import load as load
-from grader.reports.formats import names as names
 from grader.reports.formats import read as read
 from grader.reports.formats import render as render
 from grader.reports.page import pictures as pictures
@@ -12,8 +8,3 @@ from grader.reports.page import templating as templating
 from grader.reports.page.html import draw as draw
 from grader.reports.report import Artifacts as Artifacts
 from grader.reports.report import Report as Report
-from grader.reports.wording import outcome_text as outcome_text
-from grader.reports.wording import points as points
-from grader.reports.wording import score_text as score_text
-from grader.reports.wording import title_of as title_of
-from grader.reports.wording import word as word

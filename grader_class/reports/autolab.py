@@ -6,7 +6,8 @@ import json
 from typing import Any, Final
 
 from grader import UsageError
-from grader.reports import ErrorReport, Format, Report, word
+from grader.reports import ErrorReport, Format, Report
+from grader.reports.wording import word
 from grader.text import msg, number, one_line, tr
 
 _STAGE = "Checks"

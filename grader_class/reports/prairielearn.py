@@ -6,7 +6,8 @@ import json
 from typing import Any, Final
 
 from grader import Verdict
-from grader.reports import ErrorReport, Format, Report, pictures, title_of, word
+from grader.reports import ErrorReport, Format, Report, pictures
+from grader.reports.wording import title_of, word
 from grader.text import clip, clip_middle, msg, number, tr, translate
 
 #: PrairieLearn refuses a file above 1 MB.
