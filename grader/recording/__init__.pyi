@@ -10,7 +10,6 @@ from grader.recording.observations import SourceLine as SourceLine
 from grader.recording.observations import Standstill as Standstill
 from grader.recording.observations import is_library as is_library
 from grader.recording.observations import last_exception as last_exception
-from grader.recording.observations import thread_exception as thread_exception
 from grader.recording.recording import NOT_THERE as NOT_THERE
 from grader.recording.recording import Clock as Clock
 from grader.recording.recording import ProgramRun as ProgramRun

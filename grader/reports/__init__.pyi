@@ -3,8 +3,8 @@ from grader.reports.formats import ErrorReport as ErrorReport
 from grader.reports.formats import Format as Format
 from grader.reports.formats import read as read
 from grader.reports.formats import render as render
-from grader.reports.page import pictures as pictures
 from grader.reports.page import templating as templating
 from grader.reports.page.html import draw as draw
+from grader.reports.page.pictures import canvas_uri as canvas_uri
 from grader.reports.report import Artifacts as Artifacts
 from grader.reports.report import Report as Report

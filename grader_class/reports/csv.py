@@ -59,7 +59,8 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
     for name in checks:
         verdict = verdicts.get(name)
         row += [number(verdict.score), str(wording.WORDS[verdict.status])] if verdict else ["", ""]
-    first = report.first_key
+    found, lost = report.diagnosis, report.first_to_mend
+    first = (found.check or found.key) if found else lost.check if lost else ""
     return [
         *row,
         report.run.outcome,

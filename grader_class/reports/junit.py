@@ -10,6 +10,7 @@ from grader import Verdict
 from grader.reports import ErrorReport, Format, Report
 from grader.reports.wording import score_text, word
 from grader.text import msg, number, one_line, plain, tr, translate
+from grader_class.reports.lines import led_lines
 
 
 def render(report: Report) -> str:
@@ -76,7 +77,7 @@ def _testcase(suite: str, name: str) -> ElementTree.Element:
 
 def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
     case = _testcase(report.exercise, f"{verdict.check}: {translate(verdict.title)}")
-    lines = report.led_lines(verdict)
+    lines = led_lines(report, verdict)
     message = {"message": one_line(lines[0] if lines else "")}
     if verdict.status == "failed":
         failure = ElementTree.SubElement(case, "failure", {**message, "type": "failed"})
