@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from typing import Any
 
 from grader.exercise.verdict import Verdict
 from grader.recording.observations import Burst, End
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
-from grader.reports.report import Report
-from grader.scenes.playback import JudgedCheck, Moment, Playback, PlayedRun
+from grader.reports.report import Point, Report
+from grader.scenes.playback import JudgedCheck, Playback, PlayedRun
+from grader.scenes.scene import STEP_NS
 from grader.text import strings as text
 from grader.text.translations import tr, translate
 
@@ -50,7 +52,6 @@ def _played_run(number: int, recording: Recording) -> PlayedRun:
         outcome = tr("{outcome}; {begins}", outcome=outcome, begins=start.words)
     after = recording.run.simulated_s
     return PlayedRun(
-        number,
         wording.run_name(number),
         tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
         recording.trace,
@@ -84,15 +85,19 @@ def _judged(report: Report, verdict: Verdict, runs: int) -> JudgedCheck:
         ),
         translate(verdict.rationale),
         translate(verdict.help),
-        tuple(
-            Moment(
-                point.number,
-                point.evidence.run,
-                point.evidence.time_s,
-                point.evidence.place,
-                str(point),
-            )
-            for point in report.points_of(verdict)
-            if point.evidence.run < runs
-        ),
+        tuple(_moment(point) for point in report.points_of(verdict) if point.evidence.run < runs),
     )
+
+
+def _moment(point: Point) -> dict[str, Any]:
+    seen = point.evidence
+    x, y = seen.place or (None, None)
+    tick = round(seen.time_s * 1e9 / STEP_NS)
+    return {
+        "number": point.number,
+        "run": seen.run,
+        "tick": tick,
+        "x": x,
+        "y": y,
+        "text": str(point),
+    }
