@@ -27,8 +27,8 @@ from grader.recording import (
     SourceLine,
     Standstill,
     last_exception,
-    load_subject,
 )
+from grader.scenes import load_subject
 from grader.text import NOTHING, Message, joined, msg, shown
 
 #: The endpoint that an end of the submission's needs on the other side.

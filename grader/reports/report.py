@@ -15,9 +15,10 @@ from grader.exercise.result.visible import View, student_view
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording import reading
 from grader.recording.recording import Recording, Recordings
-from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
+from grader.recording.subject import DEFAULT_SCENE
 from grader.reports import readable, wording
 from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, points, title_of, where, word
+from grader.scenes.subject import Subject, load_subject
 from grader.text import strings as text
 from grader.text.message import NOTHING, Message
 from grader.text.translations import tr, translate

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from grader import Verdict
-from grader.recording import Solid, load_subject
 from grader.reports import Report
+from grader.scenes import load_subject
+from grader.scenes.view import Solid
 from grader.text import one_line, tr, translate
 
 

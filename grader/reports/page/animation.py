@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from grader.recording.view import Floats, Placing, Shape, Solid, Times, Track, View
+from grader.scenes.view import Floats, Placing, Shape, Solid, Times, Track, View
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000

@@ -5,9 +5,9 @@ from itertools import count
 
 import pytest
 
-from grader.recording.subject import load_subject
 from grader.reports import Format
 from grader.reports.formats import load
+from grader.scenes.subject import load_subject
 from grader.scenes.turtlesim.scene import Turtlesim
 from grader.system import extensions
 from grader.testing import check_report, check_scene
