@@ -14,16 +14,13 @@ from typing import Any
 
 from grader import Recording
 from grader.exercise import Diagnosis
-from grader.recording import (
+from grader.recording import Endpoint, EndpointKind, ProgramRun, Run
+from grader.recording.observations import (
     End,
     EndKind,
-    Endpoint,
-    EndpointKind,
     LintFinding,
     Observations,
-    ProgramRun,
     Raised,
-    Run,
     SourceLine,
     Standstill,
     last_exception,

@@ -9,7 +9,7 @@ from dataclasses import replace
 from signal import Signals
 
 from grader.exercise import Diagnosis
-from grader.recording import Raised, SourceLine, last_exception
+from grader.recording.observations import Raised, SourceLine, last_exception
 from grader.text import NOTHING, Message, clip, msg, plain_text, shown
 from grader_diagnosis import lint_findings, lint_hints
 from grader_diagnosis.case import Case, diagnosed, line, of_kind, sentences

@@ -1,15 +1,5 @@
+from grader.recording import observations as observations
 from grader.recording.mcap import Channel as Channel
-from grader.recording.observations import Caught as Caught
-from grader.recording.observations import End as End
-from grader.recording.observations import EndKind as EndKind
-from grader.recording.observations import LintFinding as LintFinding
-from grader.recording.observations import Observations as Observations
-from grader.recording.observations import Raised as Raised
-from grader.recording.observations import RanFile as RanFile
-from grader.recording.observations import SourceLine as SourceLine
-from grader.recording.observations import Standstill as Standstill
-from grader.recording.observations import is_library as is_library
-from grader.recording.observations import last_exception as last_exception
 from grader.recording.recording import NOT_THERE as NOT_THERE
 from grader.recording.recording import Clock as Clock
 from grader.recording.recording import ProgramRun as ProgramRun

@@ -8,5 +8,4 @@ from grader.scenes.scene import Scene as Scene
 from grader.scenes.scene import Simulation as Simulation
 from grader.scenes.scene import arrived as arrived
 from grader.scenes.scene import command_by_hand as command_by_hand
-from grader.scenes.scene import load_scene as load_scene
 from grader.scenes.subject import load_subject as load_subject

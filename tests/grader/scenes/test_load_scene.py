@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import grader.scenes
-from grader.scenes import load_scene
+from grader.scenes.scene import load_scene
 from grader.scenes.subject import load_subject
 from grader.system import extensions
 
