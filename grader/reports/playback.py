@@ -6,7 +6,6 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import Any
 
-from grader.exercise.verdict import Verdict
 from grader.recording.observations import Burst, End
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
@@ -42,7 +41,17 @@ def of(
 
 def judged(report: Report, runs: int) -> tuple[JudgedCheck, ...]:
     """Return the verdicts as shown, with evidence from the first so many runs."""
-    return tuple(_judged(report, verdict, runs) for verdict in report.verdicts)
+    return tuple(
+        JudgedCheck(
+            wording.title_of(each),
+            each.status,
+            tr("{word}, {score} points", word=wording.word(each), score=wording.score_text(each)),
+            translate(each.rationale),
+            translate(each.help),
+            tuple(_moment(point) for point in report.points_of(each) if point.evidence.run < runs),
+        )
+        for each in report.verdicts
+    )
 
 
 def _played_run(number: int, recording: Recording) -> PlayedRun:
@@ -72,21 +81,6 @@ def _sent(recording: Recording) -> tuple[End, ...]:
         if end.lines:
             by_name[end.name].append(end)
     return tuple(ends[0] for ends in by_name.values() if len(ends) == 1)
-
-
-def _judged(report: Report, verdict: Verdict, runs: int) -> JudgedCheck:
-    return JudgedCheck(
-        wording.title_of(verdict),
-        verdict.status,
-        tr(
-            "{word}, {score} points",
-            word=wording.word(verdict),
-            score=wording.score_text(verdict),
-        ),
-        translate(verdict.rationale),
-        translate(verdict.help),
-        tuple(_moment(point) for point in report.points_of(verdict) if point.evidence.run < runs),
-    )
 
 
 def _moment(point: Point) -> dict[str, Any]:

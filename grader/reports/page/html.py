@@ -279,7 +279,11 @@ def _script_data(shown: Animation) -> dict[str, Any]:
                 "x": _numbers(track.x, 1),
                 "y": _numbers(track.y, 1),
                 "a": _numbers(-np.degrees(track.theta), 0),
-                "ink": [[s.first, s.last, s.color, s.width] for s in track.stretches if s.drawn],
+                "ink": [
+                    [first, last, pen.color, pen.width]
+                    for first, last, pen in track.stretches
+                    if pen.drawn
+                ],
             }
             for track in shown.tracks
         ],
