@@ -24,7 +24,7 @@ from grader.exercise.loading import load_exercise
 from grader.exercise.result.result import Result
 from grader.judging import AnyPath, judge, loaded
 from grader.recording.recording import Clock, Provenance, Recording, Recordings, now
-from grader.recording.subject import PACKAGE_SCENE, Role, Trace, load_subject
+from grader.recording.subject import PACKAGE_SCENE, Role, Trace
 from grader.run import inspecting, real_time, virtual_time
 from grader.run.finish import SimulatorLost, not_run, recording_of_nothing
 from grader.run.handover import Plan
@@ -33,6 +33,7 @@ from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
 from grader.run.simulator_process import Audience
 from grader.scenes.scene import Scene
+from grader.scenes.subject import load_subject
 from grader.submission.private_copy import missing_neighbours
 from grader.submission.program_source import is_among
 from grader.submission.reader import Marks

@@ -28,12 +28,12 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from grader import Exercise, ExerciseError, SubmissionError
-from grader.reports import cell, table
 from grader.submission import MAX_SOURCE_BYTES, files_below, read_bounded
 from grader.system import files as whole_files
 from grader.system import remove
 from grader.testing import FILE_NAME, read_solutions
 from grader_class.entry import Entry
+from grader_class.reports.csv import cell, table
 
 SOURCE: Final = "source"
 MOST_FILES: Final = 60

@@ -19,7 +19,6 @@ from pathlib import Path
 
 from grader import Exercise, UsageError, load_exercise
 from grader.exercise import View, not_followed
-from grader.reports import cell, table
 from grader.system import files, make_folder, remove
 from grader.system import versions as system
 from grader.text import Message, chained, msg, number
@@ -27,6 +26,7 @@ from grader_class import batch, pool
 from grader_class.class_file import ClassFile
 from grader_class.entry import Entry, entries
 from grader_class.pool import Answer, Task
+from grader_class.reports.csv import cell, table
 from grader_class.store import STUDENTS, Store
 
 CHANGES = "changes.csv"

@@ -6,7 +6,7 @@ import re
 import sys
 
 from grader.exercise import Diagnosis
-from grader.recording import Raised
+from grader.recording.observations import Raised
 from grader.text import NOTHING, Message, misspelt, msg, shown
 from grader_diagnosis.case import Case, diagnosed, filled, of_kind, words_of
 

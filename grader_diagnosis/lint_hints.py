@@ -12,7 +12,8 @@ from dataclasses import replace
 from itertools import chain
 from typing import Any
 
-from grader.recording import LintFinding, Raised, readable
+from grader.recording import readable
+from grader.recording.observations import LintFinding, Raised
 from grader.text import NOTHING, Message, as_message, misspelt, msg, shown
 from grader_diagnosis import known_exceptions
 from grader_diagnosis.case import Case, filled, function, of_kind, words_of

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from grader.exercise import Diagnosis
-from grader.recording import NOT_THERE, SourceLine, Standstill
+from grader.recording import NOT_THERE
+from grader.recording.observations import SourceLine, Standstill
 from grader.text import NOTHING, Message, joined, msg, msg_many, shown
 from grader_diagnosis.case import (
     Case,

@@ -6,7 +6,7 @@ import re
 from pathlib import PurePath
 
 from grader.exercise import Diagnosis
-from grader.recording import Caught, SourceLine, is_library
+from grader.recording.observations import Caught, SourceLine, is_library
 from grader.text import NOTHING, Message, joined, msg, plain_text, shown
 from grader_diagnosis.case import Case, after, diagnosed, function, sentences
 from grader_diagnosis.known_exceptions import explain

@@ -24,7 +24,6 @@ ONE = {
     "frames of ours are hidden": (r"TracebackType\(", "run/lockstep/faults.py"),
     "endpoints are paired": (r"def compatible\(", "run/lockstep/registry.py"),
     "a page's templates are found": (r"jinja2\.Environment\(", "reports/page/templating.py"),
-    "a table is written": (r"csv\.writer\(", "reports/csv.py"),
     "a zip is written": (r"ZipFile\([^)]*\"w\"", "system/files.py"),
     "a run's limits are set": (r"class (RunLimits|Patience|CpuBudget)\b", "run/limits.py"),
 }

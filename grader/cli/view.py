@@ -12,10 +12,11 @@ from grader.exercise.result.result import ARTIFACTS, PAGE, RESULT
 from grader.exercise.result.visible import View
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
-from grader.recording.subject import load_subject, scene_at_work
+from grader.recording.subject import scene_at_work
 from grader.reports import playback
 from grader.reports.report import Report
 from grader.scenes.playback import Playback
+from grader.scenes.subject import load_subject
 from grader.system import files
 from grader.text.message import Message, msg
 from grader.text.strings import for_terminal

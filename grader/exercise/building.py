@@ -23,8 +23,9 @@ from grader.exercise.exercise import INSPECTIONS, INSPECTS, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
 from grader.exercise.policies import Amount, amount
 from grader.recording.recording import MOST_PROGRAMS
-from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
+from grader.recording.subject import DEFAULT_SCENE
 from grader.scenes.scene import Limits, Scene
+from grader.scenes.subject import Subject, load_subject
 from grader.system import content, extensions
 from grader.system.extensions import SCENES
 from grader.system.yaml_file import Mistake, check_known, decoded, expect

@@ -20,8 +20,9 @@ from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
-from grader.recording.subject import Endpoint, Role, Start, Subject, load_subject
+from grader.recording.subject import Endpoint, Role, Start
 from grader.scenes.scene import Limits, Scene
+from grader.scenes.subject import Subject, load_subject
 from grader.system.strict_json import not_negative
 from grader.text.message import NOTHING, Message
 

@@ -13,7 +13,7 @@ from typing import Final
 from grader.exercise.verdict import Finding
 from grader.recording.observations import Raised, last_exception
 from grader.recording.recording import Provenance, Recording, Recordings
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from grader.submission.error_texts import described
 from grader.submission.trace import Obstacle, PackageTrace
 from grader.text.message import NOTHING, Message, joined, msg, plain_text

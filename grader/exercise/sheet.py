@@ -19,8 +19,8 @@ from grader.exercise.check import Check
 from grader.exercise.exercise import Exercise
 from grader.exercise.places import DESCRIPTION
 from grader.exercise.policies import LatePolicy
-from grader.recording.subject import Subject
 from grader.scenes.scene import Scene
+from grader.scenes.subject import Subject
 from grader.text.message import chained, joined, msg
 from grader.text.strings import points
 from grader.text.translations import current, tr, tr_many, translate

@@ -26,7 +26,7 @@ from grader.recording.recording import (
     Run,
 )
 from grader.recording.scene_and_cast import split
-from grader.recording.subject import Trace, load_subject, scene_at_work
+from grader.recording.subject import Trace, load_keeper, scene_at_work
 from grader.run.evidence import EvidencePage
 from grader.run.handover import Plan, keeper
 from grader.run.limits import LIMITS, size
@@ -274,7 +274,7 @@ def recording_of_nothing(plan: Plan, lost: SimulatorLost) -> Recording:
 
 
 def _untouched(plan: Plan) -> Trace:
-    return keeper(plan, load_subject(plan.scene)).untouched(plan.start)
+    return keeper(plan, load_keeper(plan.scene)).untouched(plan.start)
 
 
 def limits_struck(exit_code: int | None, output: str, excess: Message) -> tuple[Message, ...]:

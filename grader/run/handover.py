@@ -17,7 +17,7 @@ from grader.recording import bag
 from grader.recording.mcap import read_mcap
 from grader.recording.recording import PublishedTopic
 from grader.recording.scene_and_cast import CastKeeper, merge
-from grader.recording.subject import Start, Subject, Trace
+from grader.recording.subject import Keeper, Start, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
 from grader.scenes.scene import Limits
 from grader.system import strict_json
@@ -84,7 +84,7 @@ class Plan:
 # The recording --------------------------------------------------------------------------------
 
 
-def keeper(plan: Plan, scene: Subject) -> Subject:
+def keeper(plan: Plan, scene: Keeper) -> Keeper:
     """Return what keeps the trace of a run: with a cast beside a scene, that of both."""
     return scene if plan.cast is None or scene.has_cast else CastKeeper(scene)
 
@@ -109,7 +109,7 @@ class _Facts:
 
 
 def leave(
-    path: Path, scene: Subject, trace: Trace, published: Mapping[str, str], cast: Any = None
+    path: Path, scene: Keeper, trace: Trace, published: Mapping[str, str], cast: Any = None
 ) -> None:
     """Write the file, in the simulator's process.
 
@@ -125,7 +125,7 @@ def leave(
     path.write_bytes(head + b"\n" + bag.pack(kept, by)[0])
 
 
-def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]:
+def fetch(file: int, scene: Keeper) -> tuple[Trace, tuple[PublishedTopic, ...]]:
     """Read the file from an open descriptor, in the grader's process.
 
     Raises:

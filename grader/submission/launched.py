@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grader.recording.recording import NOT_THERE
-from grader.recording.view import Cell, Table
+from grader.scenes.view import Cell, Table
 from grader.submission.error_texts import described, placed
 from grader.submission.program import EntryPoint, Script
 from grader.submission.trace import PREFIX, Lacking, LaunchedNode, LaunchFile, PackageTrace, Skipped

@@ -17,8 +17,9 @@ from grader.exercise.verdict import Evidence, Finding, Verdict
 from grader.grading import gather, run_all, runner
 from grader.judging import AnyPath
 from grader.recording.recording import Recording, Recordings, Run
-from grader.recording.subject import CAST_SCENE, Start, Trace, load_subject
+from grader.recording.subject import CAST_SCENE, Start, Trace
 from grader.run.opening import open_submission
+from grader.scenes.subject import load_subject
 from grader.system.scratch import make_folder
 from grader.testing.examination import Examination, Fault, Problem, Trial
 from grader.testing.extensions import changed_in_a_bag

@@ -11,9 +11,10 @@ from grader.exercise.result.result import Result, RunSummary
 from grader.exercise.verdict import Verdict
 from grader.recording import bag
 from grader.recording.mcap import read_mcap
-from grader.recording.subject import Subject, Trace, load_subject
+from grader.recording.subject import Trace
 from grader.reports.formats import ErrorReport, load
 from grader.reports.report import Artifacts, Report
+from grader.scenes.subject import Subject, load_subject
 from grader.text.message import NOTHING, Message, msg, plain_text
 
 

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from grader.cli import say
-from grader.reports import points
+from grader.reports.wording import points
 from grader.text import Message, clip, for_terminal, msg, tr, tr_many, translate
 from grader_class.batch import Planned
 from grader_class.entry import Entry, HandIn, State

@@ -14,7 +14,8 @@ from pathlib import PurePath
 
 from grader import Recording
 from grader.exercise import ErrorResult, RunSummary, View
-from grader.reports import Artifacts, ErrorReport, Report, points, render
+from grader.reports import Artifacts, ErrorReport, Report, render
+from grader.reports.wording import points
 from grader.system import files
 from grader.text import LANGUAGES, Message, msg, shown, tr, translate
 from grader_class.entry import Entry

@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise import View
-from grader.reports import cell, table
 from grader.system import files
 from grader.text import Message, clip, listed, msg, plain_all, translate
 from grader_class.entry import Entry
@@ -34,6 +33,7 @@ from grader_class.gradebook.grade import (
     is_of_worksheet,
     participant,
 )
+from grader_class.reports.csv import cell, table
 
 CSV, JSON_LINES, EXPORT = "gradebook.csv", "gradebook.jsonl", "export"
 MOODLE_WORKSHEET, MOODLE_GRADES = "moodle-grading-worksheet.csv", "moodle-grade-import.csv"

@@ -23,8 +23,9 @@ import jinja2
 from grader import Exercise, Result, Verdict
 from grader.exercise import PAGE as REPORT
 from grader.exercise import SubmissionInfo
-from grader.recording import load_subject
-from grader.reports import outcome_text, points, templating
+from grader.reports import templating
+from grader.reports.wording import outcome_text, points
+from grader.scenes import load_subject
 from grader.text import NOTHING, Message, clip, msg, plain, plain_text, shown, tr, translate
 from grader_class.entry import SUBMISSIONS, Entry, State
 from grader_class.page.thumb import EDGE_PX, UNITS, Thumb

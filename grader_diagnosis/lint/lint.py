@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from grader.recording import LintFinding, SourceLine
+from grader.recording.observations import LintFinding, SourceLine
 from grader.submission import Function, last, parse, read_bounded, scope_nodes, seen
 from grader.text import misspelt, nearest
 from grader_diagnosis.lint import paths, ros_mistakes, scopes

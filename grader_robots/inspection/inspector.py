@@ -31,7 +31,8 @@ from grader.text import Message, msg, plain_text
 from grader_robots.inspection import files, meshes
 
 if TYPE_CHECKING:
-    from grader.recording import Part, Trace
+    from grader.recording import Trace
+    from grader.scenes.view import Part
 
 
 #: So many descriptions are looked at with other numbers.

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording import Floats, Tree, TreeNode
+from grader.scenes.view import Floats, Tree, TreeNode
 from grader.text import NOTHING, Message, Text, joined, msg, series
 from grader_robots.scene.shapes import MOST_NODES, descend, name_of, named
 from grader_robots.scene.trace import TF, TF_STATIC, TICK_S, RobotTrace, Transform

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from grader.recording import Floats, Placing, Shape, Solid, SolidFrame
+from grader.scenes.view import Floats, Placing, Shape, Solid, SolidFrame
 from grader.text import Message, joined, listed, msg, msg_many, shown
 from grader_robots.robot_py.kinematics import matrix, quaternion, translation
 from grader_robots.robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual

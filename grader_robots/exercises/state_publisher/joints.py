@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from grader import Checks, Evidence, Expected, Finding, Tolerances
-from grader.recording import Floats
+from grader.scenes.view import Floats
 from grader.text import NOTHING, Message, joined, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import (
     RobotRun,

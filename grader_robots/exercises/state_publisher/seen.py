@@ -10,7 +10,7 @@ import numpy as np
 
 from grader import Evidence, Finding, Recordings, Tolerances
 from grader.exercise import CheckFunction, error_first, how_it_ended
-from grader.recording import Floats
+from grader.scenes.view import Floats
 from grader.text import Message, joined, msg, plain_text
 from grader_robots.robot_py.model import Joint
 from grader_robots.scene.motion import joints, odometry

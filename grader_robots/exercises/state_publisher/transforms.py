@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from grader import Checks, Expected, Finding, Tolerances
-from grader.recording import Floats
+from grader.scenes.view import Floats
 from grader.text import Message, msg, msg_many
 from grader_robots.exercises.state_publisher.seen import RobotRun, listed, of_run, sentence
 from grader_robots.scene.motion import ODOM, Odometry, bare, below, fitted, hung, why_refused

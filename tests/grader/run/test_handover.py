@@ -13,8 +13,7 @@ from grader.errors import GraderFailure
 from grader.recording import bag
 from grader.recording.recording import PublishedTopic
 from grader.run.handover import fetch, leave
-from grader.scenes import load_scene
-from grader.scenes.scene import Scene
+from grader.scenes.scene import Scene, load_scene
 from grader.scenes.turtlesim.trace import TurtleTrace
 from tests.grader.driving import Spiral, drive
 from tests.grader.scenes.turtlesim.traces import assert_same_trace

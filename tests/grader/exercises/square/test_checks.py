@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from grader.errors import CheckFailed
-from grader.exercise import driven_path
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.exercises.square.checks import Way
 from grader.recording.recording import Recordings
+from grader.scenes.turtlesim import driven_path
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import drive, twist
 from turtlesim_py.world.arena import Arena

@@ -4,10 +4,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.recording.view import Curve, View
 from grader.reports.page.plots import HEIGHT, WIDTH, plots
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import view
+from grader.scenes.view import Curve, View
 from grader.text.message import plain_text
 from tests.grader.driving import Spiral, drive, pen
 from turtlesim_py.world.arena import TICK_NS

@@ -217,7 +217,7 @@ def test_what_stands_in_a_result_ends_no_element_of_the_page():
     evil = "</script><script>alert(1)</script><!-- $data & co"
     trace = drive(eventful, 3)[0]
     judged = JudgedCheck(evil, "failed", evil, evil, evil, ())
-    made = pages.render(Playback(evil, evil, (PlayedRun(0, evil, evil, trace),), (judged,)))
+    made = pages.render(Playback(evil, evil, (PlayedRun(evil, evil, trace),), (judged,)))
     assert made.count("<script") == 2
     assert made.count("</script>") == 2
     assert "alert(1)</" not in made
