@@ -17,7 +17,7 @@ from grader.exercise import json_file
 from grader.recording import Clock
 from grader.run import levels
 from grader.system import files
-from grader.text import Message, Text, msg
+from grader.text import Message, msg
 
 SCHEMA = "turtlesim-grader/class/v2"
 CLASS = "class.json"
@@ -122,7 +122,7 @@ class ClassFile:
         return found
 
 
-def _shown(value: object) -> Text:
+def _shown(value: object) -> str | Message:
     # no sentence, whatever it reads like: `real` is what one writes after --time
     return str(value)[:MOST_SHOWN] if value else msg("none")
 

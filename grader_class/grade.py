@@ -49,7 +49,7 @@ from grader.reports import Report, render
 from grader.run import levels, started_process
 from grader.submission import Submission
 from grader.system import files, make_folder, strict_json
-from grader.text import NOTHING, Message, msg, plain, use
+from grader.text import NOTHING, Message, msg, plain, translations
 from grader_class import export
 from grader_class.entry import Entry, HandIn, State
 from grader_class.find.joining import NOT_HANDED_IN, UNCLEAR
@@ -86,7 +86,7 @@ def serve() -> None:
 def done(task: Task) -> Answer:
     """Do a task, and return how it ended; every exception becomes an answer."""
     try:
-        use(task.language)
+        translations.use(task.language)
         levels.only(task.isolation)
         make(task)
     except GraderError as error:

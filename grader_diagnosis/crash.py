@@ -10,7 +10,7 @@ from signal import Signals
 
 from grader.exercise import Diagnosis
 from grader.recording import Raised, SourceLine, thread_exception
-from grader.text import NOTHING, Message, clip, msg, plain_text, shown
+from grader.text import NOTHING, Message, clip, msg, shown
 from grader_diagnosis import lint_findings, lint_hints
 from grader_diagnosis.case import Case, diagnosed, line, of_kind, sentences
 from grader_diagnosis.known_exceptions import Hint
@@ -185,7 +185,7 @@ def _wanted(
             field=shown(field),
             part="z" if field == "angular" else "x",
         )
-    return plain_text(what.rstrip(".")), msg(
+    return Message.of(what.rstrip(".")), msg(
         "`ros2 interface show TYPE` lists the fields of a message."
     )
 

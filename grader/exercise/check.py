@@ -17,7 +17,7 @@ from grader.exercise import asking
 from grader.exercise.asking import Answers, CheckFunction, NoFinding, NotReached
 from grader.exercise.verdict import Finding, Verdict
 from grader.recording.recording import NominalAlone, NotOver, Recording, Recordings
-from grader.text.message import NOTHING, Message, authored, chained, msg, reason
+from grader.text.message import NOTHING, Message, authored, chained, msg
 
 Tolerances = Mapping[str, Any]
 #: Raises a ValueError where a tolerance cannot be used.
@@ -90,7 +90,7 @@ class Checks:
                 if name in tolerances:
                     validate(tolerances[name])
             except ValueError as error:
-                return name, reason(error)
+                return name, Message.of(error)
         return None
 
     def __call__(

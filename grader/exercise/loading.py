@@ -27,7 +27,7 @@ from grader.system.yaml_file import (
     is_amount,
     read_yaml,
 )
-from grader.text.message import reason
+from grader.text.message import Message
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
@@ -110,7 +110,7 @@ def _naming(path: Path) -> Iterator[None]:
         yield
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            "{path} is not an exercise: {why}", path=str(path), why=reason(error)
+            "{path} is not an exercise: {why}", path=str(path), why=Message.of(error)
         ) from error
 
 

@@ -28,7 +28,7 @@ from grader.errors import ExerciseError
 from grader.exercise.check import Checks
 from grader.system import extensions
 from grader.system.extensions import EXERCISES, described
-from grader.text.message import NOTHING, Message, joined, msg, plain_text
+from grader.text.message import NOTHING, Message, joined, msg
 
 DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
 
@@ -253,7 +253,7 @@ def describe(error: BaseException, folder: Path, file: str = "") -> Message:
             name=name,
             what=error.msg,
         )
-    text = plain_text(f"{name}: {error}" if str(error) else name)
+    text = Message.of(f"{name}: {error}" if str(error) else name)
     if isinstance(error, ImportError) and (absent := _absent(error, folder)):
         text = msg(
             "{name}: there is no {absent} beside {checks}", name=name, absent=absent, checks=CHECKS

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 from grader.system.strict_json import OURS, SPARSE, from_json, not_negative, to_json
-from grader.text.message import NOTHING, Message, plain_text
+from grader.text.message import NOTHING, Message
 
 Status = Literal["passed", "failed", "not_judged"]
 #: What students see of a check: all of it; all of it, when the exercise is over, and until then
@@ -144,7 +144,7 @@ def _convert_texts(made: object, *names: str) -> None:
     """Convert plain texts, of checks whose authors translate nothing, to messages."""
     for name in names:
         if isinstance(text := getattr(made, name), str):
-            object.__setattr__(made, name, plain_text(text))
+            object.__setattr__(made, name, Message.of(text))
 
 
 def as_json(finding: object, runs: int) -> Any:

@@ -108,7 +108,7 @@ def _run(report: Report) -> str:
 
 def _output(report: Report) -> str:
     """Return the node's output in a fence that is longer than any in it."""
-    output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    output = text.clip(report.output.strip("\n"), _OUTPUT_LIMIT, keeps_end=True)
     if not output.strip():
         return ""
     longest = max((len(run) for run in re.findall(r"`+", output)), default=0)

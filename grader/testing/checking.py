@@ -23,7 +23,7 @@ from grader.system.scratch import make_folder
 from grader.testing.examination import Examination, Fault, Problem, Trial
 from grader.testing.extensions import changed_in_a_bag
 from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
-from grader.text.message import Message, msg, plain_text
+from grader.text.message import Message, msg
 
 #: Called after each run with the number of finished runs, that of all, and the solution's name.
 Progress = Callable[[int, int, str], None]
@@ -246,13 +246,13 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
             try:
                 finding = answered(name)
             except NoFinding as error:
-                faults.append(Fault(name, plain_text(str(error))))
-                return Finding(0, plain_text("The check found nothing."))
+                faults.append(Fault(name, Message.of(str(error))))
+                return Finding(0, Message.of("The check found nothing."))
             except NotReached as hit:
                 is_whole = False
                 if hit.by == name:
                     faults.append(Fault(name, hit.what))
-                return Finding(0, plain_text("The check found nothing."))
+                return Finding(0, Message.of("The check found nothing."))
             odd = list(_odd_about(finding, exercise, recordings))
             faults.extend(Fault(name, text) for text in odd)
             return finding

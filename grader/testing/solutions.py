@@ -42,7 +42,7 @@ from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
 from grader.system.yaml_file import Keys, Mistake, read_yaml
-from grader.text.message import reason
+from grader.text.message import Message
 
 FILE_NAME = "mutants.yaml"
 #: What is left of a check's points: a share from 0 to 1, or some of them.
@@ -174,7 +174,7 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
         ) from None
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            "{path} cannot be used: {why}", path=str(path), why=reason(error)
+            "{path} cannot be used: {why}", path=str(path), why=Message.of(error)
         ) from None
     return found
 

@@ -17,7 +17,7 @@ from grader.cli import GRADER_FAILED, JUDGED, options, say
 from grader.exercise import View
 from grader.run import cores, levels, marks_of
 from grader.system import DEFAULT_EXERCISE, files, require_ros
-from grader.text import NOTHING, Message, joined, listed, msg, msg_many
+from grader.text import NOTHING, Message, joined, listed, msg
 from grader_class import batch, class_file, cluster, pool, pseudonyms, regrade
 from grader_class.batch import Order, Work
 from grader_class.class_file import CLASS, ClassFile
@@ -214,11 +214,11 @@ def _grade(args: Namespace, order: Order, found: Found, store: Store, messages: 
             order = replace(order, isolation=class_file.on_this_machine(order.isolation))
             class_file.note(args.out, order.isolation)
     if aside := store.set_aside(hand_in.id for hand_in in found.hand_ins):
-        note = msg_many(
+        note = msg(
             "{n:,} hand-in in {out} not among these submissions, and set aside in {aside}: {names}",
             "{n:,} hand-ins in {out} not among these submissions, and set aside in {aside}: "
             "{names}",
-            len(aside),
+            n=len(aside),
             out=args.out,
             aside=store.out / ASIDE,
             names=listed(aside),

@@ -16,7 +16,7 @@ from grader import Recording
 from grader.exercise import ErrorResult, RunSummary, View
 from grader.reports import Artifacts, ErrorReport, Report, points, render
 from grader.system import files
-from grader.text import LANGUAGES, Message, msg, shown, tr, translate
+from grader.text import Message, msg, shown, tr, translate, translations
 from grader_class.entry import Entry
 from grader_class.gradebook.grade import LONGEST, Grade, out_of
 from grader_class.page.thumb import Thumb
@@ -114,7 +114,7 @@ class _WithoutRecordings(Artifacts):
 
 def is_ours(comment: str) -> bool:
     """Whether the grader wrote a comment, in any language."""
-    return any(translate(MARK, language) in comment for language in LANGUAGES)
+    return any(translate(MARK, language) in comment for language in translations.LANGUAGES)
 
 
 def has_feedback(entry: Entry) -> bool:

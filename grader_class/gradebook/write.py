@@ -20,7 +20,7 @@ from typing import Any
 from grader.exercise import View
 from grader.reports import cell, table
 from grader.system import files
-from grader.text import Message, clip, listed, msg, plain_all, translate
+from grader.text import Message, clip, listed, msg, plain, translate
 from grader_class.entry import Entry
 from grader_class.find.joining import NOT_CLEAR, UNCLEAR
 from grader_class.gradebook import canvas, moodle
@@ -170,7 +170,7 @@ def _line(grade: Grade) -> Any:
         "checks": {check: verdict.score for check, verdict in entry.verdicts.items()},
         "message": str(entry.message),
     }
-    return plain_all(line)
+    return plain(line)
 
 
 # What an import lacks, and who is left out of it ------------------------------------------------

@@ -25,7 +25,7 @@ from grader.exercise import PAGE as REPORT
 from grader.exercise import SubmissionInfo
 from grader.recording import load_subject
 from grader.reports import outcome_text, points, templating
-from grader.text import NOTHING, Message, clip, msg, plain, plain_text, shown, tr, translate
+from grader.text import NOTHING, Message, clip, msg, plain, shown, tr, translate
 from grader_class.entry import SUBMISSIONS, Entry, State
 from grader_class.page.thumb import EDGE_PX, UNITS, Thumb
 
@@ -262,7 +262,7 @@ def _row(verdicts: Sequence[Verdict], lines: Sequence[_Line]) -> CheckRow:
     first_line, alike = _most_frequent(lines)
     return CheckRow(
         check=verdicts[0].check,
-        title=verdicts[0].title or plain_text(verdicts[0].check),
+        title=verdicts[0].title or Message.of(verdicts[0].check),
         max_score=verdicts[0].max_score,
         count=len(verdicts),
         passed=sum(verdict.passed for verdict in verdicts),

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from grader import Verdict
 from grader.reports import ErrorReport, Format, Report, pictures, title_of, word
-from grader.text import clip, clip_middle, msg, number, tr, translate
+from grader.text import clip, msg, number, tr, translate
 
 #: PrairieLearn refuses a file above 1 MB.
 LIMIT_BYTES = 1_000_000
@@ -41,7 +41,7 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
         "gradable": True,
         "score": _share(report),
         "message": clip("\n".join(lines), 1000),
-        "output": clip_middle(report.output, _OUTPUT_LIMIT),
+        "output": clip(report.output, _OUTPUT_LIMIT, keeps_end=True),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,
     }

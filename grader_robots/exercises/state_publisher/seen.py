@@ -11,7 +11,7 @@ import numpy as np
 from grader import Evidence, Finding, Recordings, Tolerances
 from grader.exercise import CheckFunction, error_first, how_it_ended
 from grader.recording import Floats
-from grader.text import Message, joined, msg, plain_text
+from grader.text import Message, joined, msg
 from grader_robots.robot_py.model import Joint
 from grader_robots.scene.motion import joints, odometry
 from grader_robots.scene.trace import TICK_S, RobotTrace
@@ -85,7 +85,7 @@ def listed(names: Iterable[str]) -> Message:
     few = ", ".join(each[:5])
     if len(each) > 5:
         return msg("{names} and {count} more", names=few, count=len(each) - 5)
-    return plain_text(few) if few else msg("nothing")
+    return Message.of(few) if few else msg("nothing")
 
 
 def rounded(value: float) -> float:
