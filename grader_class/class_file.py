@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
-from grader import Exercise, NotOffered, UsageError
+from grader import Exercise, UsageError, errors
 from grader.exercise import json_file
 from grader.recording import Clock
 from grader.run import levels
@@ -154,7 +154,7 @@ def on_this_machine(level: str) -> str:
     """
     try:
         return levels.here(level).level
-    except NotOffered as error:
+    except errors.NotOffered as error:
         raise UsageError(
             "{why}. To get it: {advice}. {or_else}",
             why=error.message,

@@ -27,7 +27,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from grader import Exercise, ExerciseError, SubmissionError
+from grader import Exercise, SubmissionError, errors
 from grader.reports import cell, table
 from grader.submission import MAX_SOURCE_BYTES, files_below, read_bounded
 from grader.system import files as whole_files
@@ -121,7 +121,9 @@ def given_files(exercise: Exercise) -> list[File]:
 
 def _below(path: Path) -> list[File]:
     if not path.exists():
-        raise ExerciseError("there is no {path}, which is to be known to everybody", path=str(path))
+        raise errors.ExerciseError(
+            "there is no {path}, which is to be known to everybody", path=str(path)
+        )
     if path.is_file():
         return [File(f"reference/{path.name}", path.read_bytes())]
     below = sorted(path.rglob("*.py"))

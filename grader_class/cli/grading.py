@@ -16,7 +16,7 @@ from grader import Exercise, UsageError, exercise_for, load_exercise
 from grader.cli import GRADER_FAILED, JUDGED, options, say
 from grader.exercise import View
 from grader.run import cores, levels, marks_of
-from grader.system import DEFAULT_EXERCISE, files, require_ros
+from grader.system import DEFAULT_EXERCISE, files, requirements
 from grader.text import NOTHING, Message, joined, listed, msg
 from grader_class import batch, class_file, cluster, pool, pseudonyms, regrade
 from grader_class.batch import Order, Work
@@ -37,7 +37,7 @@ def grade_class(args: Namespace) -> int:
     if args.scheduler:  # a worker works in another folder
         args.submissions, args.out = args.submissions.absolute(), args.out.absolute()
     else:
-        require_ros(args.time)
+        requirements.require_ros(args.time)
         if args.isolation:
             levels.require(args.isolation)
     messages = Console(stderr=True, highlight=False)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 
 from grader import Recording
-from grader.exercise import ErrorResult, RunSummary, View
+from grader.exercise import ErrorResult, View
 from grader.reports import Artifacts, ErrorReport, Report, points, render
 from grader.system import files
 from grader.text import Message, msg, shown, tr, translate, translations
@@ -85,12 +85,11 @@ class Feedback:
             error = ErrorResult("submission", entry.message, entry.max_score)
             return ErrorReport(error, entry.folder)
         result = entry.result
-        result = replace(
-            result,
-            run=_without_circumstances(result.run),
-            varied_runs=tuple(map(_without_circumstances, result.varied_runs)),
-            provenance=None,
+        # without what differs between equal runs
+        run, *varied = (
+            replace(run, wall_s=0.0, isolation="") for run in (result.run, *result.varied_runs)
         )
+        result = replace(result, run=run, varied_runs=tuple(varied), provenance=None)
         return Report(result, _WithoutRecordings(result, entry.folder), self.view)
 
 
@@ -120,8 +119,3 @@ def is_ours(comment: str) -> bool:
 def has_feedback(entry: Entry) -> bool:
     """Whether there is feedback: something was handed in, and the grader has not failed."""
     return entry.state in ("judged", "unusable")
-
-
-def _without_circumstances(run: RunSummary) -> RunSummary:
-    """Return a run without what differs between equal runs."""
-    return replace(run, wall_s=0.0, isolation="")

@@ -21,7 +21,6 @@ from urllib.parse import quote
 import jinja2
 
 from grader import Exercise, Result, Verdict
-from grader.exercise import PAGE as REPORT
 from grader.exercise import SubmissionInfo
 from grader.recording import load_subject
 from grader.reports import outcome_text, points, templating
@@ -69,7 +68,7 @@ class Student:
         """The address of its report, relative to the class page; '' where there is none."""
         if self.entry.result is None:
             return ""
-        return f"{SUBMISSIONS}/{quote(self.entry.id, safe='@+')}/{REPORT}"
+        return f"{SUBMISSIONS}/{quote(self.entry.id, safe='@+')}/{Result.PAGE}"
 
     @property
     def status(self) -> str:

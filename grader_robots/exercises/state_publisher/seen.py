@@ -9,7 +9,7 @@ from functools import wraps
 import numpy as np
 
 from grader import Evidence, Finding, Recordings, Tolerances
-from grader.exercise import CheckFunction, error_first, how_it_ended
+from grader.exercise import error_first, how_it_ended
 from grader.recording import Floats
 from grader.text import Message, joined, msg
 from grader_robots.robot_py.model import Joint
@@ -64,7 +64,9 @@ class RobotRun:
         return Evidence(round(tick * TICK_S, 3), note, x, y, tick=tick)
 
 
-def of_run(judge: Callable[[RobotRun, Tolerances], Finding]) -> CheckFunction:
+def of_run(
+    judge: Callable[[RobotRun, Tolerances], Finding],
+) -> Callable[[Recordings, Tolerances], Finding]:
     """A check of what the node did; where an error ended the run, that is what to mend first."""
 
     @wraps(judge)
