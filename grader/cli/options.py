@@ -133,21 +133,6 @@ def add_view(parser: argparse.ArgumentParser, whole: str) -> None:
     who.add_argument("--whole", action="store_true", help=whole)
 
 
-def add_of_outputs(parser: argparse.ArgumentParser) -> None:
-    """Declare the options for what is written of a whole class."""
-    parser.add_argument(
-        "--after-due",
-        action="store_true",
-        help=tr("students may see now what their exercise hides until it is due"),
-    )
-    parser.add_argument(
-        "--assignment",
-        default="",
-        metavar="NAME",
-        help=tr('what Canvas calls the exercise, as in "Spiral (4711)" (its title)'),
-    )
-
-
 def view_of(args: argparse.Namespace) -> View:
     """Return the reader of a result, by the options of `add_view`."""
     return "whole" if args.whole else "after_due" if args.after_due else "student"

@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml
 
-from grader.exercise.check import Check
+from grader.exercise.asking import Check
 from grader.exercise.exercise import Exercise
 from grader.exercise.places import DESCRIPTION
 from grader.exercise.policies import LatePolicy

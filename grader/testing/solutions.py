@@ -179,6 +179,12 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
     return found
 
 
+def right_solutions(exercise: Exercise) -> list[Path]:
+    """Return the paths of the right solutions of an exercise that names some."""
+    is_there = (exercise.folder / FILE_NAME).is_file()
+    return [each.path for each in read_solutions(exercise) if each.is_right] if is_there else []
+
+
 def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]:
     if not isinstance(data, dict) or not isinstance(data.get("right"), dict) or not data["right"]:
         raise Mistake(("right",), "expected names with paths of right solutions")

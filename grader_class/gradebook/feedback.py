@@ -15,11 +15,11 @@ from pathlib import PurePath
 from grader import Recording
 from grader.exercise import ErrorResult, View
 from grader.reports import Artifacts, ErrorReport, Report, points, render
-from grader.system import files
 from grader.text import Message, msg, shown, tr, translate, translations
 from grader_class.entry import Entry
 from grader_class.gradebook.grade import LONGEST, Grade, out_of
 from grader_class.page.thumb import Thumb
+from grader_class.zipping import zipped
 
 #: The time of a line in ROS's log; and an address in memory, in Python's format.
 _LOGGED_AT, _ADDRESS = re.compile(r"\[\d{9,11}\.\d{9}\]"), re.compile(r"\b0x[0-9a-f]{8,16}\b")
@@ -46,7 +46,7 @@ class Feedback:
         """
         suffix = PurePath(name).suffix.lower()
         if suffix == ".zip":
-            return files.zipped([(PAGE, self.page(entry))])
+            return zipped([(PAGE, self.page(entry))])
         return self.page(entry) if suffix in (".html", ".htm") else self.markdown(entry)
 
     def page(self, entry: Entry) -> bytes:

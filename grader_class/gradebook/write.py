@@ -34,6 +34,7 @@ from grader_class.gradebook.grade import (
     is_of_worksheet,
     participant,
 )
+from grader_class.zipping import zipped
 
 CSV, JSON_LINES, EXPORT = "gradebook.csv", "gradebook.jsonl", "export"
 MOODLE_WORKSHEET, MOODLE_GRADES = "moodle-grading-worksheet.csv", "moodle-grade-import.csv"
@@ -112,7 +113,7 @@ def _feedback(everybody: Sequence[Grade], feedback: Feedback) -> dict[str, bytes
 
     def made(members: Mapping[str, Grade]) -> bytes:
         each = ((name, feedback.file(name, members[name].entry)) for name in sorted(members))
-        return files.zipped(each) if members else b""
+        return zipped(each) if members else b""
 
     for_moodle, for_canvas = moodle.feedback_files(everybody), canvas.feedback_files(everybody)
     others = {f"{g.entry.id}.html": g for g in everybody if has_feedback(g.entry)}
