@@ -59,7 +59,10 @@ def of_code(path: Path) -> Iterator[Sentence]:
     if {"add_arguments", "main"} <= {getattr(node, "name", "") for node in tree.body}:
         yield (ast.get_docstring(tree) or "").partition("\n")[0]
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            if node.func.attr in ERRORS and node.keywords:  # errors.ExerciseError(...)
+                yield from (a.value for a in node.args if isinstance(a, ast.Constant))
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             texts = [a.value for a in node.args if isinstance(a, ast.Constant)]
             texts = [text for text in texts if isinstance(text, str)]
             is_sentence = node.func.id in ONE or (node.func.id in ERRORS and node.keywords)
