@@ -1,13 +1,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from grader.errors import CheckFailed as CheckFailed
-from grader.errors import ExerciseError as ExerciseError
+from grader import errors as errors
 from grader.errors import GraderError as GraderError
-from grader.errors import GraderFailure as GraderFailure
-from grader.errors import NotNow as NotNow
-from grader.errors import NotOffered as NotOffered
-from grader.errors import RecordingError as RecordingError
 from grader.errors import SubmissionError as SubmissionError
 from grader.errors import UsageError as UsageError
 from grader.exercise.check import Checks as Checks

@@ -10,7 +10,7 @@ from signal import Signals
 
 from grader.exercise import Diagnosis
 from grader.recording.observations import Raised, SourceLine, last_exception
-from grader.text import NOTHING, Message, clip, msg, plain_text, shown
+from grader.text import NOTHING, Message, clip, msg, shown
 from grader_diagnosis import lint_findings, lint_hints
 from grader_diagnosis.case import Case, diagnosed, line, of_kind, sentences
 from grader_diagnosis.known_exceptions import Hint
@@ -191,7 +191,7 @@ def _wanted(
             field=shown(field),
             part="z" if field == "angular" else "x",
         )
-    return plain_text(what.rstrip(".")), msg(
+    return Message.of(what.rstrip(".")), msg(
         "`ros2 interface show TYPE` lists the fields of a message."
     )
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from grader.cli import options
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
-from grader.exercise.result.result import ARTIFACTS, RESULT
+from grader.exercise.result.result import ARTIFACTS, Result
 from grader.exercise.result.visible import is_hidden
 from grader.reports import formats
 from grader.reports.report import Report
@@ -58,7 +58,7 @@ def add_arguments(parser: options.Parser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Show the results; see `grader.cli` for the exit codes."""
     checks = _checks(args) if args.exercise else ()
-    args.result = [path / RESULT if path.is_dir() else path for path in args.result]
+    args.result = [path / Result.FILE if path.is_dir() else path for path in args.result]
     if args.out is not None:
         files.check_is_no_input(args.out, _read(args))
     shown = [formats.read(path, checks, options.view_of(args)) for path in args.result]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from grader.system.strict_json import SPARSE, not_negative
-from grader.text.message import Message, plain_text
+from grader.text.message import Message
 
 
 @dataclass(frozen=True)
@@ -42,4 +42,4 @@ def convert_texts(made: object, *names: str) -> None:
     """Convert plain texts, of checks whose authors translate nothing, to messages."""
     for name in names:
         if isinstance(text := getattr(made, name), str):
-            object.__setattr__(made, name, plain_text(text))
+            object.__setattr__(made, name, Message.of(text))

@@ -36,7 +36,7 @@ class Artifacts:
 
     def __init__(self, result: Result, folder: Path, recordings: Recordings | None = None) -> None:
         self.folder = folder
-        self._paths = text.plain_all(dict(result.artifacts))
+        self._paths = text.plain(dict(result.artifacts))
         self._runs = 1 + len(result.varied_runs)
         self._made = recordings
 
@@ -150,7 +150,7 @@ class Report:
 
     def __init__(self, result: Result, artifacts: Artifacts, view: View = "student") -> None:
         seen = result if view == "whole" else student_view(result, view == "after_due")
-        shown: Result = text.plain_all(readable.few(seen), readable.RAW_LIMIT)
+        shown: Result = text.plain(readable.few(seen), readable.RAW_LIMIT)
         self._result = result
         self.made = datetime.now(UTC)
         self.artifacts = artifacts

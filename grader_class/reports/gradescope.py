@@ -13,7 +13,7 @@ from typing import Any, Final
 from grader import Verdict
 from grader.exercise import is_hidden
 from grader.reports import ErrorReport, Format, Report, canvas_uri
-from grader.text import clip_middle, msg, number, tr, translate
+from grader.text import clip, msg, number, tr, translate
 from grader_class.reports.lines import solid_words, verdict_lines
 
 _OUTPUT_LIMIT = 20_000
@@ -91,7 +91,7 @@ def _overview(report: Report) -> str:
         parts.append(f'<p><img src="{picture}" width="500" alt="{alt}"></p>')
     elif words := solid_words(report):
         parts.append(f"<p>{html.escape(words)}</p>")
-    output = clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    output = clip(report.output.strip("\n"), _OUTPUT_LIMIT, keeps_end=True)
     if output:
         printed = html.escape(tr("What the node printed:"))
         parts.append(f"<p>{printed}</p><pre>{html.escape(output)}</pre>")

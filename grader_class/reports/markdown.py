@@ -8,7 +8,7 @@ from typing import Final
 from grader import Verdict
 from grader.reports import ErrorReport, Format, Report, wording
 from grader.reports.wording import score_text, title_of, word
-from grader.text import clip_middle, msg, one_line, tr, translate
+from grader.text import clip, msg, one_line, tr, translate
 
 _SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
 #: Characters with a meaning in Markdown, anywhere or at the start of a line; a backslash escapes.
@@ -104,7 +104,7 @@ def _run(report: Report) -> str:
 
 def _output(report: Report) -> str:
     """Return the node's output in a fence that is longer than any in it."""
-    output = clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    output = clip(report.output.strip("\n"), _OUTPUT_LIMIT, keeps_end=True)
     if not output.strip():
         return ""
     longest = max((len(run) for run in re.findall(r"`+", output)), default=0)

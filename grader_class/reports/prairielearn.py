@@ -8,7 +8,7 @@ from typing import Any, Final
 from grader import Verdict
 from grader.reports import ErrorReport, Format, Report, canvas_uri
 from grader.reports.wording import title_of, word
-from grader.text import clip, clip_middle, msg, number, tr, translate
+from grader.text import clip, msg, number, tr, translate
 from grader_class.reports.lines import solid_words, verdict_lines
 
 #: PrairieLearn refuses a file above 1 MB.
@@ -43,7 +43,7 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
         "gradable": True,
         "score": _share(report),
         "message": clip("\n".join(lines), 1000),
-        "output": clip_middle(report.output, _OUTPUT_LIMIT),
+        "output": clip(report.output, _OUTPUT_LIMIT, keeps_end=True),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,
     }

@@ -249,7 +249,7 @@ def _view(report: Report, number: int, on_paper: bool) -> RunView:
         picture=recorded_uri(report, number) if number else canvas_uri(report),
         expected=expected(report, drawing.plots) if number == 0 else {},
         pins=pins(report, number),
-        output=text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
+        output=text.clip(output.strip("\n"), _OUTPUT_LIMIT, keeps_end=True),
         on_paper=on_paper,
     )
 

@@ -19,7 +19,7 @@ from typing import Any, Final, Self, TypeVar
 from grader.submission.examining import leftovers
 from grader.submission.trace import Obstacle
 from grader.system import limited, strict_json
-from grader.text.message import NOTHING, Message, msg, plain_text, reason
+from grader.text.message import NOTHING, Message, msg
 from ros_doubles import NotKnown
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
@@ -234,7 +234,7 @@ def problem_of(error: BaseException, own: Own) -> Obstacle:
     if isinstance(error, SyntaxError) and error.filename and own(error.filename):
         file, line = own(error.filename), error.lineno or 0
     if isinstance(error, NotKnownHere):
-        return Obstacle(kind, reason(error), file, line)
+        return Obstacle(kind, Message.of(error), file, line)
     if isinstance(error, NotKnown):
         what = msg("uses {name}, which the grader does not know", name=str(error))
         if error.is_of_others:
@@ -243,7 +243,7 @@ def problem_of(error: BaseException, own: Own) -> Obstacle:
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     raised = f"{type(error).__name__}: {' '.join(words.split())}"
     text = start_of(_ADDRESS.sub("at 0x...", raised), _LONGEST)
-    return Obstacle(kind, plain_text(text.rstrip(": ")), file, line)
+    return Obstacle(kind, Message.of(text.rstrip(": ")), file, line)
 
 
 def start_of(text: str, most: int) -> str:

@@ -15,10 +15,9 @@ from grader.recording.subject import Start
 from grader.scenes import playback
 from grader.scenes.playback import JudgedCheck, Playback, PlayedRun
 from grader.scenes.turtlesim import pages
-from grader.scenes.turtlesim.driving import drive
+from grader.scenes.turtlesim.driving import drive, pen, twist
 from grader.scenes.turtlesim.pages import first_difference
 from grader.scenes.turtlesim.replay import MOST_TICKS, WIPED, animate
-from grader.testing import pen, twist
 from tests.grader.driving import Spiral
 from tests.grader.scenes.turtlesim.traces import odd_traces
 from turtlesim_py.world.arena import TICK_NS
