@@ -24,8 +24,8 @@ ROS_PACKAGES: dict[str, list[str]] = {
 }
 
 
-#: Extensions of the grader without a program of their own.
-PACKAGES_BESIDE = ("grader_class", "grader_diagnosis")
+#: Packages without a program of their own.
+PACKAGES_BESIDE = ("grader_class", "grader_diagnosis", "ros_doubles")
 
 
 def data_files() -> list[tuple[str, list[str]]]:

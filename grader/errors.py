@@ -14,7 +14,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, ClassVar, Literal
 
-from grader.text.message import Message, as_message, msg
+from grader.text.message import Message, msg
 from grader.text.strings import without_controls
 
 #: Who has to act: the student, the exercise's author, the caller, the grader's maintainers.
@@ -39,7 +39,7 @@ class GraderError(Exception):
     def __init__(self, message: str | Message, /, **values: Any) -> None:
         if isinstance(message, str) and values:
             message = msg(message, **values)
-        self.message = as_message(message)
+        self.message = Message.of(message)
         super().__init__(self.message)
 
 

@@ -24,7 +24,7 @@ from grader.exercise.loading import load_exercise
 from grader.exercise.result.result import Result
 from grader.judging import AnyPath, judge, loaded
 from grader.recording.recording import Clock, Provenance, Recording, Recordings, now
-from grader.recording.subject import PACKAGE_SCENE, Role, Trace, load_subject
+from grader.recording.subject import PACKAGE_SCENE, Role, Trace
 from grader.run import inspecting, real_time, virtual_time
 from grader.run.finish import SimulatorLost, not_run, recording_of_nothing
 from grader.run.handover import Plan
@@ -33,6 +33,7 @@ from grader.run.opening import marks_of, open_submission
 from grader.run.processes import cores
 from grader.run.simulator_process import Audience
 from grader.scenes.scene import Scene
+from grader.scenes.subject import load_subject
 from grader.submission.private_copy import missing_neighbours
 from grader.submission.program_source import is_among
 from grader.submission.reader import Marks
@@ -171,7 +172,7 @@ def grade(
     """
     asked = _asked(submission, exercise)
     with _opened(submission, executable, asked) as opened:
-        recordings = _record(opened, asked, time, seed, progress)
+        recordings = record(opened, asked, time=time, seed=seed, progress=progress)
         return judge(recordings, asked, submission=opened.name)
 
 
@@ -190,35 +191,16 @@ def record(
     Args:
         hides_seed: whether the recordings leave out the seed.
     """
+    if time not in RUNNERS:
+        raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
+    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
+        raise UsageError(f"seed: expected a whole number, found {seed!r}")
     asked = _asked(submission, exercise)
     with _opened(submission, executable, asked) as opened:
-        return _record(opened, asked, time, seed, progress, hides_seed)
-
-
-def run_all(
-    submission: Submission,
-    exercise: Exercise,
-    run: Runner,
-    *,
-    seed: int | None = None,
-    progress: Progress | None = None,
-    hides_seed: bool = False,
-) -> Recordings:
-    """Run a submission from its usual start and, where the exercise asks for it, from elsewhere.
-
-    Args:
-        seed: chooses where the varied runs start; None for the exercise's seed.
-        hides_seed: whether the recordings leave it out.
-        progress: called with the simulated seconds of the nominal run.
-
-    Raises:
-        SubmissionError: there is no ROS in which it could run.
-        GraderFailure: a run could not be made, twice.
-    """
-    plans = plan(submission, exercise, seed, hides_seed)
-    origin = provenance(submission, exercise, seed, hides_seed)
-    with start(submission, plans, run, progress, origin) as runs:
-        return gather(runs)
+        plans = plan(opened, asked, seed, hides_seed)
+        origin = provenance(opened, asked, seed, hides_seed)
+        with start(opened, plans, runner(asked, time), progress, origin) as runs:
+            return gather(runs)
 
 
 def plan(
@@ -368,22 +350,6 @@ def gather(runs: Iterable[Finished]) -> Recordings:
     """Collect runs, in whatever order they ended, for judging."""
     nominal, *varied = (recording for _, recording in sorted(runs, key=lambda run: run[0]))
     return Recordings(nominal, tuple(varied))
-
-
-def _record(
-    submission: Submission,
-    exercise: Exercise,
-    time: Clock,
-    seed: int | None,
-    progress: Progress | None,
-    hides_seed: bool = False,
-) -> Recordings:
-    if time not in RUNNERS:
-        raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
-    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
-        raise UsageError(f"seed: expected a whole number, found {seed!r}")
-    run = runner(exercise, time)
-    return run_all(submission, exercise, run, seed=seed, progress=progress, hides_seed=hides_seed)
 
 
 def _asked(submission: AnyPath | Submission, exercise: AnyPath | Exercise | None) -> Exercise:

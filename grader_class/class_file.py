@@ -12,12 +12,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
-from grader import Exercise, NotOffered, UsageError
+from grader import Exercise, UsageError, errors
 from grader.exercise import json_file
 from grader.recording import Clock
 from grader.run import levels
 from grader.system import files
-from grader.text import Message, Text, msg
+from grader.text import Message, msg
 
 SCHEMA = "turtlesim-grader/class/v2"
 CLASS = "class.json"
@@ -122,7 +122,7 @@ class ClassFile:
         return found
 
 
-def _shown(value: object) -> Text:
+def _shown(value: object) -> str | Message:
     # no sentence, whatever it reads like: `real` is what one writes after --time
     return str(value)[:MOST_SHOWN] if value else msg("none")
 
@@ -154,7 +154,7 @@ def on_this_machine(level: str) -> str:
     """
     try:
         return levels.here(level).level
-    except NotOffered as error:
+    except errors.NotOffered as error:
         raise UsageError(
             "{why}. To get it: {advice}. {or_else}",
             why=error.message,

@@ -18,9 +18,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader import GraderFailure, UsageError
+from grader import UsageError, errors
 from grader.run import levels
-from grader.system import require
+from grader.system import requirements
 from grader.text import Message, joined, msg
 from grader_class import class_file, pool
 from grader_class.pool import Answer, Done, Task
@@ -75,7 +75,7 @@ def work(
         notify: called with messages for people.
         least: the lowest level of isolation that may be; '' for any.
     """
-    require("distributed", load=False)
+    requirements.require("distributed", load=False)
     with _connected(address) as client:
         if not client.nthreads():
             notify(msg("The scheduler has no worker. Waiting for one ..."))
@@ -209,7 +209,7 @@ def offer(terms: Terms) -> str:
         if level := levels.here(terms.level).level:
             return level
         why = msg("there is no isolation")
-    except GraderFailure as error:
+    except errors.GraderFailure as error:
         why = error.message
     raise UsageError(
         "{worker} cannot isolate submissions as this class asks: {why}", worker=worker, why=why

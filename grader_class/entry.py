@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from grader import Result, UsageError, Verdict
-from grader.exercise import RESULT, ROUNDING, json_file
+from grader.exercise import json_file
 from grader.system import files, strict_json
 from grader.text import NOTHING, Message, msg
 
@@ -158,7 +158,7 @@ class Entry:
         if entry.id != folder.name:
             raise UsageError("{path} is that of another hand-in", path=str(path))
         if entry.state == "judged":
-            path = folder / RESULT
+            path = folder / Result.FILE
             data = json_file.read(path, is_ours=True)
             entry = replace(entry, result=json_file.made(Result.from_json, path, data))
             json_file.made(entry._check_result, path, entry.result)
@@ -170,7 +170,7 @@ class Entry:
         if submitted is not None and submitted.id != self.id:
             raise ValueError(msg("is that of another hand-in"))
         is_same = origin is None or origin.judged.exercise_sha256 == self.exercise_sha256
-        if not is_same or abs(result.max_score - self.max_score) > ROUNDING:
+        if not is_same or abs(result.max_score - self.max_score) > Result.ROUNDING:
             raise ValueError(msg("is that of another exercise"))
 
     @classmethod

@@ -27,13 +27,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from grader import Exercise, ExerciseError, SubmissionError
-from grader.reports import cell, table
+from grader import Exercise, SubmissionError, errors
 from grader.submission import MAX_SOURCE_BYTES, files_below, read_bounded
 from grader.system import files as whole_files
 from grader.system import remove
-from grader.testing import FILE_NAME, read_solutions
+from grader.testing import right_solutions
 from grader_class.entry import Entry
+from grader_class.reports.csv import cell, table
+from grader_class.zipping import zipped
 
 SOURCE: Final = "source"
 MOST_FILES: Final = 60
@@ -113,15 +114,16 @@ def given_files(exercise: Exercise) -> list[File]:
     """Return the files that everybody was given, named by their origin."""
     starter = exercise.starter_files("").items()
     found = [File(f"starter/{name}", data) for name, data in starter if name.endswith(".py")]
-    solutions = read_solutions(exercise) if (exercise.folder / FILE_NAME).is_file() else ()
-    for each in solutions:
-        found += _below(each.path) if each.is_right else []
+    for path in right_solutions(exercise):
+        found += _below(path)
     return sorted(set(found))
 
 
 def _below(path: Path) -> list[File]:
     if not path.exists():
-        raise ExerciseError("there is no {path}, which is to be known to everybody", path=str(path))
+        raise errors.ExerciseError(
+            "there is no {path}, which is to be known to everybody", path=str(path)
+        )
     if path.is_file():
         return [File(f"reference/{path.name}", path.read_bytes())]
     below = sorted(path.rglob("*.py"))
@@ -151,7 +153,7 @@ def dolos(present: Sequence[tuple[Entry, list[File]]], given: Sequence[File]) ->
         for row in (["filename", "full_name", "created_at", "ignored"], *rows)
     ]
     members["info.csv"] = table(shown).encode("utf-8")
-    return whole_files.zipped(sorted(members.items()))
+    return zipped(sorted(members.items()))
 
 
 def _row(entry: Entry) -> list[str]:

@@ -15,7 +15,7 @@ from itertools import count
 from pathlib import Path
 
 from grader import Exercise, UsageError
-from grader.exercise import PAGE, RESULT, View
+from grader.exercise import View
 from grader.reports import Artifacts, Report, render
 from grader.system import files, remove
 from grader.text import listed, nearest
@@ -142,9 +142,9 @@ def _rename(entry: Entry, hand_in: HandIn, store: Store) -> None:
         shutil.copytree(entry.folder, made, symlinks=True, copy_function=link)
         named = replace(_as(entry, hand_in), folder=made)
         if named.result is not None:
-            named.result.put(made / RESULT)
+            named.result.put(made)
             report = Report(named.result, Artifacts(named.result, made), "whole")
-            files.put(made / PAGE, render("html", [report]).encode("utf-8"))
+            files.put(made / named.result.PAGE, render("html", [report]).encode("utf-8"))
         named.put()
         remove(target)
         made.rename(target)

@@ -20,15 +20,12 @@ from pathlib import Path
 from typing import IO
 
 from grader import (
-    CheckFailed,
     Exercise,
     GraderError,
-    NotNow,
-    NotOffered,
-    RecordingError,
     Recordings,
     SubmissionError,
     UsageError,
+    errors,
     judge,
     load_exercise,
     load_recordings,
@@ -37,8 +34,6 @@ from grader import (
     save_recordings,
 )
 from grader.exercise import (
-    PAGE,
-    RESULT,
     ErrorResult,
     SubmissionInfo,
     artifacts,
@@ -49,7 +44,7 @@ from grader.reports import Report, render
 from grader.run import levels, started_process
 from grader.submission import Submission
 from grader.system import files, make_folder, strict_json
-from grader.text import NOTHING, Message, msg, plain, use
+from grader.text import NOTHING, Message, msg, plain, translations
 from grader_class import export
 from grader_class.entry import Entry, HandIn, State
 from grader_class.find.joining import NOT_HANDED_IN, UNCLEAR
@@ -63,9 +58,9 @@ SHOWN = "/submission"
 SCARCE = (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
 #: How a task ends with an error: the first class that fits.
 _STATES: dict[type[GraderError], Ending] = {
-    CheckFailed: "exercise",
-    NotOffered: "unfit",
-    NotNow: "again",
+    errors.CheckFailed: "exercise",
+    errors.NotOffered: "unfit",
+    errors.NotNow: "again",
     GraderError: "failed",
 }
 
@@ -86,7 +81,7 @@ def serve() -> None:
 def done(task: Task) -> Answer:
     """Do a task, and return how it ended; every exception becomes an answer."""
     try:
-        use(task.language)
+        translations.use(task.language)
         levels.only(task.isolation)
         make(task)
     except GraderError as error:
@@ -206,7 +201,7 @@ def _loaded(task: Task) -> Recordings | Message | None:
             data = json_file.read(error, is_ours=True)
             return json_file.made(ErrorResult.from_json, error, data).message
         return load_recordings(task.run / RECORDING)
-    except (RecordingError, UsageError):
+    except (errors.RecordingError, UsageError):
         if task.path is None:
             raise
         return None
@@ -220,11 +215,11 @@ def _judge(
     whose = SubmissionInfo.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
     result = replace(result, artifacts=artifacts(recordings.nominal), handed_in=whose)
     files.make_folder(folder)
-    result.put(folder / RESULT)
+    result.put(folder)
     if not task.judge_only:
         put_artifacts(recordings.nominal, folder)
         page = render("html", [Report.of(result, folder, recordings, "whole")])
-        files.put(folder / PAGE, page.encode("utf-8"))
+        files.put(folder / result.PAGE, page.encode("utf-8"))
     _put(hand_in, exercise, folder, "judged", key=task.key)
 
 

@@ -23,7 +23,7 @@ from typing import Literal
 from grader.recording import Clock
 from grader.submission import LaunchAsked
 from grader.system import strict_json
-from grader.text import NOTHING, Message, Text, current, msg
+from grader.text import NOTHING, Message, msg, translations
 from grader_class.entry import HandIn
 
 
@@ -59,7 +59,7 @@ class Task:
     into: Path = Path()
     judge_only: bool = False
     isolation: str = ""
-    language: str = field(default_factory=current)
+    language: str = field(default_factory=translations.current)
     hides_seed: bool = False
     executable: str | None = None
     launch: LaunchAsked | None = None
@@ -164,7 +164,7 @@ class Process:
 
     def done(self, task: Task) -> Answer:
         """Have a task done, and return how it ended; the death of the process is an answer too."""
-        ended: Text = ""
+        ended: str | Message = ""
         answer = None
         for _ in range(_TRIES):
             if self.is_over:
@@ -203,7 +203,7 @@ class Process:
         finally:
             patience.cancel()
 
-    def end(self) -> Text:
+    def end(self) -> str | Message:
         """End the process, and return how it ended."""
         with self._lock:
             process, self._process = self._process, None

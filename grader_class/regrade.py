@@ -19,14 +19,14 @@ from pathlib import Path
 
 from grader import Exercise, UsageError, load_exercise
 from grader.exercise import View, not_followed
-from grader.reports import cell, table
 from grader.system import files, make_folder, remove
 from grader.system import versions as system
-from grader.text import Message, chained, msg, number
+from grader.text import Message, joined, msg, number
 from grader_class import batch, pool
 from grader_class.class_file import ClassFile
 from grader_class.entry import Entry, entries
 from grader_class.pool import Answer, Task
+from grader_class.reports.csv import cell, table
 from grader_class.store import STUDENTS, Store
 
 CHANGES = "changes.csv"
@@ -215,6 +215,6 @@ def _notes(of_class: ClassFile, exercise: Exercise, found: Sequence[Entry]) -> I
         yield msg(
             "They were judged by version {then} of the grader, and are now by {now}: what changes "
             "may come from that, too.",
-            then=chained(sorted(others)),
+            then=joined(sorted(others), msg(" and ")),
             now=system.grader_version(),
         )

@@ -14,21 +14,18 @@ from typing import Any
 
 from grader import Recording
 from grader.exercise import Diagnosis
-from grader.recording import (
+from grader.recording import Endpoint, EndpointKind, ProgramRun, Run
+from grader.recording.observations import (
     End,
     EndKind,
-    Endpoint,
-    EndpointKind,
     LintFinding,
     Observations,
-    ProgramRun,
     Raised,
-    Run,
     SourceLine,
     Standstill,
     last_exception,
-    load_subject,
 )
+from grader.scenes import load_subject
 from grader.text import NOTHING, Message, joined, msg, shown
 
 #: The endpoint that an end of the submission's needs on the other side.

@@ -11,7 +11,8 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from grader.exercise import Diagnosis
-from grader.recording import End, EndKind, Endpoint
+from grader.recording import Endpoint
+from grader.recording.observations import End, EndKind
 from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis import lint_findings, standstill
 from grader_diagnosis.case import OPPOSITE, Case, at, diagnosed, of_kind, since

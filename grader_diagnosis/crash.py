@@ -9,8 +9,8 @@ from dataclasses import replace
 from signal import Signals
 
 from grader.exercise import Diagnosis
-from grader.recording import Raised, SourceLine, thread_exception
-from grader.text import NOTHING, Message, clip, msg, plain_text, shown
+from grader.recording.observations import Raised, SourceLine, last_exception
+from grader.text import NOTHING, Message, clip, msg, shown
 from grader_diagnosis import lint_findings, lint_hints
 from grader_diagnosis.case import Case, diagnosed, line, of_kind, sentences
 from grader_diagnosis.known_exceptions import Hint
@@ -19,6 +19,12 @@ from grader_diagnosis.known_exceptions import Hint
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
 _RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
 _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
+#: As far as the line that begins with the exception's name.
+_IN_THREAD = re.compile(
+    r"^(?:Exception in thread [^\n]{0,200}:|[^\n]{0,200}: Error raised in [^\n]{0,400})\n"
+    r"(Traceback [^\n]*\n(?:[ \t][^\n]*\n)+[^\n]*)",
+    re.MULTILINE,
+)
 #: Python's suffix to some errors; the cause has the place in words of its own.
 _PLACE = re.compile(r" \([^()]*, line \d+\)$")
 #: So much of an exception's text is in the cause, which is to be one short sentence [characters].
@@ -185,7 +191,7 @@ def _wanted(
             field=shown(field),
             part="z" if field == "angular" else "x",
         )
-    return plain_text(what.rstrip(".")), msg(
+    return Message.of(what.rstrip(".")), msg(
         "`ros2 interface show TYPE` lists the fields of a message."
     )
 
@@ -252,6 +258,12 @@ def crashed(case: Case) -> Diagnosis | None:
         cause = cause.given(where=line(raised.place))
     found = diagnosed("crashed", cause, _help(raised, hint), place, _when(case, raised))
     return replace(found, cause=sentences(found.cause, _limit(case)))
+
+
+def thread_exception(text: str) -> Raised | None:
+    """Parse the first exception that ended a thread, as Python prints it."""
+    found = _IN_THREAD.search(text)
+    return last_exception(found[0]) if found else None
 
 
 def thread_crashed(case: Case) -> Diagnosis | None:

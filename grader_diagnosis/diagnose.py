@@ -17,7 +17,7 @@ from typing import Final
 from grader import Recordings, Verdict
 from grader.exercise import Diagnosis, costliest
 from grader.recording import Endpoint
-from grader.text import in_one_line, msg, shown
+from grader.text import msg, one_line, shown
 from grader_diagnosis import (
     connections,
     crash,
@@ -141,7 +141,7 @@ def _shown(found: Diagnosis) -> Diagnosis:
             function=shown(place.function),
             text=shown(place.text),
         )
-    cause, help_ = in_one_line(found.cause), in_one_line(found.help)
+    cause, help_ = one_line(found.cause), one_line(found.help)
     return replace(found, cause=cause, help=help_, place=place)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from grader import Exercise, Recordings, Verdict
 from grader.exercise import Diagnoser, Diagnosis
-from grader.recording import LintFinding, RanFile
+from grader.recording.observations import LintFinding, RanFile
 from grader_diagnosis.lint import lint, paths
 
 #: So many calls that were not reached are kept.

@@ -6,9 +6,10 @@ import re
 import sys
 
 from grader.exercise import Diagnosis
-from grader.recording import Raised
-from grader.text import NOTHING, Message, misspelt, msg, shown
+from grader.recording.observations import Raised
+from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis.case import Case, diagnosed, filled, of_kind, words_of
+from grader_diagnosis.misspelling import misspelt
 
 #: Python's suffix to some errors, which helps nobody.
 _PATH = re.compile(r" \((/[^()]*|unknown location)\)$")

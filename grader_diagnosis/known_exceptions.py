@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.recording import Caught, Raised, SourceLine
+from grader.recording.observations import Caught, Raised, SourceLine
 from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis.case import filled
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 
 from grader.exercise import Diagnosis
-from grader.recording import LintFinding, SourceLine
+from grader.recording.observations import LintFinding, SourceLine
 from grader.text import Message, msg, shown
 from grader_diagnosis.case import Case, diagnosed, diagnosed_by, first_of, line, of_kind
 from grader_diagnosis.standstill import hears_once, never_spins

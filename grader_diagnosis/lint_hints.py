@@ -12,12 +12,14 @@ from dataclasses import replace
 from itertools import chain
 from typing import Any
 
-from grader.recording import LintFinding, Raised, readable
-from grader.text import NOTHING, Message, as_message, misspelt, msg, shown
+from grader.recording import readable
+from grader.recording.observations import LintFinding, Raised
+from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis import known_exceptions
 from grader_diagnosis.case import Case, filled, function, of_kind, words_of
 from grader_diagnosis.known_exceptions import Hint
 from grader_diagnosis.lint_findings import in_other_order
+from grader_diagnosis.misspelling import misspelt
 
 #: So much of an exception's text is searched [characters].
 _LONGEST = 1000
@@ -65,7 +67,7 @@ def _not_global(case: Case, raised: Raised) -> Iterator[Hint]:
                 msg("`{name}` is assigned {outside} (line {line}) and in {here}: add `{word}`"),
                 outside=msg("at the top of the file") if is_of_module else msg("outside"),
                 line=finding.place.line,
-                here=as_message(function(raised.place)) or msg("this function"),
+                here=Message.of(function(raised.place)) or msg("this function"),
                 word=shown(finding.near),
             )
             yield replace(hint, place=None)

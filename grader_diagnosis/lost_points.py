@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from grader.exercise import Diagnosis
-from grader.recording import End, LintFinding
+from grader.recording.observations import End, LintFinding
 from grader.text import NOTHING, Message, msg, shown
 from grader_diagnosis.case import (
     Case,

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from grader.exercise import Diagnosis
-from grader.recording import NOT_THERE, SourceLine, Standstill
-from grader.text import NOTHING, Message, joined, msg, msg_many, shown
+from grader.recording import NOT_THERE
+from grader.recording.observations import SourceLine, Standstill
+from grader.text import NOTHING, Message, joined, msg, shown
 from grader_diagnosis.case import (
     Case,
     after,
@@ -237,7 +238,7 @@ def ends_early(case: Case) -> Diagnosis | None:
     sent = sum(end.used for end in case.observed.ends if end.kind == "publisher")
     what = msg("nothing")
     if sent:
-        what = msg_many("one message", "{n} messages", sent)
+        what = msg("one message", "{n} messages", n=sent)
     if last := case.last_line:
         what = msg(
             "{what}, and the last that it printed is: {last!r}",

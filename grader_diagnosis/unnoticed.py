@@ -6,8 +6,8 @@ import re
 from pathlib import PurePath
 
 from grader.exercise import Diagnosis
-from grader.recording import Caught, SourceLine, is_library
-from grader.text import NOTHING, Message, joined, msg, plain_text, shown
+from grader.recording.observations import Caught, SourceLine, is_library
+from grader.text import NOTHING, Message, joined, msg, shown
 from grader_diagnosis.case import Case, after, diagnosed, function, sentences
 from grader_diagnosis.known_exceptions import explain
 
@@ -155,7 +155,7 @@ def makes_timers(case: Case) -> Diagnosis | None:
 
 
 def _error(caught: Caught) -> Message:
-    text = explain(caught).text or plain_text(shown(caught.text).rstrip("."))
+    text = explain(caught).text or Message.of(shown(caught.text).rstrip("."))
     return joined([shown(caught.type), text] if text else [shown(caught.type)], ": ")
 
 

@@ -28,10 +28,9 @@ ROOT = Path(__file__).resolve().parents[1]
 HOPS = ROOT / "grader" / "scenes" / "cast" / "page" / "live"
 #: The functions whose argument is a sentence, or a pair of singular and plural.
 ONE = ("msg", "tr", "Rejected", "_misfit", "Mistake", "expect")
-PAIR, IN_CONTEXT = ("msg_many", "tr_many"), "in_context"
+MAY_BE_PAIR, IN_CONTEXT = ("msg", "tr"), "in_context"
 _STRING = r'"((?:[^"\\]|\\.)*)"'
-_IN_TEMPLATE = re.compile(rf"\btr\(\s*{_STRING}")
-_PAIR_IN_TEMPLATE = re.compile(rf"\btr_many\(\s*{_STRING},\s*{_STRING}")
+_IN_TEMPLATE = re.compile(rf"\btr\(\s*{_STRING}(?:,\s*{_STRING})?")
 _IN_SCRIPT = re.compile(rf"\b(?:t|key)\(\s*{_STRING}")
 #: The argument of an error is a sentence, too, if there are values for it.
 ERRORS = ("UsageError", "SubmissionError", "ExerciseError", "CheckFailed", "RecordingError")
@@ -60,14 +59,17 @@ def of_code(path: Path) -> Iterator[Sentence]:
     if {"add_arguments", "main"} <= {getattr(node, "name", "") for node in tree.body}:
         yield (ast.get_docstring(tree) or "").partition("\n")[0]
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            if node.func.attr in ERRORS and node.keywords:  # errors.ExerciseError(...)
+                yield from (a.value for a in node.args if isinstance(a, ast.Constant))
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             texts = [a.value for a in node.args if isinstance(a, ast.Constant)]
             texts = [text for text in texts if isinstance(text, str)]
             is_sentence = node.func.id in ONE or (node.func.id in ERRORS and node.keywords)
-            if is_sentence and texts:
-                yield texts[0]
-            elif node.func.id in PAIR and len(texts) > 1:
+            if node.func.id in MAY_BE_PAIR and len(texts) > 1:
                 yield texts[0], texts[1]
+            elif is_sentence and texts:
+                yield texts[0]
             elif node.func.id == IN_CONTEXT and len(texts) > 1:
                 yield f"{texts[0]} ({texts[1]})"
         if isinstance(node, ast.FunctionDef):
@@ -79,8 +81,8 @@ def of_code(path: Path) -> Iterator[Sentence]:
 def of_template(path: Path) -> Iterator[Sentence]:
     """Yield the sentences of a report's template."""
     text = path.read_text(encoding="utf-8")
-    yield from map(_literal, _IN_TEMPLATE.findall(text))
-    yield from ((_literal(one), _literal(many)) for one, many in _PAIR_IN_TEMPLATE.findall(text))
+    for one, many in _IN_TEMPLATE.findall(text):
+        yield (_literal(one), _literal(many)) if many else _literal(one)
 
 
 def of_script(path: Path) -> Iterator[Sentence]:

@@ -141,7 +141,7 @@ project() {
 packaging="LICENSE launch pyproject.toml interfaces/ament.py"
 # shellcheck disable=SC2086  # several words
 project . "installed-project $(sources $packaging turtlesim_py turtlesim_challenge grader \
-    grader_class grader_diagnosis grader_robots MANIFEST.in README.md package.xml setup.py)"
+    grader_class grader_diagnosis grader_robots ros_doubles MANIFEST.in README.md package.xml setup.py)"
 missing= # what a compilation lacks that was asked for
 if [ -z "${ROS_DISTRO:-}" ]; then
     ros=interfaces/${ROS:-jazzy}

@@ -21,7 +21,7 @@ STUDENTS = {"starter", "reference", "right"}
 #: Rooms of grader/ that are not the core.
 AROUND_THE_CORE = {"grader/exercises"}
 #: Folders whose classes have the names of ROS's.
-DOUBLES = ("tf2/",)
+DOUBLES = ("ros_doubles/", "tf2/")
 
 
 def sources(root: Path) -> dict[PurePosixPath, str]:
@@ -54,7 +54,7 @@ def double_names(trees: Mapping[PurePosixPath, ast.Module]) -> dict[str, list[Pu
 
 def is_double_of_ros(paths: list[PurePosixPath]) -> bool:
     """Whether a name occurs in at most one file that is no double of ROS's API."""
-    others = [p for p in paths if "doubles" not in p.parts and not str(p).startswith(DOUBLES)]
+    others = [p for p in paths if not str(p).startswith(DOUBLES)]
     return len(others) < 2
 
 

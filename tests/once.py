@@ -23,12 +23,12 @@ RUNS = (
     *(f"grader/{room}" for room in ("recording", "ros")),
     *(f"grader/{room}" for room in ("run", "scenes", "submission")),
     *("grader_robots/inspection", "grader_robots/scene"),
-    *("grader/system", "grader_diagnosis/lint", "interfaces", "tf2", "turtlesim_py"),
+    *("grader/system", "grader_diagnosis/lint", "interfaces", "ros_doubles", "tf2", "turtlesim_py"),
 )
 #: What decides how it is judged, as well.
 TREE = (
     *("grader", "grader_class", "grader_diagnosis", "grader_robots", "interfaces"),
-    *("tests/hand_ins.py",),
+    *("ros_doubles", "tests/hand_ins.py"),
     *("tests/submissions", "tf2", "turtlesim_challenge", "turtlesim_py"),
 )
 OLD_S = 24 * 3600.0  # of another tree: not under the feet of a suite that still runs

@@ -65,9 +65,9 @@ def name(seen):
     """
     say, key = msg("one {a}", a=msg("two")), "not seen"
     other.msg("a method's")
-    return msg_many("{n} pin", "{n} pins", 3), tr("three " "lines")
+    return msg("{n} pin", "{n} pins", n=3), tr("three " "lines")
 '''
-TEMPLATE = '{{ tr("one {a}", a=tr("two \\"x\\"")) }} {{ tr_many("{n} a", "{n} as", 2) }}'
+TEMPLATE = '{{ tr("one {a}", a=tr("two \\"x\\"")) }} {{ tr("{n} a", "{n} as", n=2) }}'
 PAGE = (
     '<p title="A title">Some\n  words <code>not these</code> 5 m/s</p><br>'
     '<p translate="no">Names <b>of</b></p><script>none()</script>'

@@ -24,8 +24,7 @@ ONE = {
     "frames of ours are hidden": (r"TracebackType\(", "run/lockstep/faults.py"),
     "endpoints are paired": (r"def compatible\(", "run/lockstep/registry.py"),
     "a page's templates are found": (r"jinja2\.Environment\(", "reports/page/templating.py"),
-    "a table is written": (r"csv\.writer\(", "reports/csv.py"),
-    "a zip is written": (r"ZipFile\([^)]*\"w\"", "system/files.py"),
+    "a zip is written": (r"ZipFile\([^)]*\"w\"", ""),
     "a run's limits are set": (r"class (RunLimits|Patience|CpuBudget)\b", "run/limits.py"),
 }
 #: The same below grader/run/ and in grader/submission/, but for what is confined there.

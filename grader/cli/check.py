@@ -14,7 +14,7 @@ from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
-from grader.exercise.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
+from grader.exercise.result.result import ARTIFACTS, FAMILY, Result
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.saving import WINDOW_PICTURE
@@ -108,7 +108,7 @@ def _show(
         left = tr(
             "No result is written: no {name} of this recording lies beside it. --json FILE writes "
             "one.",
-            name=RESULT,
+            name=Result.FILE,
         )
         print(for_terminal(left), file=sys.stderr)
     terminal.show_first(Report.of(result, folder, recordings), lambda: page)
@@ -133,7 +133,7 @@ def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) 
 
 def _is_same(file: Path, place: RecordingPlace) -> bool:
     """Whether a file is the result beside the recording."""
-    beside = place.folder / RESULT
+    beside = place.folder / Result.FILE
     return place.older is not None and file.exists() and file.samefile(beside)
 
 
@@ -141,12 +141,12 @@ def _rewrite(place: RecordingPlace, result: Result, recordings: Recordings) -> P
     """Replace the older result and its page; return the page, None if they cannot be written."""
     from grader.reports.formats import render
 
-    page = place.folder / PAGE
+    page = place.folder / Result.PAGE
     try:
-        for file in (place.folder / RESULT, page):
+        for file in (place.folder / Result.FILE, page):
             files.check_can_put(file)
         with files.sole_writer(place.folder):
-            result.put(place.folder / RESULT)
+            result.put(place.folder)
             report = Report.of(result, place.folder, recordings)
             files.put(page, render("html", [report]).encode("utf-8"))
     except UsageError as error:
@@ -156,7 +156,7 @@ def _rewrite(place: RecordingPlace, result: Result, recordings: Recordings) -> P
 
 
 def _report_left(why: Message) -> None:
-    left = tr("Left as they were: {files}: {why}", files=f"{RESULT}, {PAGE}", why=why)
+    left = tr("Left as they were: {files}: {why}", files=f"{Result.FILE}, {Result.PAGE}", why=why)
     print(for_terminal(left), file=sys.stderr)
 
 
@@ -194,7 +194,7 @@ def find_recording(given: Path) -> RecordingPlace:
         folder /= ARTIFACTS["recording"]
     elif not given.exists():
         return RecordingPlace(given, None)
-    beside = folder.parent / RESULT
+    beside = folder.parent / Result.FILE
     try:
         older = Result.read(beside) if beside.is_file() else None
     except UsageError:  # another program's, or damaged

@@ -24,8 +24,6 @@ from grader.exercise.loading import load_exercise
 from grader.exercise.result.result import (
     ARTIFACTS,
     FAMILY,
-    PAGE,
-    RESULT,
     Result,
     artifacts,
     put_artifacts,
@@ -161,13 +159,13 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     from grader.reports.formats import render
     from grader.reports.report import Report
 
-    report, page = Report.of(result, out, recordings), out / PAGE
+    report, page = Report.of(result, out, recordings), out / Result.PAGE
 
     def write() -> Path:
         saving.save_all(recordings, out / ARTIFACTS["recording"])
         put_artifacts(recordings.nominal, out)
         shown = render("html", [report]).encode("utf-8")  # where a scene fails, there is no result
-        result.put(out / RESULT)
+        result.put(out)
         if args.json:
             result.write(args.json)
         files.put(page, shown)
@@ -186,15 +184,15 @@ def _withdraw(out: Path, args: argparse.Namespace) -> None:
     if args.out is None:
         files.check_leads_nowhere_else(out, Path.cwd())
     files.check_leads_nowhere_else(out, path if path.is_dir() else path.parent)
-    files.check_can_put(out / RESULT, FAMILY, read)
-    for name in (ARTIFACTS["canvas"], ARTIFACTS["output"], PAGE):
+    files.check_can_put(out / Result.FILE, FAMILY, read)
+    for name in (ARTIFACTS["canvas"], ARTIFACTS["output"], Result.PAGE):
         files.check_can_put(out / name)
     files.check_can_fill(out / ARTIFACTS["recording"])
     if copy:
         files.check_writable(copy, FAMILY, read)
     if out.is_dir():
         with files.sole_writer(out):
-            files.clear(out / RESULT)
+            files.clear(out / Result.FILE)
     if copy:
         files.withdraw(copy)
 
@@ -205,7 +203,7 @@ def _make_folders(out: Path, copy: Path | None, held: ExitStack) -> None:
         files.make_folder(copy.parent)
     files.make_folder(out)
     held.enter_context(files.sole_writer(out))
-    files.clear(out / RESULT)  # another grading may have written one meanwhile
+    files.clear(out / Result.FILE)  # another grading may have written one meanwhile
     files.clear(out / ARTIFACTS["recording"])
 
 

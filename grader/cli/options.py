@@ -19,8 +19,8 @@ from grader.errors import GraderError, UsageError
 from grader.submission.request import LaunchAsked
 from grader.system import files
 from grader.system.extensions import DEFAULT_EXERCISE
-from grader.text.message import msg, msg_many
-from grader.text.translations import LANGUAGES, of_environment, tr, tr_many, use
+from grader.text.message import msg
+from grader.text.translations import LANGUAGES, of_environment, tr, use
 
 if TYPE_CHECKING:
     from grader.exercise.result.visible import View
@@ -46,7 +46,7 @@ ARGPARSE = (
     msg("expected at least one argument"),
     msg("expected at most one argument"),
     msg("ignored explicit argument %r"),
-    msg_many("expected %s argument", "expected %s arguments", 1),
+    msg("expected %s argument", "expected %s arguments", n=1),
 )
 
 #: Those of `grader.run.processes.levels.LEVELS`, which takes long to import.
@@ -82,12 +82,16 @@ class Parser(argparse.ArgumentParser):
         raise Misuse(message, self)
 
 
+def _tr_of_number(one: str, many: str, n: float) -> str:
+    return tr(one, many, n=n)
+
+
 def choose_language(words: Sequence[str]) -> None:
     """Use the language that a call asks for; else that of the user's locale.
 
     It is searched before the call is parsed: errors of the call are in this language as well.
     """
-    vars(argparse).update(_=tr, ngettext=tr_many)  # by which it translates its sentences
+    vars(argparse).update(_=tr, ngettext=_tr_of_number)  # by which it translates its sentences
     for word, after in zip_longest(words, words[1:], fillvalue=""):
         name, _, value = word.partition("=")
         language = value or after
@@ -127,21 +131,6 @@ def add_view(parser: argparse.ArgumentParser, whole: str) -> None:
         help=tr("what students see when the exercise is over; default: what they see before"),
     )
     who.add_argument("--whole", action="store_true", help=whole)
-
-
-def add_of_outputs(parser: argparse.ArgumentParser) -> None:
-    """Declare the options for what is written of a whole class."""
-    parser.add_argument(
-        "--after-due",
-        action="store_true",
-        help=tr("students may see now what their exercise hides until it is due"),
-    )
-    parser.add_argument(
-        "--assignment",
-        default="",
-        metavar="NAME",
-        help=tr('what Canvas calls the exercise, as in "Spiral (4711)" (its title)'),
-    )
 
 
 def view_of(args: argparse.Namespace) -> View:

@@ -8,12 +8,12 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from grader import reports
 from grader.cli import options
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
-from grader.exercise.result.result import ARTIFACTS, RESULT
+from grader.exercise.result.result import ARTIFACTS, Result
 from grader.exercise.result.visible import is_hidden
+from grader.reports import formats
 from grader.reports.report import Report
 from grader.system import files
 from grader.text.message import msg
@@ -31,7 +31,7 @@ def add_arguments(parser: options.Parser) -> None:
         metavar="RESULT.json",
         help=tr("a result, its folder, or what --error-json has written; several only with csv"),
     )
-    parser.add_argument("--format", choices=reports.names(), default="terminal", metavar="NAME")
+    parser.add_argument("--format", choices=formats.names(), default="terminal", metavar="NAME")
     parser.add_argument(
         "--out", type=Path, metavar="FILE", help=tr("write there, not to standard output")
     )
@@ -44,22 +44,24 @@ def add_arguments(parser: options.Parser) -> None:
         parser,
         tr("for teachers: also what the exercise hides from students; csv always is whole"),
     )
-    parser.add_argument(
-        "--github-summary",
-        action="store_true",
-        help=tr(
-            "append the result as Markdown to $GITHUB_STEP_SUMMARY as well, as students see it"
-        ),
-    )
+    parser.set_defaults(github_summary=False)
+    if "markdown" in formats.names():
+        parser.add_argument(
+            "--github-summary",
+            action="store_true",
+            help=tr(
+                "append the result as Markdown to $GITHUB_STEP_SUMMARY as well, as students see it"
+            ),
+        )
 
 
 def main(args: argparse.Namespace) -> int:
     """Show the results; see `grader.cli` for the exit codes."""
     checks = _checks(args) if args.exercise else ()
-    args.result = [path / RESULT if path.is_dir() else path for path in args.result]
+    args.result = [path / Result.FILE if path.is_dir() else path for path in args.result]
     if args.out is not None:
         files.check_is_no_input(args.out, _read(args))
-    shown = [reports.read(path, checks, options.view_of(args)) for path in args.result]
+    shown = [formats.read(path, checks, options.view_of(args)) for path in args.result]
     summary = _summary_file() if args.github_summary else None
     if args.format == "terminal" and args.out is None and len(shown) == 1:
         from rich.console import Console
@@ -72,24 +74,24 @@ def main(args: argparse.Namespace) -> int:
         else:
             terminal.show_error(only, Console())
     else:
-        content = reports.render(args.format, shown)
+        content = formats.render(args.format, shown)
         if args.out is not None:
             files.write(args.out, content)
         else:
             _print(content)
     if summary is not None:
         whole = args.whole
-        summed = [reports.read(path, checks, "student") for path in args.result] if whole else shown
-        content = "".join(reports.render("markdown", [each]) for each in summed)
+        summed = [formats.read(path, checks, "student") for path in args.result] if whole else shown
+        content = "".join(formats.render("markdown", [each]) for each in summed)
         with files.writing(summary), summary.open("a", encoding="utf-8") as file:
             file.write(content)
     return 0
 
 
 def _formats() -> str:
-    names = reports.names()
+    names = formats.names()
     width = max(map(len, names))
-    lines = (f"  {name:{width}}  {translate(reports.load(name).summary)}" for name in names)
+    lines = (f"  {name:{width}}  {translate(formats.load(name).summary)}" for name in names)
     return "\n".join((tr("formats:"), *lines))
 
 

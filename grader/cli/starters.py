@@ -16,7 +16,7 @@ from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.places import is_installed
 from grader.exercise.sheet import Start, sheet
-from grader.recording.subject import Subject
+from grader.scenes.subject import Subject
 from grader.submission.folder import NO_SOURCES
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import naming

@@ -8,14 +8,15 @@ from pathlib import Path
 from grader.cli import options
 from grader.cli.check import RecordingPlace, find_recording
 from grader.errors import RecordingError, UsageError
-from grader.exercise.result.result import ARTIFACTS, PAGE, RESULT
+from grader.exercise.result.result import ARTIFACTS, Result
 from grader.exercise.result.visible import View
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
-from grader.recording.subject import load_subject, scene_at_work
+from grader.recording.subject import scene_at_work
 from grader.reports import playback
 from grader.reports.report import Report
 from grader.scenes.playback import Playback
+from grader.scenes.subject import load_subject
 from grader.system import files
 from grader.text.message import Message, msg
 from grader.text.strings import for_terminal
@@ -64,7 +65,9 @@ def main(args: argparse.Namespace) -> int:
         files.check_writable(args.out)
         for given in options.inputs(args):  # no file that the page is made of is overwritten
             part = find_recording(given)
-            beside = (part.folder / name for name in (RESULT, PAGE, *ARTIFACTS.values()))
+            beside = (
+                part.folder / name for name in (Result.FILE, Result.PAGE, *ARTIFACTS.values())
+            )
             files.check_is_no_input(args.out, [given, *beside, *part.recording.rglob("*")])
     recordings = load_all(place.recording)
     render = load_subject(recordings.nominal.scene).player
@@ -87,10 +90,10 @@ def main(args: argparse.Namespace) -> int:
 
 def _not_played(place: RecordingPlace, recordings: Recordings) -> Message:
     scene = recordings.nominal.scene
-    page = place.folder / PAGE
+    page = place.folder / Result.PAGE
     instead = msg("look at {page}", page=page)
     if not page.is_file():
-        instead = msg("{page} beside its result shows it", page=PAGE)
+        instead = msg("{page} beside its result shows it", page=Result.PAGE)
     return msg(
         "a recording of the scene {scene!r} cannot be played; {instead}",
         scene=scene,

@@ -1,4 +1,3 @@
-from grader.exercise.asking import CheckFunction as CheckFunction
 from grader.exercise.places import installed as installed
 from grader.exercise.places import names as names
 from grader.exercise.result import json_file as json_file
@@ -6,10 +5,6 @@ from grader.exercise.result.diagnosis import Diagnoser as Diagnoser
 from grader.exercise.result.diagnosis import Diagnosis as Diagnosis
 from grader.exercise.result.diagnosis import costliest as costliest
 from grader.exercise.result.json_file import ErrorResult as ErrorResult
-from grader.exercise.result.result import PAGE as PAGE
-from grader.exercise.result.result import RESULT as RESULT
-from grader.exercise.result.result import ROUNDING as ROUNDING
-from grader.exercise.result.result import RunSummary as RunSummary
 from grader.exercise.result.result import SubmissionInfo as SubmissionInfo
 from grader.exercise.result.result import artifacts as artifacts
 from grader.exercise.result.result import put_artifacts as put_artifacts

@@ -7,22 +7,47 @@ limit, that one and those after it have none.
 from __future__ import annotations
 
 import json
+import re
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from grader.exercise.verdict import Finding, as_json
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 from grader.system import limited, strict_json
 from grader.system.limited import LimitHit, WorkLimits
-from grader.text.message import NOTHING, Message
+from grader.text.message import NOTHING, Message, joined, msg
 
 CheckFunction = Callable[[Recordings, Mapping[str, Any]], Finding]
-#: Describes the exception that a check raised.
-DescribeError = Callable[[CheckFunction, BaseException], str]
+#: The name of the package that is made for a folder, before its number.
+PACKAGE = "_grader_exercise_"
+CHECKS = "checks.py"
 #: Of all checks of a judging together; an ordinary judging needs 0.04 s.
 LIMITS = WorkLimits(cpu_s=60.0, wall_s=180.0)
+#: Of a check that judges files, why a parrot passes it.
+OF_FILES: Final = "it is in the files, whatever a program sends"
+
+
+@dataclass(frozen=True)
+class Check:
+    """A named check function and the checks that must have passed before it.
+
+    Attributes:
+        title: the first line of its docstring.
+        rubric: the rest of it: what is measured and how partial credit is computed, for students;
+            `{name}` stands for a tolerance, `{name%}` for one in percent.
+        parrot: why a program passes it that only repeats what a right one has sent; '' where none
+            may (`grader.testing.parrot`).
+    """
+
+    name: str
+    title: Message
+    function: CheckFunction
+    depends_on: tuple[str, ...]
+    rubric: Message = NOTHING
+    parrot: str = ""
 
 
 class NoFinding(Exception):
@@ -71,18 +96,14 @@ class Answers:
 
 
 def ask(
-    functions: Mapping[str, CheckFunction],
-    after: Mapping[str, Sequence[str]],
+    checks: Sequence[Check],
     recordings: Recordings,
     tolerances: Mapping[str, Any],
-    describe: DescribeError | None = None,
     rounds: int = 1,
 ) -> list[Answers]:
     """Run checks in their order; one that depends on one that fails is not run.
 
     Args:
-        after: of each check those that have to pass before.
-        describe: an exception of a check for people; else `where_it_failed`.
         rounds: how often all of them are run, in the same process.
 
     Returns:
@@ -92,11 +113,11 @@ def ask(
     def work() -> Iterator[bytes]:
         for number in range(rounds):
             has_passed: dict[str, bool] = {}
-            for name, function in functions.items():
-                has_passed[name] = False
-                if all(has_passed.get(each, True) for each in after[name]):
+            for check in checks:
+                name, has_passed[check.name] = check.name, False
+                if all(has_passed.get(each, True) for each in check.depends_on):
                     yield json.dumps([number, name, None]).encode()
-                    answer = _run(function, recordings, tolerances, describe or where_it_failed)
+                    answer = _run(check.function, recordings, tolerances)
                     yield json.dumps([number, name, answer]).encode()
                     found = answer.get("finding")
                     has_passed[name] = bool(found and found["judged"] and found["share"] >= 1)
@@ -118,7 +139,6 @@ def _run(
     function: CheckFunction,
     recordings: Recordings,
     tolerances: Mapping[str, Any],
-    describe: DescribeError,
 ) -> dict[str, Any]:
     """Run one check, in the copy; return its answer as JSON."""
     try:
@@ -132,19 +152,70 @@ def _run(
     except RecursionError:
         return {"say": "limit", "text": limited.TOO_DEEP.serialise()}
     except BaseException as error:  # SystemExit too: a check must not end the others unjudged
-        return {"say": "wrong", "text": describe(function, error)}
+        return {"say": "wrong", "text": str(describe(error, _file(function).parent))}
     is_alone = isinstance(recordings, NominalAlone)
     try:
         data = as_json(finding, 1 if is_alone else len(list(recordings)))
     except (TypeError, ValueError) as error:
-        return {"say": "wrong", "text": f"{Path(function.__code__.co_filename).name}: {error}"}
+        return {"say": "wrong", "text": f"{_file(function).name}: {error}"}
     return {"say": "finding", "finding": data}
 
 
-def where_it_failed(function: CheckFunction, error: BaseException) -> str:
-    """Describe an exception in a check, with the last line of the check's file."""
-    file = function.__code__.co_filename
+def _file(function: CheckFunction) -> Path:
+    return Path(function.__code__.co_filename)
+
+
+def describe(error: BaseException, folder: Path, file: str = "") -> Message:
+    """Describe an exception in the files of a folder: 'checks.py, line 3: NameError: ...'.
+
+    Args:
+        file: of an error without a place.
+    """
+    name = type(error).__name__
+    if isinstance(error, SyntaxError) and error.filename:
+        return msg(
+            "{file}, line {line}: {name}: {what}",
+            file=_shown(error.filename, folder),
+            line=str(error.lineno),
+            name=name,
+            what=error.msg,
+        )
+    text = Message.of(f"{name}: {error}" if str(error) else name)
+    if isinstance(error, ImportError) and (absent := _absent(error, folder)):
+        text = msg(
+            "{name}: there is no {absent} beside {checks}", name=name, absent=absent, checks=CHECKS
+        )
     frames = traceback.extract_tb(error.__traceback__)
-    lines = [frame.lineno for frame in frames if frame.filename == file]
-    where = f"{Path(file).name}, line {lines[-1]}: " if lines else ""
-    return f"{where}{type(error).__name__}: {error}".rstrip(": ")
+    inside = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
+    missing = getattr(error, "name", None) if isinstance(error, ModuleNotFoundError) else None
+    if missing and (folder / f"{missing}.py").is_file():
+        way = msg(
+            "A file beside {checks} is imported by `from . import {missing}`",
+            checks=CHECKS,
+            missing=missing,
+        )
+        text = joined([text, way], ". ")
+    if not inside:
+        return joined([file, text], ": ") if file else text
+    return msg(
+        "{file}, line {line}: {what}",
+        file=_shown(inside[-1].filename, folder),
+        line=str(inside[-1].lineno),
+        what=text,
+    )
+
+
+def _absent(error: ImportError, folder: Path) -> str:
+    """Return the missing file beside checks.py that was imported; '' for other errors."""
+    package, _, module = (error.name or "").partition(".")
+    if not package.startswith(PACKAGE):
+        return ""
+    named = re.match(r"cannot import name '(\w+)'", str(error))  # `name_from` is new in 3.12
+    module = module or (named[1] if named else "")
+    is_there = (folder / f"{module}.py").is_file() or (folder / module).is_dir()
+    return "" if not module or "." in module or is_there else f"{module}.py"
+
+
+def _shown(file: str, folder: Path) -> str:
+    path = Path(file)
+    return str(path.relative_to(folder)) if path.is_relative_to(folder) else file

@@ -17,17 +17,20 @@ from typing import Annotated, Any
 
 from grader.errors import ExerciseError
 from grader.exercise import places, policies
+from grader.exercise.asking import CHECKS
 from grader.exercise.cases import RunCase, read_cases
 from grader.exercise.check import Checks
 from grader.exercise.draws import Draw, read_draws
 from grader.exercise.exercise import INSPECTIONS, INSPECTS, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
-from grader.exercise.policies import Amount, amount
+from grader.exercise.policies import Amount
 from grader.recording.recording import MOST_PROGRAMS
-from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
+from grader.recording.subject import DEFAULT_SCENE
 from grader.scenes.scene import Limits, Scene
+from grader.scenes.subject import Subject, load_subject
 from grader.system import content, extensions
 from grader.system.extensions import SCENES
+from grader.system.strict_json import above_zero
 from grader.system.yaml_file import Mistake, check_known, decoded, expect
 from grader.text.message import authored
 
@@ -60,14 +63,8 @@ def _a_program(name: str) -> str:
     return name
 
 
-def _above_zero(number: float) -> float:
-    if not amount(number):
-        raise ValueError("expected a number above 0, found 0")
-    return float(number)
-
-
 _Program = Annotated[str, _a_program]
-_AboveZero = Annotated[float, _above_zero]
+_AboveZero = Annotated[float, above_zero]
 
 
 @dataclass(frozen=True)
@@ -250,7 +247,7 @@ def _checks(
     from grader.exercise.expect.checks import add_checks  # here: most exercises have no such part
     from grader.exercise.known_types import KnownTypes
 
-    has_own = (place.folder / places.CHECKS).is_file()
+    has_own = (place.folder / CHECKS).is_file()
     checks = places.import_checks(place).copy() if has_own else Checks()
     return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s, draws)
 

@@ -9,43 +9,21 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Any, Final
+from dataclasses import replace
+from typing import Any
 
 from grader.errors import CheckFailed
 from grader.exercise import asking
-from grader.exercise.asking import Answers, CheckFunction, NoFinding, NotReached
+from grader.exercise.asking import Answers, Check, CheckFunction, NoFinding, NotReached
 from grader.exercise.verdict import Finding, Verdict
 from grader.recording.recording import NominalAlone, NotOver, Recording, Recordings
-from grader.text.message import NOTHING, Message, authored, chained, msg, reason
+from grader.text.message import NOTHING, Message, authored, chained, msg
 
 Tolerances = Mapping[str, Any]
 #: Raises a ValueError where a tolerance cannot be used.
 Validator = Callable[[Any], None]
 
 
-@dataclass(frozen=True)
-class Check:
-    """A named check function and the checks that must have passed before it.
-
-    Attributes:
-        title: the first line of its docstring.
-        rubric: the rest of it: what is measured and how partial credit is computed, for students;
-            `{name}` stands for a tolerance, `{name%}` for one in percent.
-        parrot: why a program passes it that only repeats what a right one has sent; '' where none
-            may (`grader.testing.parrot`).
-    """
-
-    name: str
-    title: Message
-    function: CheckFunction
-    depends_on: tuple[str, ...]
-    rubric: Message = NOTHING
-    parrot: str = ""
-
-
-#: Of a check that judges files, why a parrot passes it.
-OF_FILES: Final = "it is in the files, whatever a program sends"
 #: Returns the finding of a check by its name; see `grader.exercise.asking.Answers`.
 Ask = Callable[[str], Finding]
 
@@ -95,7 +73,7 @@ class Checks:
                 if name in tolerances:
                     validate(tolerances[name])
             except ValueError as error:
-                return name, reason(error)
+                return name, Message.of(error)
         return None
 
     def __call__(
@@ -167,14 +145,11 @@ def answers(
     checks: Checks,
     points: Mapping[str, float],
     tolerances: Tolerances,
-    describe: asking.DescribeError | None = None,
     rounds: int = 1,
 ) -> list[Answers]:
     """Run the checks that the exercise gives points for; see `asking.ask`."""
     asked = [check for check in checks if check.name in points]
-    functions = {check.name: check.function for check in asked}
-    after = {check.name: check.depends_on for check in asked}
-    return asking.ask(functions, after, recordings, tolerances, describe, rounds)
+    return asking.ask(asked, recordings, tolerances, rounds)
 
 
 def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:

@@ -13,7 +13,7 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypedDict
+from typing import Annotated, Any, Literal
 
 from grader.errors import ExerciseError
 from grader.exercise.cases import RunCase
@@ -21,8 +21,9 @@ from grader.exercise.check import Checks
 from grader.exercise.draws import Draw, Drawn, draw
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
-from grader.recording.subject import Endpoint, Role, Start, Subject, load_subject
+from grader.recording.subject import Endpoint, Role, Start
 from grader.scenes.scene import Limits, Scene
+from grader.scenes.subject import Subject, load_subject
 from grader.system.strict_json import not_negative
 from grader.text.message import NOTHING, Message
 
@@ -34,18 +35,6 @@ INSPECTIONS = "inspections"
 CPU = "cpu_s"
 #: ... and, of `varied_runs`, whether they start elsewhere for each student.
 PER_STUDENT = "per_student"
-
-
-class Opening(TypedDict, total=False):
-    """Arguments of `grader.run.opening.open_submission`."""
-
-    is_started: bool
-    programs: tuple[str, ...]
-    inspections: tuple[str, ...] | None
-    cpu_s: float
-    interfaces: Mapping[str, str]
-    name: str
-    roles: tuple[Role, ...]
 
 
 #: A turtle that drives so many times as fast crosses the window in a tick or two.
@@ -182,9 +171,9 @@ class Exercise:
         return set[Role]().union(*(case.roles for case in self.cases))
 
     @property
-    def opening(self) -> Opening:
-        """The arguments for opening a submission to it."""
-        found: Opening = {}
+    def opening(self) -> dict[str, Any]:
+        """The arguments of `grader.run.opening.open_submission` for it."""
+        found = {}
         if self.starter is not None and self.starter.suffix == ".py":
             found["name"] = self.starter.stem
         elif self.roles:  # it is about any node, not about the challenge's

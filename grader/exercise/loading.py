@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
@@ -14,10 +15,12 @@ from typing import Any
 from grader.errors import ExerciseError
 from grader.exercise import cases, places
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, build
+from grader.exercise.comparing import is_number
 from grader.exercise.draws import DRAW
 from grader.exercise.exercise import CPU, INSPECTIONS, INSPECTS, Exercise
 from grader.exercise.places import DESCRIPTION, Place, names
 from grader.exercise.translated import read_translations, translate
+from grader.system.extensions import DEFAULT_EXERCISE
 from grader.system.yaml_file import (
     Mistake,
     YamlFile,
@@ -25,10 +28,9 @@ from grader.system.yaml_file import (
     decoded,
     did_you_mean,
     expect,
-    is_amount,
     read_yaml,
 )
-from grader.text.message import reason
+from grader.text.message import Message
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
@@ -40,7 +42,7 @@ KEYS = (
 TRANSLATED = {"title": "title", "task": "task", EXPECT: "checks"}
 
 
-def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
+def load_exercise(name_or_path: str | os.PathLike[str] = DEFAULT_EXERCISE) -> Exercise:
     """Load an exercise.
 
     Args:
@@ -111,7 +113,7 @@ def _naming(path: Path) -> Iterator[None]:
         yield
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            "{path} is not an exercise: {why}", path=str(path), why=reason(error)
+            "{path} is not an exercise: {why}", path=str(path), why=Message.of(error)
         ) from error
 
 
@@ -204,9 +206,9 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
     return merged
 
 
-def _alike(value: object, example: object) -> bool:
+def _alike(value: Any, example: object) -> bool:
     if isinstance(example, list):
         return isinstance(value, list) and all(_alike(v, example[0]) for v in value)
-    if isinstance(example, bool) or not isinstance(example, int | float):
+    if not is_number(example):
         return type(value) is type(example)
-    return is_amount(value)
+    return is_number(value) and 0 <= value < math.inf

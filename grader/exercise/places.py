@@ -13,7 +13,6 @@ import os
 import re
 import sys
 import threading
-import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
@@ -25,15 +24,14 @@ from pathlib import Path
 from types import ModuleType
 
 from grader.errors import ExerciseError
+from grader.exercise.asking import CHECKS, PACKAGE, describe
 from grader.exercise.check import Checks
 from grader.system import extensions
 from grader.system.extensions import EXERCISES, described
-from grader.text.message import NOTHING, Message, joined, msg, plain_text
+from grader.text.message import NOTHING, Message, msg
 
-DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
+DESCRIPTION = "exercise.yaml"
 
-#: The name of the package that is made for a folder, before its number.
-_PACKAGE = "_grader_exercise_"
 _numbers = count(1)
 
 
@@ -133,7 +131,7 @@ def import_checks(place: Place) -> Checks:
         name = f"{place.package}.checks"
         module = _imported(name, place)
     else:
-        package = f"{_PACKAGE}{next(_numbers)}"
+        package = f"{PACKAGE}{next(_numbers)}"
         with contained(), _without_bytecode():
             importlib.invalidate_caches()
             module = _imported_folder(package, place)
@@ -236,62 +234,6 @@ def _as_exercise_errors(folder: Path, file: str) -> Iterator[None]:
         if isinstance(error, KeyboardInterrupt):
             raise
         raise ExerciseError(describe(error, folder, file)) from error
-
-
-def describe(error: BaseException, folder: Path, file: str = "") -> Message:
-    """Describe an exception in the files of a folder: 'checks.py, line 3: NameError: ...'.
-
-    Args:
-        file: of an error without a place.
-    """
-    name = type(error).__name__
-    if isinstance(error, SyntaxError) and error.filename:
-        return msg(
-            "{file}, line {line}: {name}: {what}",
-            file=_shown(error.filename, folder),
-            line=str(error.lineno),
-            name=name,
-            what=error.msg,
-        )
-    text = plain_text(f"{name}: {error}" if str(error) else name)
-    if isinstance(error, ImportError) and (absent := _absent(error, folder)):
-        text = msg(
-            "{name}: there is no {absent} beside {checks}", name=name, absent=absent, checks=CHECKS
-        )
-    frames = traceback.extract_tb(error.__traceback__)
-    inside = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
-    missing = getattr(error, "name", None) if isinstance(error, ModuleNotFoundError) else None
-    if missing and (folder / f"{missing}.py").is_file():
-        way = msg(
-            "A file beside {checks} is imported by `from . import {missing}`",
-            checks=CHECKS,
-            missing=missing,
-        )
-        text = joined([text, way], ". ")
-    if not inside:
-        return joined([file, text], ": ") if file else text
-    return msg(
-        "{file}, line {line}: {what}",
-        file=_shown(inside[-1].filename, folder),
-        line=str(inside[-1].lineno),
-        what=text,
-    )
-
-
-def _absent(error: ImportError, folder: Path) -> str:
-    """Return the missing file beside checks.py that was imported; '' for other errors."""
-    package, _, module = (error.name or "").partition(".")
-    if not package.startswith(_PACKAGE):
-        return ""
-    named = re.match(r"cannot import name '(\w+)'", str(error))  # `name_from` is new in 3.12
-    module = module or (named[1] if named else "")
-    is_there = (folder / f"{module}.py").is_file() or (folder / module).is_dir()
-    return "" if not module or "." in module or is_there else f"{module}.py"
-
-
-def _shown(file: str, folder: Path) -> str:
-    path = Path(file)
-    return str(path.relative_to(folder)) if path.is_relative_to(folder) else file
 
 
 @contextmanager

@@ -13,10 +13,10 @@ from typing import Final
 from grader.exercise.verdict import Finding
 from grader.recording.observations import Raised, last_exception
 from grader.recording.recording import Provenance, Recording, Recordings
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from grader.submission.error_texts import described
 from grader.submission.trace import Obstacle, PackageTrace
-from grader.text.message import NOTHING, Message, joined, msg, plain_text
+from grader.text.message import NOTHING, Message, joined, msg
 from grader.text.strings import shown
 
 #: Conditions that are left out while they are off, with that value.
@@ -57,7 +57,7 @@ def _said(raised: Raised) -> Message:
     """Return an exception with its place: 'NameError: ... (a.py, line 3)'."""
     error, place = shown(f"{raised.type}: {raised.text}").rstrip(".: "), raised.place
     if place is None:
-        return plain_text(error)
+        return Message.of(error)
     file = shown(PurePath(place.file).name)
     return joined([error, msg(" ({file}, line {line})", file=file, line=str(place.line))])
 

@@ -15,15 +15,15 @@ from typing import Any
 
 import yaml
 
-from grader.exercise.check import Check
+from grader.exercise.asking import Check
 from grader.exercise.exercise import Exercise
 from grader.exercise.places import DESCRIPTION
 from grader.exercise.policies import LatePolicy
-from grader.recording.subject import Subject
 from grader.scenes.scene import Scene
+from grader.scenes.subject import Subject
 from grader.text.message import chained, joined, msg
 from grader.text.strings import points
-from grader.text.translations import current, tr, tr_many, translate
+from grader.text.translations import current, tr, translate
 
 _TOLERANCE = re.compile(r"\{(?P<name>\w+)(?P<percent>%?)\}")
 #: A line of exercise.yaml in a part: blanks, key, value, perhaps a comment.
@@ -72,7 +72,7 @@ def _judged(exercise: Exercise, subject: Subject) -> Iterator[str]:
     for check, worth in listed:
         rows.append(_row(points(worth), translate(check.title), f"`{check.name}`"))
     if number := len(hidden):
-        what = tr_many("a check that no report shows", "{n} checks that no report shows", number)
+        what = tr("a check that no report shows", "{n} checks that no report shows", n=number)
         rows.append(f"| {points(sum(hidden))} | {what} | |")
     yield "\n".join(rows)
     shown = [check for check, _ in listed]
@@ -178,28 +178,28 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
             rests=rests if limits.rest_s else "",
             **times,
         )
-    elsewhere = tr_many(
+    elsewhere = tr(
         "One more run starts elsewhere, {nearest_m:g} to {farthest_m:g} m from the usual place: a "
         "program that reads the pose works there too, one that counts its steps does not.",
         "{n} more runs start elsewhere, {nearest_m:g} to {farthest_m:g} m from the usual place: a "
         "program that reads the pose works there too, one that counts its steps does not.",
-        varied.count,
+        n=varied.count,
         nearest_m=varied.nearest_m,
         farthest_m=varied.farthest_m,
     )
-    others = tr_many(
+    others = tr(
         "In one more run other nodes do something else, or yours has other arguments.",
         "In {n} more runs other nodes do something else, or yours has other arguments.",
-        len(exercise.cases) - 1,
+        n=len(exercise.cases) - 1,
     )
-    otherwise = tr_many(
+    otherwise = tr(
         "In {n} more run {the_thing} starts elsewhere, or drives and turns faster or slower than "
         "it is commanded: a program that reads the pose works there too, one that counts steps or "
         "seconds does not.",
         "In {n} more runs {the_thing} starts elsewhere, or drives and turns faster or slower than "
         "it is commanded: a program that reads the pose works there too, one that counts steps or "
         "seconds does not.",
-        varied.count,
+        n=varied.count,
         the_thing=translate(subject.the_thing),
     )
     drawn = tr(

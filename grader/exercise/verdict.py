@@ -7,8 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
-from grader.system.strict_json import OURS, SPARSE, from_json, not_negative, to_json
-from grader.text.message import NOTHING, Message, plain_text
+from grader.recording.evidence import Evidence as Evidence
+from grader.recording.evidence import convert_texts
+from grader.system.strict_json import OURS, SPARSE, from_json, to_json
+from grader.text.message import NOTHING, Message
 
 Status = Literal["passed", "failed", "not_judged"]
 #: What students see of a check: all of it; all of it, when the exercise is over, and until then
@@ -20,35 +22,6 @@ def _a_share(number: float) -> float:
     if not -1e-9 <= number <= 1 + 1e-9:
         raise ValueError(f"expected a number from 0 to 1, found {number!r}")
     return number
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """A moment of the recording that a verdict points to.
-
-    Attributes:
-        time_s: when, in simulated seconds.
-        note: what happened then.
-        x, y: where it happened [m]; None for what has no place.
-        run: 0 for the nominal run, 1, 2, ... for the varied ones.
-        tick: when, as the scene counts its steps; None where it counts none.
-    """
-
-    time_s: Annotated[float, not_negative]
-    note: Message
-    x: float | None = field(default=None, metadata=SPARSE)
-    y: float | None = field(default=None, metadata=SPARSE)
-    run: Annotated[int, not_negative] = 0
-    tick: Annotated[int, not_negative] | None = field(default=None, metadata=SPARSE)
-
-    def __post_init__(self) -> None:
-        """Convert a plain text to a message."""
-        _convert_texts(self, "note")
-
-    @property
-    def place(self) -> tuple[float, float] | None:
-        """Its place [m]; None for none."""
-        return None if self.x is None or self.y is None else (self.x, self.y)
 
 
 @dataclass(frozen=True)
@@ -69,7 +42,7 @@ class Expected:
 
     def __post_init__(self) -> None:
         """Convert plain texts to messages."""
-        _convert_texts(self, "curve", "text")
+        convert_texts(self, "curve", "text")
 
 
 @dataclass(frozen=True)
@@ -95,7 +68,7 @@ class Finding:
 
     def __post_init__(self) -> None:
         """Convert plain texts to messages."""
-        _convert_texts(self, "rationale", "help")
+        convert_texts(self, "rationale", "help")
 
 
 @dataclass(frozen=True)
@@ -138,13 +111,6 @@ class Verdict:
         if self.status != "not_judged":
             return ()
         return tuple(n for n in self.depends_on if n in verdicts and not verdicts[n].passed)
-
-
-def _convert_texts(made: object, *names: str) -> None:
-    """Convert plain texts, of checks whose authors translate nothing, to messages."""
-    for name in names:
-        if isinstance(text := getattr(made, name), str):
-            object.__setattr__(made, name, plain_text(text))
 
 
 def as_json(finding: object, runs: int) -> Any:

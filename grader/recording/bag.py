@@ -19,7 +19,7 @@ import yaml
 
 from grader.errors import RecordingError
 from grader.recording.mcap import Channel, McapWriter, read_mcap
-from grader.recording.subject import Subject, Trace
+from grader.recording.subject import Keeper, Trace
 from grader.ros.bag_types import BagTypes
 
 #: Under whichever ROS a run was made: the bag's definitions are those of Jazzy.
@@ -33,7 +33,7 @@ _LONG: Final = re.compile(r"(?m)^(?=.{81})( *)(\w+:) (\S+)$")
 _VERSION: Final = 9
 
 
-def pack(trace: Trace, subject: Subject, name: str = "recording") -> tuple[bytes, dict[str, Any]]:
+def pack(trace: Trace, subject: Keeper, name: str = "recording") -> tuple[bytes, dict[str, Any]]:
     """Return a bag: its .mcap, and what its metadata.yaml says.
 
     The same trace gives the same bytes.
@@ -69,7 +69,7 @@ def pack(trace: Trace, subject: Subject, name: str = "recording") -> tuple[bytes
     return writer.finish(_yaml(about).strip()), {"rosbag2_bagfile_information": about}
 
 
-def write(trace: Trace, subject: Subject, folder: Path) -> Path:
+def write(trace: Trace, subject: Keeper, folder: Path) -> Path:
     """Write a bag; returns its .mcap, which is named like the folder. Last comes metadata.yaml."""
     data, metadata = pack(trace, subject, folder.name)
     folder.mkdir(parents=True)
@@ -81,7 +81,7 @@ def write(trace: Trace, subject: Subject, folder: Path) -> Path:
     return mcap
 
 
-def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
+def read(mcap: Path, subject: Keeper, duration_ns: int) -> Trace:
     """Read a bag that `write` has written; `duration_ns` is how long was recorded."""
     wrong = f"cannot read the bag in {mcap.parent}"
     try:
@@ -149,7 +149,7 @@ def _yaml(about: Mapping[str, Any]) -> str:
 
 
 def parse_channels(
-    channels: Sequence[Channel], subject: Subject, duration_ns: int, sha256: str
+    channels: Sequence[Channel], subject: Keeper, duration_ns: int, sha256: str
 ) -> Trace:
     """Parse the channels of a bag whose trace had a hash.
 

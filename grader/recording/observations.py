@@ -295,12 +295,6 @@ _FRAME = re.compile(
     re.MULTILINE,
 )
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]{0,200})(?:: (?P<text>.*))?$")
-#: As far as the line that begins with the exception's name.
-_IN_THREAD = re.compile(
-    r"^(?:Exception in thread [^\n]{0,200}:|[^\n]{0,200}: Error raised in [^\n]{0,400})\n"
-    r"(Traceback [^\n]*\n(?:[ \t][^\n]*\n)+[^\n]*)",
-    re.MULTILINE,
-)
 #: Parts of the paths of Python's, ROS's and the grader's files; no submission's.
 _LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run/", "<frozen ")
 
@@ -308,12 +302,6 @@ _LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run
 def is_library(file: str) -> bool:
     """Whether a file is Python's, ROS's or the grader's, and not the submission's."""
     return any(part in file for part in _LIBRARIES)
-
-
-def thread_exception(text: str) -> Raised | None:
-    """Parse the first exception that ended a thread, as Python prints it."""
-    found = _IN_THREAD.search(text)
-    return last_exception(found[0]) if found else None
 
 
 def last_exception(text: str) -> Raised | None:

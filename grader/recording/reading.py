@@ -38,10 +38,10 @@ from grader.recording.scene_and_cast import CastKeeper, split
 from grader.recording.subject import (
     DEFAULT_SCENE,
     PACKAGE_SCENE,
+    Keeper,
     Start,
-    Subject,
     Trace,
-    load_subject,
+    load_keeper,
     scene_at_work,
 )
 from grader.system import content, limited, strict_json
@@ -186,7 +186,7 @@ class _Header:
     folder: Path
     facts: dict[str, Any]
     run: Run
-    subject: Subject
+    subject: Keeper
     output: str
 
     def read_trace(self) -> Trace:
@@ -267,7 +267,7 @@ def _package(path: Path) -> Trace | None:
     if not path.exists():
         return None
     with _refusing(path):
-        package: Any = load_subject(PACKAGE_SCENE)
+        package: Any = load_keeper(PACKAGE_SCENE)
         trace: Trace = package.decode(path.read_bytes())
         return trace
 
@@ -291,9 +291,9 @@ def _must_agree(folder: Path, key: str, stated: object, found: object) -> None:
         )
 
 
-def _subject(folder: Path, name: str) -> Subject:
+def _subject(folder: Path, name: str) -> Keeper:
     try:
-        return load_subject(name)
+        return load_keeper(name)
     except KeyError as error:
         raise RecordingError(
             "{folder} cannot be read: {why}", folder=str(folder), why=error.args[0]

@@ -13,8 +13,7 @@ from functools import cached_property
 from typing import Annotated, Any, Final, Literal
 
 from grader.recording.observations import Observations
-from grader.recording.subject import Start, Trace, load_subject
-from grader.recording.view import Pictures, Pixels
+from grader.recording.subject import Pictures, Pixels, Start, Trace, load_keeper
 from grader.system.strict_json import SPARSE
 from grader.text.message import Message, msg
 
@@ -198,7 +197,7 @@ class Recording:
     @cached_property
     def pictures(self) -> Pictures:
         """The pictures of the scene at the end."""
-        return load_subject(self.scene).pictures(self.trace)
+        return load_keeper(self.scene).pictures(self.trace)
 
     @cached_property
     def png(self) -> Mapping[str, bytes]:

@@ -31,7 +31,7 @@ from typing import Any
 from grader.recording import bag
 from grader.recording.recording import Recording, Recordings
 from grader.recording.scene_and_cast import merge
-from grader.recording.subject import DEFAULT_SCENE, PACKAGE_SCENE, load_subject
+from grader.recording.subject import DEFAULT_SCENE, PACKAGE_SCENE, load_keeper
 from grader.system import content
 from grader.system.removal import remove
 from grader.system.strict_json import OURS, to_json
@@ -106,7 +106,7 @@ def _put(made: Path, folder: Path) -> None:
 
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
-    scene = load_subject(recording.scene)
+    scene = load_keeper(recording.scene)
     mcap = bag.write(*merge(recording.trace, recording.cast, scene), folder)
     run = to_json(recording.run, OURS)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
@@ -134,7 +134,7 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     if recording.observations.is_known:
         _write_json(folder / OBSERVATIONS, recording.observations.to_json())
     if recording.package is not None:
-        package: Any = load_subject(PACKAGE_SCENE)
+        package: Any = load_keeper(PACKAGE_SCENE)
         encoded = package.encode(recording.package)
         (folder / PACKAGE).write_bytes(encoded + b"\n")
     for name, png in recording.png.items():

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from grader.recording.mcap import Channel
-from grader.recording.subject import CAST_SCENE, BagMessage, Start, Subject, Trace, load_subject
+from grader.recording.subject import CAST_SCENE, BagMessage, Keeper, Start, Trace, load_keeper
 from grader.ros.bag_types import OF_ROS
 
 #: Before the topics of a cast: a scene may have some of the same names.
@@ -34,12 +34,12 @@ class TwoTraces:
         return hashlib.sha256(f"{self.trace.sha256()}{self.cast.sha256()}".encode()).hexdigest()
 
 
-class CastKeeper(Subject):
+class CastKeeper(Keeper):
     """Keeps a trace of a scene, and one of a cast, as one."""
 
-    def __init__(self, scene: Subject) -> None:
+    def __init__(self, scene: Keeper) -> None:
         self._scene = scene
-        self._cast = load_subject(CAST_SCENE)
+        self._cast = load_keeper(CAST_SCENE)
 
     @property
     def name(self) -> str:  # type: ignore[override]
@@ -84,7 +84,7 @@ class CastKeeper(Subject):
         )
 
 
-def merge(trace: Trace, cast: Trace | None, subject: Subject) -> tuple[Trace, Subject]:
+def merge(trace: Trace, cast: Trace | None, subject: Keeper) -> tuple[Trace, Keeper]:
     """Return a trace with that of the cast beside it, if there is one, and who keeps it."""
     return (trace, subject) if cast is None else (TwoTraces(trace, cast), CastKeeper(subject))
 

@@ -1,7 +1,7 @@
-"""The subject of a recording: a scene that ran beside a submission, or an inspected package.
+"""What a recording is of: a scene that ran beside a submission, or an inspected package.
 
-A `Subject` knows how its traces are kept in a bag and read back, and how they are shown. Nothing
-here needs ROS, and readers of recordings know no more of a scene.
+A `Keeper` knows how its traces are kept in a bag and read back. Nothing here needs ROS, and readers
+of recordings know no more of a scene; how it is shown, `grader.scenes.subject` knows.
 """
 
 from __future__ import annotations
@@ -16,12 +16,14 @@ from functools import wraps
 from pathlib import Path
 from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol
 
+import numpy as np
+import numpy.typing as npt
+
 from grader.errors import SceneFailure, SubmissionError, UsageError
 from grader.recording.mcap import Channel
-from grader.recording.view import Pictures, Plane, View
 from grader.system import extensions
 from grader.system.strict_json import SPARSE
-from grader.text.message import NOTHING, Message, msg
+from grader.text.message import Message, msg
 from grader.text.strings import place, shown
 
 #: The scene of an exercise that names none.
@@ -43,6 +45,7 @@ CAST_SCENE: Final = "graph"
 STAND_IN: Final = Path(__file__).parents[1] / "run" / "lockstep"
 #: So much of what a scene raises or returns is shown [characters].
 LONGEST_WORDS: Final = 300
+Pixels = npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,18 @@ class Start:
             speed=self.speed,
             turn=self.turn,
         )
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """The pictures of a recording by name.
+
+    Attributes:
+        window: the scene's plane at the end; None where there is nothing to see.
+    """
+
+    window: Pixels | None = None
+    others: Mapping[str, Pixels] = field(default_factory=dict)
 
 
 class Trace(Protocol):
@@ -194,20 +209,11 @@ def at_work(hook: Callable[..., Any], *may_raise: type[Exception]) -> Callable[.
     return named
 
 
-class Subject(ABC):
-    """The subject of recordings. The abstract members are obligatory, the others have defaults."""
+class Keeper(ABC):
+    """Keeps traces. The abstract members are obligatory, the others have defaults."""
 
     #: In an exercise, and of its entry point (`grader.scenes`).
     name: ClassVar[str]
-    #: What a submission drives, or what is inspected, with its article: 'the turtle'.
-    the_thing: ClassVar[Message]
-    #: The same without an article.
-    thing: ClassVar[Message]
-    #: How a run ended -> that as a clause, 'the turtle came to rest', where it is not as for any
-    #: node. The keys are those of `grader.reports.wording.OUTCOMES`.
-    outcomes: ClassVar[Mapping[str, Message]] = {}
-    #: How places become pixels.
-    plane: ClassVar[Plane] = Plane(500, 1.0, 500.0)
     #: Whether its trace is that of scripted peers; else that is kept beside its own.
     has_cast: ClassVar[bool] = False
 
@@ -253,88 +259,24 @@ class Subject(ABC):
         """Return the inputs, to be replayed without ROS; empty where they cannot be."""
         return {}
 
-    # How it is shown ------------------------------------------------------------------------------
-
-    def view(self, trace: Trace) -> View:
-        """Return the trace as a page shows it."""
-        return View()
-
     def pictures(self, trace: Trace) -> Pictures:
         """Draw the scene at the end."""
         return Pictures()
 
-    def remarks(self, trace: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
-        """Return what a reader of any exercise's result should know about the run.
 
-        Args:
-            published: the topics that the submission published on.
-            interfaces: with which the scene was run.
-        """
-        return []
-
-    def endpoints(self, trace: Trace, interfaces: str) -> Sequence[Endpoint]:
-        """Return the endpoints that a submission could have met in a run; the usual ones first.
-
-        Args:
-            interfaces: with which the scene was run.
-        """
-        return ()
-
-    @property
-    def player(self) -> Callable[[Any], str] | None:
-        """Renders a page that plays runs, HTML that needs no other file; None: there is none.
-
-        It is called with a `grader.scenes.playback.Playback`, and raises RecordingError where a
-        run cannot be played.
-        """
-        return None
-
-    # What an exercise sets about it ---------------------------------------------------------------
-
-    def wrong_setting(self, setting: str) -> Message:
-        """Say why a scene cannot be set up with an exercise's setting; NOTHING where it can.
-
-        Args:
-            setting: the text of a file of the exercise's, as a robot's description; '' for none.
-        """
-        return msg("{scene} takes none", scene=self.name) if setting else NOTHING
-
-    def adapted(self, text: str, ros_distro: str) -> str:
-        """Adapt a Python file or a package.xml to a ROS 2 release, named as in ROS_DISTRO."""
-        return text
-
-    def how_to_try(self, program: str, package: str) -> str:
-        """Describe how a student tries a solution by hand, in Markdown; '' for nothing.
-
-        Args:
-            program: the node's Python file, as the folder above that of the submission finds it.
-            package: the ROS package that it is in; '' for none.
-        """
-        return ""
-
-    def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        """Return traces that checks have to survive, by their descriptions: 'a node that jumps'.
-
-        Args:
-            setting: of the exercise whose checks are tried.
-            start: where the runs begin.
-        """
-        return {}
-
-
-def load_subject(name: str) -> Subject:
-    """Load the subject that an exercise names as its `scene:`.
+def load_keeper(name: str) -> Keeper:
+    """Load the keeper of the traces of a scene, or of packages.
 
     Raises:
         KeyError: nothing of this name is installed.
         UsageError: it cannot be loaded, or has another name than its entry point.
     """
-    subject: Subject = extensions.load(extensions.SCENES, name)
-    if (own := getattr(subject, "name", None)) != name:
+    keeper: Keeper = extensions.load(extensions.SCENES, name)
+    if (own := getattr(keeper, "name", None)) != name:
         raise UsageError(
             "the entry point {name} is of {point}, whose name is {own}; the two must be the same",
             name=repr(name),
             point=extensions.described(extensions.find(extensions.SCENES, name)),
             own=repr(own),
         )
-    return subject
+    return keeper

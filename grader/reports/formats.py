@@ -65,7 +65,9 @@ class ErrorReport:
         self.is_judged = error.whose == "submission"
         self.whose = error.whose
         self.made = datetime.now(UTC)
-        self.message = text.clip_middle(text.plain(translate(error.message)).strip(), _TEXT_LIMIT)
+        self.message = text.clip(
+            text.plain(translate(error.message)).strip(), _TEXT_LIMIT, keeps_end=True
+        )
         self.max_score = None if error.max_score is None else float(error.max_score)
         self.folder = folder
         self.checks = tuple(checks)

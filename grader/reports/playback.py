@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from typing import Any
 
-from grader.exercise.verdict import Verdict
 from grader.recording.observations import Burst, End
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
-from grader.reports.report import Report
-from grader.scenes.playback import JudgedCheck, Moment, Playback, PlayedRun
+from grader.reports.report import Point, Report
+from grader.scenes.playback import JudgedCheck, Playback, PlayedRun
+from grader.scenes.scene import STEP_NS
 from grader.text import strings as text
 from grader.text.translations import tr, translate
 
@@ -40,7 +41,17 @@ def of(
 
 def judged(report: Report, runs: int) -> tuple[JudgedCheck, ...]:
     """Return the verdicts as shown, with evidence from the first so many runs."""
-    return tuple(_judged(report, verdict, runs) for verdict in report.verdicts)
+    return tuple(
+        JudgedCheck(
+            wording.title_of(each),
+            each.status,
+            tr("{word}, {score} points", word=wording.word(each), score=wording.score_text(each)),
+            translate(each.rationale),
+            translate(each.help),
+            tuple(_moment(point) for point in report.points_of(each) if point.evidence.run < runs),
+        )
+        for each in report.verdicts
+    )
 
 
 def _played_run(number: int, recording: Recording) -> PlayedRun:
@@ -50,7 +61,6 @@ def _played_run(number: int, recording: Recording) -> PlayedRun:
         outcome = tr("{outcome}; {begins}", outcome=outcome, begins=start.words)
     after = recording.run.simulated_s
     return PlayedRun(
-        number,
         wording.run_name(number),
         tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
         recording.trace,
@@ -73,26 +83,15 @@ def _sent(recording: Recording) -> tuple[End, ...]:
     return tuple(ends[0] for ends in by_name.values() if len(ends) == 1)
 
 
-def _judged(report: Report, verdict: Verdict, runs: int) -> JudgedCheck:
-    return JudgedCheck(
-        wording.title_of(verdict),
-        verdict.status,
-        tr(
-            "{word}, {score} points",
-            word=wording.word(verdict),
-            score=wording.score_text(verdict),
-        ),
-        translate(verdict.rationale),
-        translate(verdict.help),
-        tuple(
-            Moment(
-                point.number,
-                point.evidence.run,
-                point.evidence.time_s,
-                point.evidence.place,
-                str(point),
-            )
-            for point in report.points_of(verdict)
-            if point.evidence.run < runs
-        ),
-    )
+def _moment(point: Point) -> dict[str, Any]:
+    seen = point.evidence
+    x, y = seen.place or (None, None)
+    tick = round(seen.time_s * 1e9 / STEP_NS)
+    return {
+        "number": point.number,
+        "run": seen.run,
+        "tick": tick,
+        "x": x,
+        "y": y,
+        "text": str(point),
+    }

@@ -9,7 +9,7 @@ from grader.exercise.result.diagnosis import Diagnosis
 from grader.exercise.result.result import Result, RunSummary
 from grader.exercise.verdict import Verdict
 from grader.text import strings as text
-from grader.text.message import Text, msg, plain_text
+from grader.text.message import Message, Text, msg
 from grader.text.translations import tr, translate
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
@@ -54,13 +54,13 @@ def of_verdict(verdict: Verdict, name: str) -> Verdict:
     return replace(
         verdict,
         check=name,
-        title=plain_text(line(verdict.title)),
+        title=Message.of(line(verdict.title)),
         score=float(verdict.score),
         max_score=float(verdict.max_score),
-        rationale=plain_text(_clipped(verdict.rationale)),
-        help=plain_text(_clipped(verdict.help)),
+        rationale=Message.of(_clipped(verdict.rationale)),
+        help=Message.of(_clipped(verdict.help)),
         evidence=tuple(
-            replace(each, note=plain_text(line(each.note))) for each in verdict.evidence
+            replace(each, note=Message.of(line(each.note))) for each in verdict.evidence
         ),
     )
 
@@ -74,8 +74,8 @@ def of_diagnosis(found: Diagnosis) -> Diagnosis:
     return replace(
         found,
         key=key,
-        cause=plain_text(line(found.cause) or key or tr("(no cause)")),
-        help=plain_text(line(found.help)),
+        cause=Message.of(line(found.cause) or key or tr("(no cause)")),
+        help=Message.of(line(found.help)),
         place=place,
         check=line(found.check),
     )

@@ -15,9 +15,10 @@ from grader.exercise.result.visible import View, student_view
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording import reading
 from grader.recording.recording import Recording, Recordings
-from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
+from grader.recording.subject import DEFAULT_SCENE
 from grader.reports import readable, wording
 from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, points, title_of, where, word
+from grader.scenes.subject import Subject, load_subject
 from grader.text import strings as text
 from grader.text.message import NOTHING, Message
 from grader.text.translations import tr, translate
@@ -35,7 +36,7 @@ class Artifacts:
 
     def __init__(self, result: Result, folder: Path, recordings: Recordings | None = None) -> None:
         self.folder = folder
-        self._paths = text.plain_all(dict(result.artifacts))
+        self._paths = text.plain(dict(result.artifacts))
         self._runs = 1 + len(result.varied_runs)
         self._made = recordings
 
@@ -149,7 +150,7 @@ class Report:
 
     def __init__(self, result: Result, artifacts: Artifacts, view: View = "student") -> None:
         seen = result if view == "whole" else student_view(result, view == "after_due")
-        shown: Result = text.plain_all(readable.few(seen), readable.RAW_LIMIT)
+        shown: Result = text.plain(readable.few(seen), readable.RAW_LIMIT)
         self._result = result
         self.made = datetime.now(UTC)
         self.artifacts = artifacts
@@ -245,27 +246,6 @@ class Report:
             return False
         return found.run in ({item.run for item in verdict.evidence} or {found.run})
 
-    def lines(self, verdict: Verdict) -> list[str]:
-        """Return the rationale, the evidence and the hint, for formats that show plain text."""
-        lines = [text.one_line(translate(verdict.rationale))]
-        if waited_for := self.waited_for(verdict):
-            lines.append(tr("Waits for: {checks}", checks=", ".join(waited_for)))
-        lines += [f"- {text.one_line(str(point))}" for point in self.points_of(verdict)]
-        if verdict.help:
-            lines.append(tr("Look at: {help}", help=text.one_line(translate(verdict.help))))
-        return [line for line in lines if line]
-
-    def led_lines(self, verdict: Verdict) -> list[str]:
-        """Return the lines with the diagnosis first, for formats that have no other place for it.
-
-        It leads the first check that did not pass, unless the diagnosis repeats that check.
-        """
-        lines, found = self.lines(verdict), self.diagnosis
-        first = next((each for each in self.verdicts if not each.passed), None)
-        if found is None or verdict is not first or found.check == verdict.check:
-            return lines
-        return [self.first_line, *self.advice, "", *lines]
-
     @property
     def first_to_mend(self) -> Verdict | None:
         """The verdict that the diagnosis repeats; else the first that failed.
@@ -294,13 +274,6 @@ class Report:
         """The headline, introduced as a fault if it is one."""
         lost = self.diagnosis is not None or self.first_to_mend is not None
         return tr("Fix this first: {headline}", headline=self.headline) if lost else self.headline
-
-    @property
-    def first_key(self) -> str:
-        """The subject of the headline: a check's name, or the diagnosis's key."""
-        if self.diagnosis is not None:
-            return self.diagnosis.check or self.diagnosis.key
-        return self.first_to_mend.check if self.first_to_mend is not None else ""
 
     @property
     def advice(self) -> list[str]:

@@ -24,7 +24,7 @@ from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
 from grader.text.message import msg
 from grader.text.strings import for_terminal
-from grader.text.translations import tr, tr_many, translate
+from grader.text.translations import tr, translate
 
 _MARKS = {
     "passed": ("✓", "green"),
@@ -134,10 +134,10 @@ def _checks(report: Report, console: Console) -> None:
         since, *more = (tr("“{title}”", title=title) for title in titles)
         for title in more:
             since = tr("{those} and {last}", those=since, last=title)
-        waiting = tr_many(
+        waiting = tr(
             "not judged, since {titles} did not pass: {names} ({worth} points)",
             "not judged, since {titles} did not pass: {names} ({worth} points)",
-            len(titles),
+            n=len(titles),
             titles=since,
             names=", ".join(verdict.check for verdict in verdicts),
             worth=wording.points(sum(verdict.max_score for verdict in verdicts)),

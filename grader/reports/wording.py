@@ -10,7 +10,7 @@ from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.recording import Run
 from grader.text import strings as text
 from grader.text.message import in_context, msg
-from grader.text.translations import number, tr, tr_many, translate
+from grader.text.translations import number, tr, translate
 
 WORDS: Final = {
     "passed": msg("passed"),
@@ -61,10 +61,10 @@ def word(verdict: Verdict) -> str:
 def so_many(status: str, count: int) -> str:
     """Count the verdicts of a status: '6 passed'."""
     if status == "passed":
-        return tr_many("{n} passed", "{n} passed", count)
+        return tr("{n} passed", "{n} passed", n=count)
     if status == "failed":
-        return tr_many("{n} failed", "{n} failed", count)
-    return tr_many("{n} not judged", "{n} not judged", count)
+        return tr("{n} failed", "{n} failed", n=count)
+    return tr("{n} not judged", "{n} not judged", n=count)
 
 
 def outcome_text(key: str) -> str:
@@ -115,7 +115,7 @@ def score_text(verdict: Verdict) -> str:
 
 def all_passed(checks: int) -> str:
     """Return 'all 7 checks passed.'."""
-    return tr_many("the only check passed.", "all {n} checks passed.", checks)
+    return tr("the only check passed.", "all {n} checks passed.", n=checks)
 
 
 def where(evidence: Evidence) -> str:
@@ -139,10 +139,10 @@ def nothing_to_mend(passed: int, left_out: NotShown | None) -> str:
     """Return the headline where all shown verdicts passed."""
     if left_out is None:
         return tr("Nothing to fix: {all_passed}", all_passed=all_passed(passed))
-    others = tr_many("{n:,} check is not shown", "{n:,} checks are not shown", left_out.checks)
+    others = tr("{n:,} check is not shown", "{n:,} checks are not shown", n=left_out.checks)
     if not passed:
         return tr("Nothing is shown here: {others}.", others=others)
-    some = tr_many("{n:,} check passed", "{n:,} checks passed", passed)
+    some = tr("{n:,} check passed", "{n:,} checks passed", n=passed)
     return tr("Nothing to fix in what is shown: {some}; {others}.", some=some, others=others)
 
 
@@ -151,20 +151,20 @@ def not_shown(left_out: NotShown | None) -> str:
     if left_out is None:
         return ""
     checks, later = left_out.checks, left_out.until_due
-    sentence = tr_many(
+    sentence = tr(
         "{n:,} check worth {points} points is not shown here, nor counted in this score",
         "{n:,} checks worth {points} points are not shown here, nor counted in this score",
-        checks,
+        n=checks,
         points=points(left_out.max_score),
     )
     if not later:
         return tr("{said}.", said=sentence)
     if later == checks:
         return tr("{said}; shown when the exercise is over.", said=sentence)
-    return tr_many(
+    return tr(
         "{said}; {n} of them is shown when the exercise is over.",
         "{said}; {n} of them are shown when the exercise is over.",
-        later,
+        n=later,
         said=sentence,
     )
 
@@ -202,7 +202,7 @@ def duration(seconds: float) -> str:
     minutes = int(seconds // 60)
     days, hours, minutes = minutes // 1440, minutes // 60 % 24, minutes % 60
     parts = [
-        tr_many("{n:,} day", "{n:,} days", days) if days else "",
+        tr("{n:,} day", "{n:,} days", n=days) if days else "",
         tr("{hours} h", hours=hours) if hours else "",
         tr("{minutes} min", minutes=minutes) if minutes and not days else "",
     ]

@@ -18,7 +18,6 @@ import sysconfig
 import threading
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 from typing import Final
@@ -63,23 +62,10 @@ class NotCompiled(GraderFailure):
     """Interfaces could not be compiled; the message says why nothing was run."""
 
 
-@dataclass(frozen=True)
-class Importable:
-    """What a process needs in order to import interfaces.
-
-    Attributes:
-        folders: those to be read, which Python searches first.
-        env: the environment variable that has it do so.
-    """
-
-    folders: tuple[Path, ...] = ()
-    env: Mapping[str, str] = field(default_factory=dict)
-
-
 def compile_all(
     theirs: Mapping[str, str], own: OwnInterfaces, context: RunContext
-) -> tuple[Importable, Importable]:
-    """Return what the simulator's process needs in a run, and what the submission's.
+) -> tuple[Path | None, Path | None]:
+    """Return where the simulator's process finds interfaces in a run, and where the submission's.
 
     Args:
         theirs: the exercise's: a type, `my_interfaces/msg/Num` -> its definition.
@@ -89,22 +75,23 @@ def compile_all(
         NotCompiled: there is no compiler, it fails, or the two would mistake each other's messages.
         GraderFailure: its process could not be started.
     """
-    found = []
     try:
         if unlike := next(iter(own.unlike.values()), NOTHING):
             raise NotCompiled(UNLIKE.given(difference=unlike))
-        for texts in (theirs, own.importable):
-            if texts:
-                place, rest = _compiled(texts, context), context.env.get("PYTHONPATH")
-                path = os.pathsep.join(filter(None, [str(place), rest]))
-                found.append(Importable((place,), {"PYTHONPATH": path}))
-            else:
-                found.append(Importable())
+        ours, others = (
+            _compiled(texts, context) if texts else None for texts in (theirs, own.importable)
+        )
+        return ours, others
     except NotCompiled as error:
         names = sorted({name.partition("/")[0] for name in {**theirs, **own.texts}})
         words = {"packages": ", ".join(names), "why": error.message}
         raise NotCompiled(NOT_COMPILED.given(**words)) from error
-    return found[0], found[1]
+
+
+def importing(place: Path | None, context: RunContext) -> dict[str, str]:
+    """Return the environment variable that has a process search a folder for modules first."""
+    path = [str(place), *filter(None, [context.env.get("PYTHONPATH")])]
+    return {"PYTHONPATH": os.pathsep.join(path)} if place else {}
 
 
 def _compiled(texts: Mapping[str, str], context: RunContext) -> Path:

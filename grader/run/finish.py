@@ -26,7 +26,7 @@ from grader.recording.recording import (
     Run,
 )
 from grader.recording.scene_and_cast import split
-from grader.recording.subject import Trace, load_subject, scene_at_work
+from grader.recording.subject import Trace, load_keeper, scene_at_work
 from grader.run.evidence import EvidencePage
 from grader.run.handover import Plan, keeper
 from grader.run.limits import LIMITS, size
@@ -150,12 +150,16 @@ class ProgramEnd(NamedTuple):
     Attributes:
         at_s: when, by the clock of the run [s].
         has_failed: whether that is why something is missing.
+        computes: whether it would have gone on without waiting for anything.
+        remarks: on it, for the result.
     """
 
     outcome: Outcome
     exit_code: int | None
     at_s: float
     has_failed: bool
+    computes: bool = False
+    remarks: Sequence[Message] = ()
 
 
 def blamed(ends: Sequence[ProgramEnd]) -> int:
@@ -169,26 +173,20 @@ def blamed(ends: Sequence[ProgramEnd]) -> int:
     return next((number for number, end in enumerate(ends) if end.exit_code is None), 0)
 
 
-def observations_of(
-    running: Sequence[RunningProgram], ends: Sequence[ProgramEnd], computes: Sequence[bool]
-) -> Observations:
+def observations_of(running: Sequence[RunningProgram], ends: Sequence[ProgramEnd]) -> Observations:
     """Return what is known of the program that a run's outcome is due to.
 
     Where none has failed, what they lack may be between them: then it is what is known of all, and
     first of one that has ended and never spun its nodes.
-
-    Args:
-        computes: of each, whether it would have gone on without waiting for anything.
     """
 
-    def known_of(number: int) -> Observations:
-        each, is_busy = running[number], computes[number]
-        return each.account.observations(each.submission, ends[number].at_s, computes=is_busy)
+    def known_of(its: RunningProgram, end: ProgramEnd) -> Observations:
+        return its.account.observations(its.submission, end.at_s, computes=end.computes)
 
     number = blamed(ends)
     if ends[number].has_failed:
-        return known_of(number)
-    known = [known_of(each) for each in range(len(running))]
+        return known_of(running[number], ends[number])
+    known = list(map(known_of, running, ends))
     ended_deaf = (
         place
         for place, (end, each) in enumerate(zip(ends, known, strict=True))
@@ -235,12 +233,6 @@ def ending_of(
     return made._replace(output="".join(lines))
 
 
-def lost(clock: Clock, running: Sequence[RunningProgram], isolation: str, since_s: float) -> Ending:
-    """Return the ending of a run whose simulator has died beside its programs; see `ending_of`."""
-    ends = [ProgramEnd("killed", None, 0.0, has_failed=True) for _ in running]
-    return ending_of(clock, running, ends, isolation, since_s)
-
-
 # Recordings -----------------------------------------------------------------------------------
 
 
@@ -257,9 +249,17 @@ class SimulatorLost(GraderFailure):
         ending: what is known of the run.
     """
 
-    def __init__(self, failure: GraderFailure, ending: Ending) -> None:
+    def __init__(
+        self,
+        failure: GraderFailure,
+        clock: Clock,
+        running: Sequence[RunningProgram],
+        isolation: str,
+        since_s: float,
+    ) -> None:
         super().__init__(failure.message)
-        self.ending = ending
+        ends = [ProgramEnd("killed", None, 0.0, has_failed=True) for _ in running]
+        self.ending = ending_of(clock, running, ends, isolation, since_s)
 
 
 def recording_of_nothing(plan: Plan, lost: SimulatorLost) -> Recording:
@@ -274,7 +274,7 @@ def recording_of_nothing(plan: Plan, lost: SimulatorLost) -> Recording:
 
 
 def _untouched(plan: Plan) -> Trace:
-    return keeper(plan, load_subject(plan.scene)).untouched(plan.start)
+    return keeper(plan, load_keeper(plan.scene)).untouched(plan.start)
 
 
 def limits_struck(exit_code: int | None, output: str, excess: Message) -> tuple[Message, ...]:

@@ -108,8 +108,9 @@ def server(side: str) -> ForkServer | None:
     words, env, needs = command(side), _environment(side), [json.dumps(MESSAGES)]
     if side == SIMULATOR:
         needs.append(SCENE)
-    if not _is_absolute(env.get("PYTHONPATH", "")):
-        return None
+    path = env.get("PYTHONPATH")
+    if path and not all(Path(entry).is_absolute() for entry in path.split(os.pathsep)):
+        return None  # it would mean something else in another current folder
     with _lock:
         _retired[:] = [each for each in _retired if not each.has_ended()]
         if there := _servers.get(side):
@@ -135,11 +136,6 @@ def close() -> None:
         _servers.clear()
         _retired.clear()
         _losses.clear()
-
-
-def _is_absolute(path: str) -> bool:
-    """Whether an import path means the same in any current folder."""
-    return all(Path(entry).is_absolute() for entry in path.split(os.pathsep)) if path else True
 
 
 def _forget() -> None:

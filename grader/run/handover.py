@@ -1,8 +1,7 @@
 """The plan that the grader passes to a simulator's process, and the recording that comes back.
 
-The plan is an argument. The recording is a file: facts as JSON, after their length in eight bytes,
-then the bag (`grader.recording.bag`). Nothing is unpickled: a pickle could have the grader do
-anything.
+The plan is an argument. The recording is a file: facts as a line of JSON, then the bag
+(`grader.recording.bag`). Nothing is unpickled: a pickle could have the grader do anything.
 """
 
 from __future__ import annotations
@@ -11,7 +10,6 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from struct import Struct
 from typing import Any, Self
 
 from grader.errors import GraderFailure, SceneFailure
@@ -19,7 +17,7 @@ from grader.recording import bag
 from grader.recording.mcap import read_mcap
 from grader.recording.recording import PublishedTopic, Scalar
 from grader.recording.scene_and_cast import CastKeeper, merge
-from grader.recording.subject import Start, Subject, Trace
+from grader.recording.subject import Keeper, Start, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
 from grader.scenes.scene import Limits
 from grader.system import strict_json
@@ -90,12 +88,11 @@ class Plan:
 # The recording --------------------------------------------------------------------------------
 
 
-def keeper(plan: Plan, scene: Subject) -> Subject:
+def keeper(plan: Plan, scene: Keeper) -> Keeper:
     """Return what keeps the trace of a run: with a cast beside a scene, that of both."""
     return scene if plan.cast is None or scene.has_cast else CastKeeper(scene)
 
 
-_LENGTH = Struct("<Q")
 #: Every node has these, and ROS publishes on them by itself.
 USUAL = ("/rosout", "/parameter_events")
 
@@ -116,7 +113,7 @@ class _Facts:
 
 
 def leave(
-    path: Path, scene: Subject, trace: Trace, published: Mapping[str, str], cast: Any = None
+    path: Path, scene: Keeper, trace: Trace, published: Mapping[str, str], cast: Any = None
 ) -> None:
     """Write the file, in the simulator's process.
 
@@ -129,10 +126,10 @@ def leave(
     topics = {topic: kind for topic, kind in sorted(published.items()) if topic not in USUAL}
     facts = strict_json.to_json(_Facts(topics, kept.duration_ns, kept.sha256()), strict_json.OURS)
     head = json.dumps(facts).encode()
-    path.write_bytes(_LENGTH.pack(len(head)) + head + bag.pack(kept, by)[0])
+    path.write_bytes(head + b"\n" + bag.pack(kept, by)[0])
 
 
-def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]:
+def fetch(file: int, scene: Keeper) -> tuple[Trace, tuple[PublishedTopic, ...]]:
     """Read the file from an open descriptor, in the grader's process.
 
     Raises:
@@ -141,13 +138,10 @@ def fetch(file: int, scene: Subject) -> tuple[Trace, tuple[PublishedTopic, ...]]
     """
     failure = GraderFailure
     try:
-        data = read_bounded(file, RECORDING_BYTES)
-        (length,) = _LENGTH.unpack_from(data)
-        end = _LENGTH.size + length
+        head, _, packed = read_bounded(file, RECORDING_BYTES).partition(b"\n")
         # of bytes, json.loads would guess the encoding
-        head = json.loads(data[_LENGTH.size : end].decode("utf-8"))
-        facts = strict_json.from_json(_Facts, head, strict_json.OURS)
-        channels = read_mcap(data[end:], RECORDING_BYTES)
+        facts = strict_json.from_json(_Facts, json.loads(head.decode("utf-8")), strict_json.OURS)
+        channels = read_mcap(packed, RECORDING_BYTES)
         failure = SceneFailure
         trace = bag.parse_channels(channels, scene, facts.duration_ns, facts.sha256)
         return trace, tuple(PublishedTopic(*topic) for topic in facts.topics.items())

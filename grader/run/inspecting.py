@@ -22,7 +22,7 @@ from typing import Final
 
 from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
-from grader.recording.subject import Trace, load_subject
+from grader.recording.subject import Trace, load_keeper
 from grader.run import handover, run_context
 from grader.run.environment import virtual_environment
 from grader.run.finish import Ending, ended, record
@@ -53,7 +53,7 @@ def run(submission: Submission, plan: Plan, progress: object = None) -> Recordin
     """Inspect a submission once, as its only run, in which no time passes."""
     order = {"package": submission.asked, "inspectors": inspector.places(plan.inspections)}
     found, ending = _inspected(submission, order, plan.budget)
-    trace = load_subject(plan.scene).untouched(None) if found is None else found.trace
+    trace = load_keeper(plan.scene).untouched(None) if found is None else found.trace
     return record(plan, trace, (), ending)
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from grader.errors import GraderFailure, NotNow, SceneFailure
-from grader.recording.observations import Observations
 from grader.recording.recording import Recording
 from grader.run import compiling, fork_servers, handover, run_context
 from grader.run.environment import student_environment
@@ -22,7 +21,6 @@ from grader.run.finish import (
     RunningProgram,
     SimulatorLost,
     ending_of,
-    lost,
     not_run,
     observations_of,
     outcome,
@@ -88,9 +86,9 @@ def run(
             ours, theirs = compiling.compile_all(known, submission.interfaces, context)
         except compiling.NotCompiled as why:
             return not_run(plan, why.message)
-        its = replace(context, env={**context.env, **ours.env})
+        its = replace(context, env={**context.env, **compiling.importing(ours, context)})
         # where interfaces were compiled, libraries have to be found that the server does not know
-        server = None if ours.env else fork_servers.server(fork_servers.SIMULATOR)
+        server = None if ours else fork_servers.server(fork_servers.SIMULATOR)
         simulator = stack.enter_context(
             start_simulator(MODULE, its, plan, (), str(FIRST_NODE_S), server=server, feed=feed)
         )
@@ -100,16 +98,17 @@ def run(
         try:
             with programs.ended_at_exit():
                 done = _watch(simulator, programs, progress)
-                ends, observations = programs.ends(done["reason"])
-            trace, topics = handover.fetch(context.recording, handover.keeper(plan, programs.scene))
+                ends = programs.ends(done["reason"])
+            recorded = handover.fetch(context.recording, handover.keeper(plan, programs.scene))
         except (NotNow, SceneFailure):  # it was never started, or is not to blame
             raise
         except GraderFailure as failure:
-            killed = lost("real", programs.in_order, context.isolation, started)
-            raise SimulatorLost(failure, killed) from failure
+            what_ran = (programs.in_order, context.isolation, started)
+            raise SimulatorLost(failure, "real", *what_ran) from failure
         flags = tuple(map(Message.parse, done["flags"]))
-        ending = ending_of("real", programs.in_order, ends, context.isolation, started, flags)
-    return record(plan, trace, topics, ending, observations)
+        running = programs.in_order
+        ending = ending_of("real", running, ends, context.isolation, started, flags)
+        return record(plan, *recorded, ending, observations_of(running, ends))
 
 
 class _Programs:
@@ -124,7 +123,7 @@ class _Programs:
         submission: Submission,
         plan: Plan,
         context: RunContext,
-        interfaces: compiling.Importable,
+        interfaces: Path | None,
         held: ExitStack,
     ) -> None:
         self.scene = load_scene(plan.scene)
@@ -146,15 +145,12 @@ class _Programs:
             if number in self.running or at_s is None or at_s > now_s:
                 continue
             account = self._held.enter_context(closing(EvidencePage()))
-            arguments = (*program.arguments, *self._plan.arguments)
-            words = partial(command, introduction=self.scene.introduction, plan=self._plan,
-                            page=account.page, arguments=arguments)  # fmt: skip
             moved, process = self._context.start(
                 self._submission.alone(program),
-                words,
+                partial(command, self.scene.introduction, self._plan, account.page),
                 (account.page,),
-                student_environment(self._interfaces.env),
-                more=self._interfaces.folders,
+                student_environment(compiling.importing(self._interfaces, self._context)),
+                more=[self._interfaces] if self._interfaces else (),
                 beside=next((each.process for each in self.running.values()), None),
             )
             self.running[number] = RunningProgram(program, moved, process, account)
@@ -185,36 +181,25 @@ class _Programs:
         is_through = all(self._starts_at(program) is None for program in left)
         return is_through and len(self._ended) == len(self.running)
 
-    def ends(self, reason: Reason) -> tuple[list[ProgramEnd], Observations]:
-        """Return how they have ended, and what is known of it.
-
-        Those that still run are asked where they are.
-        """
+    def ends(self, reason: Reason) -> list[ProgramEnd]:
+        """Return how they have ended; those that still run are asked where they are."""
         now_s = time.monotonic() - self.began_s
-        ends, computes = [], []
+        ends = []
         for number, each in sorted(self.running.items()):
             code, at_s = self._ended.get(number, (None, now_s))
-            ends.append(ProgramEnd(outcome(reason, code), code, at_s, has_failed=bool(code)))
-            computes.append(linux.process_stat(each.process.pid).cpu_s > COMPUTES * at_s)
+            computes = linux.process_stat(each.process.pid).cpu_s > COMPUTES * at_s
+            ends.append(ProgramEnd(outcome(reason, code), code, at_s, bool(code), computes))
             if code is None:
                 each.account.request_dump(each.process.pid)
             each.account.close()  # later entries are only about the end that we ask for
-        return ends, observations_of(self.in_order, ends, computes)
+        return ends
 
 
-def command(
-    submission: Submission,
-    introduction: Introduction,
-    plan: Plan,
-    page: int,
-    arguments: Sequence[str],
-) -> list[str]:
+def command(introduction: Introduction, plan: Plan, page: int, submission: Submission) -> list[str]:
     """Return the command of a program's process."""
     heard = [] if plan.cast is None else script.heard(script.parse(plan.cast), plan.hears)
-    topics = [*introduction.topics, *heard]
-    beside = list(map(str, submission.beside))
-    introduced = json.dumps([topics, introduction.services, submission.words(arguments), beside])
-    words = [introduced, str(page), *run_context.start_arguments(submission)]
+    introduced = json.dumps([[*introduction.topics, *heard], introduction.services])
+    words = [str(page), introduced, run_context.start_of(submission, plan.arguments)]
     return [sys.executable, str(STUDENT / "main.py"), *words]
 
 

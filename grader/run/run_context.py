@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import socket
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -16,6 +17,7 @@ from grader.run.processes import levels, network
 from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
+from grader.run.student.loading import ProgramStart
 from grader.submission.program import Script
 from grader.submission.start import Submission
 from grader.system import scratch
@@ -123,13 +125,17 @@ def open_context(budget: CpuBudget | None = None) -> Iterator[RunContext]:
             )
 
 
-def start_arguments(submission: Submission) -> list[str]:
-    """Return a submission's start, of one program, as arguments of its process's `main`."""
+def start_of(submission: Submission, arguments: Sequence[str]) -> str:
+    """Return the start of a submission of one program, as its process gets it.
+
+    Args:
+        arguments: those that follow the program's own.
+    """
     (program,) = submission.programs
     entry = program.entry
-    if isinstance(entry, Script):
-        words = [str(entry.path), *([entry.function] if entry.function else [])]
-    else:
-        assert entry is not None
-        words = [f"{entry.module}:{entry.function}"]
-    return [str(submission.root), *words]
+    assert entry is not None
+    target = str(entry.path) if isinstance(entry, Script) else entry.module
+    words = submission.words((*program.arguments, *arguments))
+    beside = [str(folder) for folder in submission.beside]
+    start = ProgramStart(str(submission.root), target, entry.function or None, words, beside)
+    return json.dumps(start)

@@ -14,7 +14,6 @@ import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -124,27 +123,15 @@ class Audience(Protocol):
         """Called when nothing more comes of this run; `is_whole`: nothing was left out."""
 
 
-@dataclass(frozen=True)
-class LiveFeed:
-    """The simulator's end of a live report on a run.
-
-    Attributes:
-        argument: an argument of the simulator's process; '' where there is no audience.
-        fds: descriptors that the process inherits.
-    """
-
-    argument: str = ""
-    fds: tuple[int, ...] = ()
-
-
-NO_FEED: Final = LiveFeed()
+#: What the simulator's process gets of an audience: an argument, and a descriptor.
+LiveFeed = tuple[str, tuple[int, ...]]
 
 
 @contextmanager
 def live_feed(audience: Audience | None, plan: Plan, time: Clock) -> Iterator[LiveFeed]:
     """Open the feed of a run; leaving the context waits until the audience has all of it."""
     if audience is None:
-        yield NO_FEED
+        yield "", ()
         return
     ours, theirs = socket.socketpair()
     ours.shutdown(socket.SHUT_WR)
@@ -154,7 +141,7 @@ def live_feed(audience: Audience | None, plan: Plan, time: Clock) -> Iterator[Li
     try:
         with theirs:
             argument = json.dumps({"descriptor": theirs.fileno(), "speed": audience.speed})
-            yield LiveFeed(argument, (theirs.fileno(),))
+            yield argument, (theirs.fileno(),)
     finally:
         listener.join()
 
@@ -194,13 +181,12 @@ def start_simulator(
     shared: Sequence[int] = (),
     *more: str,
     server: ForkServer | None = None,
-    feed: LiveFeed = NO_FEED,
+    feed: LiveFeed = ("", ()),
 ) -> Iterator[Simulator]:
     """Start `module` as the simulator's process.
 
     Args:
-        shared: descriptors that it inherits as well; their numbers follow the first three
-            arguments.
+        shared: descriptors that it inherits as well.
         more: further arguments.
         server: the server that it is forked from, if possible.
         feed: for its live reports on the run; its argument comes last.
@@ -208,17 +194,16 @@ def start_simulator(
     ours, theirs = socket.socketpair()
     with ours:
         with theirs:
-            control, *others = map(str, (theirs.fileno(), *shared))
             # /proc/self is the simulator's by then
             recording = f"/proc/self/fd/{context.recording}"
             here = Path(f"/proc/self/fd/{context.simulator_folder}")
             fds = (theirs.fileno(), *shared, context.recording, context.simulator_folder)
-            words = [control, recording, plan.to_json(), *others, *more, feed.argument]
+            words = [str(theirs.fileno()), recording, plan.to_json(), *more, feed[0]]
             command = ProcessCommand(
                 [sys.executable, "-m", module, *words],
                 simulator_environment(context.env),
                 here,
-                (*fds, *feed.fds),
+                (*fds, *feed[1]),
                 context.namespaces,
                 needs=plan.scene,
             )

@@ -13,6 +13,7 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, replace
+from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -27,7 +28,6 @@ from grader.run.finish import (
     SimulatorLost,
     blamed,
     ending_of,
-    lost,
     observations_of,
     outcome,
     record,
@@ -116,15 +116,12 @@ def _try(
                     running.append(its)
                     links.append(link)
                 starts = [
-                    (each.process.pid, its.name, its.after, round(its.delay_s * 1e9))
-                    for each, its in zip(running, programs, strict=True)
+                    (link.fileno(), its.account.page, its.process.pid, p.name, p.after, p.delay_s)
+                    for link, its, p in zip(links, running, programs, strict=True)
                 ]
-                pids = json.dumps(starts)
-                more = (pids, str(core_id), json.dumps(asdict(patience)))
+                shared = [fd for link_fd, page, *_ in starts for fd in (link_fd, page)]
+                more = map(json.dumps, (starts, core_id, asdict(patience)))
                 server = fork_servers.server(fork_servers.SIMULATOR)
-                pages = [each.account.page for each in running]
-                shared = [fd for pair in zip(map(socket.socket.fileno, links), pages, strict=True)
-                          for fd in pair]  # fmt: skip
                 with start_simulator(
                     fork_servers.MODULE, context, plan, shared, *more, server=server, feed=feed
                 ) as simulator:
@@ -143,50 +140,34 @@ def _try(
                 if len(running) > 1:
                     reason = msg("{why} ({program})", why=reason, program=its.program.name)
                 return None, reason
-            trace, topics = handover.fetch(context.recording, handover.keeper(plan, scene))
+            recorded = handover.fetch(context.recording, handover.keeper(plan, scene))
         except SceneFailure:
             raise
         except GraderFailure as failure:
             is_ours = any(each.process.was_lost for each in running)
             if simulator is None or not simulator.is_driven or is_ours:
                 raise
-            killed = lost("virtual", running, context.isolation, started)
-            raise SimulatorLost(failure, killed) from failure
-    how_each_ended = [
-        (its, told, code)
-        for its, told, code in zip(running, message["programs"], codes, strict=True)
-        if not (told["is_new"] and its.program.is_respawned(submission.programs))
-    ]
-    running = [its for its, *_ in how_each_ended]
-    judged: list[tuple[Outcome, list[Message]]] = [
-        ("not_run", [_never_started(its.program, submission.programs)])
-        if told["is_new"]
-        else _judge({**message, **told}, code, patience)
-        for its, told, code in how_each_ended
-    ]
-    ends = [
-        ProgramEnd(
-            *(how, code, told["reached_s"]),
-            has_failed=bool(code) or told["silence"] not in ("", "gone"),
-        )
-        for (how, _), (_, told, code) in zip(judged, how_each_ended, strict=True)
-    ]
-    late = [flags for how, flags in judged if how == "not_run"]
-    late += [
-        [ENDED.given(program=its.program.name, at=end.at_s)]
-        for (its, *_), end in zip(how_each_ended, ends, strict=True)
-        if end.exit_code == 0 and any(each.exit_code is None for each in ends)
-    ]
-    number = blamed(ends)
-    its_flags = judged[number][1] if ends[number].outcome != "not_run" else []
-    if len(running) > 1:
-        name = running[number].program.name
-        its_flags = [OF_PROGRAM.given(program=name, flag=flag) for flag in its_flags]
-    flags = (*its_flags, *chain(*late), *map(Message.parse, message["flags"]))
-    computes = [told["silence"] in COMPUTES for _, told, _ in how_each_ended]
-    observations = observations_of(running, ends, computes)
-    ending = ending_of("virtual", running, ends, context.isolation, started, flags)
-    return record(plan, trace, topics, ending, observations), NOTHING
+            what_ran = (running, context.isolation, started)
+            raise SimulatorLost(failure, "virtual", *what_ran) from failure
+        how_each_ended = [
+            (its, _end_of(its.program, programs, message | told, code, patience))
+            for its, told, code in zip(running, message["programs"], codes, strict=True)
+            if not (told["is_new"] and its.program.is_respawned(programs))
+        ]
+        running, ends = map(list, zip(*how_each_ended, strict=True))
+        late = [*chain(*(end.remarks for end in ends if end.outcome == "not_run"))]
+        late += [
+            ENDED.given(program=its.program.name, at=end.at_s)
+            for its, end in how_each_ended
+            if end.exit_code == 0 and any(each.exit_code is None for each in ends)
+        ]
+        its, end = how_each_ended[blamed(ends)]
+        own = end.remarks if end.outcome != "not_run" else ()
+        if len(running) > 1:
+            own = [OF_PROGRAM.given(program=its.program.name, flag=flag) for flag in own]
+        flags = (*own, *late, *map(Message.parse, message["flags"]))
+        ending = ending_of("virtual", running, ends, context.isolation, started, flags)
+        return record(plan, *recorded, ending, observations_of(running, ends)), NOTHING
 
 
 def _start(
@@ -198,24 +179,20 @@ def _start(
     held: ExitStack,
     beside: SubmissionProcess | None,
 ) -> tuple[RunningProgram, socket.socket]:
-    """Start a program; what it needs is released when the context is left.
+    """Start a program beside the first; return it, and the simulator's end of its link.
 
     Args:
         number: of several, from 1; 0 for one alone, which need not wait for its turn.
-        beside: the process of the first.
-
-    Returns:
-        The program, and the simulator's end of its link.
     """
-    account = held.enter_context(closing(EvidencePage()))
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     held.enter_context(theirs)
-    scene, arguments = load_scene(plan.scene), (*program.arguments, *plan.arguments)
+    account = held.enter_context(closing(EvidencePage()))
+    introduction = load_scene(plan.scene).introduction
     with ours:
         fds = (ours.fileno(), account.page)
         moved, process = context.start(
             submission.alone(program),
-            lambda private: command(private, scene.introduction, plan, *fds, arguments, number),
+            partial(command, introduction, plan, number, *fds),
             fds,
             virtual_environment({}),
             fork_servers.for_student(program.root),
@@ -242,39 +219,19 @@ def _exit_code(each: RunningProgram, ended: dict[str, Any]) -> int | None:
     return None
 
 
-def _never_started(program: Program, beside: Sequence[Program]) -> Message:
-    if program.after < 0:
-        return TOO_LATE.given(program=program.name, at=program.delay_s)
-    return NEVER_ENDED.given(program=program.name, other=beside[program.after].name)
-
-
 def command(
-    submission: Submission,
     introduction: Introduction,
     plan: Plan,
-    link_fd: int,
+    number: int,
+    link: int,
     page: int,
-    arguments: Sequence[str],
-    number: int = 0,
+    submission: Submission,
 ) -> list[str]:
-    """Return the command of a program's process.
-
-    Args:
-        number: of a program among several, from 1; 0 for one alone.
-    """
-    own = submission.interfaces
-    known = json.dumps(
-        [
-            *(introduction.compares_stamps, own.texts, list(own.unlike)),
-            *(
-                plan.cast is not None,
-                number,
-                submission.words(arguments),
-                list(map(str, submission.beside)),
-            ),
-        ]
-    )
-    words = [str(link_fd), str(page), known, *run_context.start_arguments(submission)]
+    """Return the command of a program's process; `link`, `page`: descriptors."""
+    own, is_recorded = submission.interfaces, plan.cast is not None
+    known = [introduction.compares_stamps, own.texts, list(own.unlike), is_recorded, number]
+    start = run_context.start_of(submission, plan.arguments)
+    words = [str(link), str(page), json.dumps(known), start]
     return [*fork_servers.command(fork_servers.STUDENT), *words]
 
 
@@ -292,6 +249,27 @@ def _watch(simulator: Simulator, students: Sequence[int], budget: CpuBudget) -> 
         if time.monotonic() > since + SIMULATOR_S:
             raise simulator.failure(msg("did not come to an end"))
     return message
+
+
+def _end_of(
+    program: Program,
+    beside: Sequence[Program],
+    ending: SimulatorMessage,
+    exit_code: int | None,
+    patience: Patience,
+) -> ProgramEnd:
+    """Return how a program has ended, with remarks on it."""
+    how: Outcome
+    if not ending["is_new"]:
+        how, remarks = _judge(ending, exit_code, patience)
+    elif program.after < 0:
+        how, remarks = "not_run", [TOO_LATE.given(program=program.name, at=program.delay_s)]
+    else:
+        other = beside[program.after].name
+        how, remarks = "not_run", [NEVER_ENDED.given(program=program.name, other=other)]
+    has_failed = bool(exit_code) or ending["silence"] not in ("", "gone")
+    computes = ending["silence"] in COMPUTES
+    return ProgramEnd(how, exit_code, ending["reached_s"], has_failed, computes, remarks)
 
 
 def _judge(

@@ -1,3 +1,4 @@
+from grader.scenes import view as view
 from grader.scenes.scene import Forecast as Forecast
 from grader.scenes.scene import Hooks as Hooks
 from grader.scenes.scene import Introduction as Introduction
@@ -7,4 +8,4 @@ from grader.scenes.scene import Scene as Scene
 from grader.scenes.scene import Simulation as Simulation
 from grader.scenes.scene import arrived as arrived
 from grader.scenes.scene import command_by_hand as command_by_hand
-from grader.scenes.scene import load_scene as load_scene
+from grader.scenes.subject import load_subject as load_subject

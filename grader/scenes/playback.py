@@ -9,7 +9,7 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from html import escape
@@ -28,25 +28,6 @@ LIVE_PAGE: Final = Path(turtlesim_py.__file__).parent / "live" / "page"
 
 
 @dataclass(frozen=True)
-class Moment:
-    """A piece of evidence.
-
-    Attributes:
-        number: 1, 2, ... over all checks.
-        run: 0 for the nominal run, 1, 2, ... for the varied ones.
-        time_s: when [simulated s].
-        place: x, y [m]; None for nowhere.
-        text: when, where and what, in words.
-    """
-
-    number: int
-    run: int
-    time_s: float
-    place: tuple[float, float] | None
-    text: str
-
-
-@dataclass(frozen=True)
 class JudgedCheck:
     """The verdict of a check, as shown.
 
@@ -55,7 +36,8 @@ class JudgedCheck:
         status: `passed`, `failed` or `not_judged`; on a live page, `waiting` before that.
         word: the same for people, with its points.
         rationale, help: what was found, and a hint.
-        moments: where to see it.
+        moments: where to see it, each as the script reads it: `number`, of those of all checks,
+            `run`, 0 for the nominal one, `tick`, `x` and `y` [m], None for nowhere, and `text`.
     """
 
     title: str
@@ -63,7 +45,7 @@ class JudgedCheck:
     word: str
     rationale: str
     help: str
-    moments: tuple[Moment, ...]
+    moments: tuple[Mapping[str, Any], ...]
 
 
 @dataclass(frozen=True)
@@ -71,14 +53,12 @@ class PlayedRun:
     """A run.
 
     Attributes:
-        number: 0 for the nominal one.
         title: 'Nominal run', 'Varied run 1'.
         outcome: how it ended, in a word or two.
         sent: what has sent, one for a name at most, as the submission's process has reported.
         start: where it began; None for the usual place.
     """
 
-    number: int
     title: str
     outcome: str
     trace: Trace
@@ -109,7 +89,6 @@ def render_page(
     playback: Playback,
     page: Path,
     data: dict[str, Any],
-    tick_s: float,
     folders: Sequence[Path] = (),
     styles: Sequence[Path] = (),
 ) -> str:
@@ -117,7 +96,7 @@ def render_page(
 
     Args:
         page: its main part; the module of the same name is the one that runs.
-        data: of this scene, for the script.
+        data: of this scene, for the script; `tick_s` is the length of a tick [s].
         folders: that modules are searched in, one after another, before those that pages share.
         styles: besides the one that they share.
     """
@@ -125,10 +104,9 @@ def render_page(
     html = whole_html(page)
     data = {
         "language": current(),
-        "tick_s": tick_s,
         "title": playback.title,
         **data,
-        "judged": [_judged(item, tick_s) for item in playback.judged],
+        "judged": [vars(check) for check in playback.judged],
         "sentences": _sentences(f"{script} {html}", current()),
     }
     style = (each.read_text(encoding="utf-8") for each in (PLAYER / "player.css", *styles))
@@ -151,16 +129,6 @@ def whole_html(page: Path) -> str:
         for path in (*(PLAYER / f"{name}.html" for name in ("frame", "transport", "judged")), page)
     )
     return frame.replace("$main", main).replace("$transport", transport).replace("$judged", judged)
-
-
-def _judged(item: JudgedCheck, tick_s: float) -> dict[str, Any]:
-    return {**vars(item), "moments": [_moment(each, tick_s) for each in item.moments]}
-
-
-def _moment(item: Moment, tick_s: float) -> dict[str, Any]:
-    x, y = item.place or (None, None)
-    tick = round(item.time_s / tick_s)
-    return {"number": item.number, "run": item.run, "tick": tick, "x": x, "y": y, "text": item.text}
 
 
 def _in_html(data: Any) -> str:

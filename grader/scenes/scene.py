@@ -2,7 +2,7 @@
 
 A scene has nodes, a tick, places to start, a trace that it records, and a rule that ends a run.
 Runs in real and in virtual time use it by `Scene` alone, recordings and reports by
-`grader.recording.subject.Subject`. Its part in the simulator's process is a `Simulation`; the rest
+`grader.scenes.subject.Subject`. Its part in the simulator's process is a `Simulation`; the rest
 needs no ROS. A scene knows nothing of exercises, submissions and results.
 """
 
@@ -16,8 +16,9 @@ from pathlib import PurePath
 from typing import Any, ClassVar, Final, Literal, get_args
 
 from grader.errors import SceneFailure
-from grader.recording.subject import LONGEST_WORDS, Start, Subject, Trace, load_subject
+from grader.recording.subject import LONGEST_WORDS, Start, Trace
 from grader.scenes.live import LivePage
+from grader.scenes.subject import Subject, load_subject
 from grader.text.message import Message, msg
 
 #: Why a run is over: it came to rest, it was seen to its end, nothing ever moved, the submission

@@ -6,10 +6,6 @@ from grader.submission.error_texts import described as described
 from grader.submission.error_texts import how_it_ends as how_it_ends
 from grader.submission.error_texts import shown as shown
 from grader.submission.examining.examination import Examination as Examination
-from grader.submission.examining.known import DESKTOP as DESKTOP
-from grader.submission.examining.known import FILES as FILES
-from grader.submission.examining.known import KNOWN as KNOWN
-from grader.submission.examining.known import SIMULATORS as SIMULATORS
 from grader.submission.examining.launch_record import LaunchRecord as LaunchRecord
 from grader.submission.examining.launches import prepare as prepare
 from grader.submission.examining.launches import watch_files as watch_files

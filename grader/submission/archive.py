@@ -33,7 +33,7 @@ from grader.submission.safe_members import (
     refuse,
     write,
 )
-from grader.text.message import NOTHING, Message, as_message, msg, reason
+from grader.text.message import NOTHING, Message, msg
 from grader.text.strings import shown
 
 # damage as an OSError: bz2's and gzip's have no number, EINVAL is a position before the file's
@@ -83,12 +83,12 @@ def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -
     except (ListTooLong, NotImplementedError, *DAMAGED, OSError) as error:
         if isinstance(error, OSError) and error.errno not in _DAMAGED_ERRNOS:
             raise
-        text = getattr(error, "strerror", None) or reason(error)
+        text = getattr(error, "strerror", None) or Message.of(error)
         raise SubmissionError(
             "{name} cannot be unpacked as a {kind} file: {why}. {pack_again}",
             name=name,
             kind="zip" if is_zip else "tar",
-            why=as_message(text).map_texts(shown) or msg("it ends too early"),
+            why=Message.of(text).map_texts(shown) or msg("it ends too early"),
             pack_again=PACK_AGAIN,
         ) from error
 

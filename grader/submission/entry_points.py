@@ -15,7 +15,7 @@ from grader.submission.program import Program, Script
 from grader.submission.program_source import is_among, read_imports, roles_in
 from grader.submission.python_source import read_source
 from grader.submission.set_ups import Executable, PackageFolder, read_package
-from grader.text.message import Message, msg, msg_many
+from grader.text.message import Message, msg
 from grader.text.strings import listed, nearest, shown
 
 if TYPE_CHECKING:
@@ -230,10 +230,10 @@ def not_started(names: list[str]) -> list[Message]:
     if not names:
         return []
     return [
-        msg_many(
+        msg(
             "another program was not started: {names}",
             "other programs were not started: {names}",
-            len(names),
+            n=len(names),
             names=listed(names),
         )
     ]

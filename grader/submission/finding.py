@@ -59,7 +59,7 @@ from grader.submission.set_ups import (
 )
 from grader.submission.start import Submission
 from grader.submission.unpacking import CPP, ONLY_PYTHON, PACKAGE, opened
-from grader.text.message import Message, Text, joined, msg, msg_many
+from grader.text.message import Message, Text, joined, msg
 from grader.text.strings import listed, nearest, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
@@ -146,7 +146,7 @@ def find_whole(path: Path, package: str | None, scratch: Path) -> Submission:
         )
     found = msg("a package without {file}", file=MANIFEST)
     if names:
-        found = msg_many("the package {names}", "packages {names}", len(names), names=listed(names))
+        found = msg("the package {names}", "packages {names}", n=len(names), names=listed(names))
     return Submission(name, submitted.base, (), found, asked=package or "")
 
 

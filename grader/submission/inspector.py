@@ -15,7 +15,7 @@ from grader.text.message import Message
 
 if TYPE_CHECKING:  # a confined process has none of the recording
     from grader.recording.subject import Trace
-    from grader.recording.view import Part
+    from grader.scenes.view import Part
     from grader.submission.examining.examination import Examination
 
 

@@ -14,11 +14,11 @@ from grader.recording.recording import OwnInterfaces
 from grader.ros.bag_types import description
 from grader.ros.fields import field_lines, readable
 from grader.submission.examining import cmake
-from grader.submission.examining.known import DESKTOP
 from grader.submission.folder import SubmissionFolder, is_passed_by, read_bounded
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.text.message import NOTHING, Message, msg
 from grader.text.strings import nearest, shown
+from ros_doubles.known import DESKTOP
 
 KINDS: Final = ("msg", "srv", "action")
 #: So many definitions are read, and so much of them as JSON: an argument of a process holds it.

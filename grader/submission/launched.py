@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grader.recording.recording import NOT_THERE
-from grader.recording.view import Cell, Table
+from grader.scenes.view import Cell, Table
 from grader.submission.error_texts import described, placed
 from grader.submission.program import EntryPoint, Script
 from grader.submission.trace import PREFIX, Lacking, LaunchedNode, LaunchFile, PackageTrace, Skipped
 from grader.text import strings as text
-from grader.text.message import NOTHING, Message, Text, joined, msg, msg_many, plain_text
+from grader.text.message import NOTHING, Message, Text, joined, msg
 
 HEADINGS = (
     *(msg("Package"), msg("Program"), msg("Name")),
@@ -128,7 +128,7 @@ def _value(trace: PackageTrace, value: str, number: int) -> Text:
     content = trace.texts[number]
     if not content.strip():
         return msg("an empty text")
-    return msg_many("a text of {n:,} character", "a text of {n:,} characters", len(content))
+    return msg("a text of {n:,} character", "a text of {n:,} characters", n=len(content))
 
 
 def _lines(details: Sequence[Text]) -> tuple[Text, ...]:
@@ -217,7 +217,7 @@ def unlike_launched(trace: PackageTrace, entry: EntryPoint | Script | None) -> l
 def _why(own: list[LaunchedNode], started: str) -> Message:
     others = sorted({node.executable for node in own} - {started})
     if others:
-        return plain_text(", ".join(others))
+        return Message.of(", ".join(others))
     return next(filter(None, map(_given, own)), NOTHING)
 
 

@@ -9,9 +9,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar, Final
 
 from grader.recording.mcap import Channel
-from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
-from grader.recording.view import Part, View
+from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Trace
 from grader.ros.cdr import string, string_of
+from grader.scenes.subject import Subject
+from grader.scenes.view import Part, View
 from grader.submission import inspector, launched
 from grader.submission.trace import PackageTrace, decode, encode
 from grader.text.message import Message, msg

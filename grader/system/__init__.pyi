@@ -1,11 +1,8 @@
 from grader.system import content as content
+from grader.system import expressions as expressions
 from grader.system import files as files
+from grader.system import requirements as requirements
 from grader.system import strict_json as strict_json
 from grader.system import versions as versions
-from grader.system.expressions import Expression as Expression
-from grader.system.expressions import ExpressionError as ExpressionError
-from grader.system.extensions import DEFAULT_EXERCISE as DEFAULT_EXERCISE
 from grader.system.removal import remove as remove
-from grader.system.requirements import require as require
-from grader.system.requirements import require_ros as require_ros
 from grader.system.scratch import make_folder as make_folder

@@ -330,39 +330,43 @@ def check(template: Any, *, has_patterns: bool = False) -> set[str]:
     Raises:
         ExpressionError: one of them is none, or can never be computed.
     """
-    names, todo, count = set[str](), [template], 0
-    while todo:
-        each, count = todo.pop(), count + 1
-        if count > MOST_VALUES:
-            raise ExpressionError(msg("there are at most {n} values", n=MOST_VALUES))
-        if isinstance(each, Mapping):
-            todo += each.values()
-        elif isinstance(each, (list, tuple)):
-            todo += each
-        elif isinstance(each, str):
-            parts = [each[1:]] if each.startswith("=") else _HOLE.findall(each)
-            needed = {name for part in parts for name in _parsed(part, each).names}
-            if has_patterns and is_pattern(each):
-                _compiled(_HOLE.sub("x", each))
-            elif not needed:
-                filled(each, {})
-            names |= needed
+    names = set[str]()
+    for text in _texts(template):
+        needed = {name for each in _expressions(text) for name in each.names}
+        if has_patterns and is_pattern(text):
+            _compiled(_HOLE.sub("x", text))
+        elif not needed:
+            filled(text, {})
+        names |= needed
     return names
 
 
 def looked_up(template: Any, name: str) -> set[str]:
     """Return what a template's expressions look up by a fixed key in a value: `heard["/data"]`."""
-    if isinstance(template, Mapping):
-        return set[str]().union(*(looked_up(each, name) for each in template.values()))
-    if isinstance(template, (list, tuple)):
-        return set[str]().union(*(looked_up(each, name) for each in template))
-    if not isinstance(template, str):
-        return set()
-    parts = [template[1:]] if template.startswith("=") else _HOLE.findall(template)
-    trees = [node for part in parts for node in ast.walk(_parsed(part, template).tree)]
-    keys = [each.slice for each in trees if isinstance(each, ast.Subscript)
-            and _name(each.value) == name]  # fmt: skip
+    trees = (each.tree for text in _texts(template) for each in _expressions(text))
+    parts = (part for tree in trees for part in ast.walk(tree) if isinstance(part, ast.Subscript))
+    keys = (part.slice for part in parts if _name(part.value) == name)
     return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
+
+
+def _texts(template: Any) -> Iterator[str]:
+    """Yield the texts in a template, which may be too large."""
+    todo, count = [template], 0
+    while todo:
+        each, count = todo.pop(), count + 1
+        if count > MOST_VALUES:
+            raise ExpressionError(msg("there are at most {n} values", n=MOST_VALUES))
+        if isinstance(each, str):
+            yield each
+        elif isinstance(each, (Mapping, list, tuple)):
+            todo += each.values() if isinstance(each, Mapping) else each
+
+
+def _expressions(text: str) -> list[Expression]:
+    """Parse the expressions of a text: of its holes, or the one that it is."""
+    if text.startswith("="):
+        return [parse(text[1:])]
+    return [parse(_split(hole)[0]) for hole in _HOLE.findall(text)]
 
 
 def with_fields(template: Any, name: str, fields: Mapping[str, Any]) -> Any:
@@ -460,11 +464,6 @@ def _compiled(text: str) -> re.Pattern[str]:
     except (re.error, OverflowError, RecursionError) as error:
         why = msg("{pattern} is no pattern: {why}", pattern=text, why=str(error))
         raise ExpressionError(why) from None
-
-
-def _parsed(part: str, template: str) -> Expression:
-    """Parse the expression of a hole, or the whole one."""
-    return parse(part if template.startswith("=") else _split(part)[0])
 
 
 def _split(hole: str) -> tuple[str, str]:

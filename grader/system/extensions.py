@@ -1,6 +1,6 @@
 """Extensions, found by the entry points of installed distributions, as ours are.
 
-grader.scenes       a `grader.recording.subject.Subject`, named by an exercise's `scene:`
+grader.scenes       a `grader.scenes.subject.Subject`, named by an exercise's `scene:`
 grader.exercises    a module or package in the exercise's folder
 grader.reports      a `grader.reports.Format`
 grader.inspections  what an exercise's `inspections:` name: a `grader.submission.inspector.

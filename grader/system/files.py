@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import io
 import os
 import re
 import shutil
@@ -27,9 +26,6 @@ _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,9})")
 
 #: So much of a file shows its schema [bytes].
 _BEGINNING = 200
-#: The first day that a zip can store.
-_DATE = (1980, 1, 1, 0, 0, 0)
-_UNIX, _PLAIN_FILE = 3, 0o100644 << 16
 
 
 def cannot_write(path: Path, why: str | Message) -> UsageError:
@@ -258,21 +254,6 @@ def clear(path: Path) -> None:
     if mode is not None and not stat.S_ISDIR(mode):
         with writing(path):
             path.unlink(missing_ok=True)
-
-
-def zipped(members: Iterable[tuple[str, bytes]]) -> bytes:
-    """Return a zip of these names, each once, and contents, in this order; without the time."""
-    import zipfile  # here: only a class makes zips
-
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w") as archive:
-        for name, content in members:
-            member = zipfile.ZipInfo(name, _DATE)
-            member.compress_type = zipfile.ZIP_DEFLATED
-            member.create_system = _UNIX
-            member.external_attr = _PLAIN_FILE
-            archive.writestr(member, content)
-    return file.getvalue()
 
 
 def _mode(path: Path) -> int | None:

@@ -12,7 +12,7 @@ import os
 import stat
 import tempfile
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
@@ -166,6 +166,17 @@ def acquire_lock(name: str) -> IO[str] | None:
         file.close()
         break
     return None
+
+
+@contextmanager
+def hold_one(kind: str, numbers: Iterable[int]) -> Iterator[int | None]:
+    """Hold the first of these numbers that no other grading holds; None where all are held."""
+    for number in numbers:
+        if lock := acquire_lock(f"{kind}-{number}"):
+            with lock:
+                yield number
+            return
+    yield None
 
 
 def lock_folder(folder: Path) -> int | None:

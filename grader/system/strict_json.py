@@ -147,6 +147,13 @@ def not_negative(number: Any) -> Any:
     return number
 
 
+def above_zero(number: Any) -> float:
+    """For `Annotated`: a rate, or a limit."""
+    if not 0 < number < math.inf:
+        raise ValueError(f"expected a number above 0, found {number!r:.80}")
+    return float(number)
+
+
 def _value(kind: Any, data: Any, bounds: Bounds) -> Any:
     origin, args = get_origin(kind), get_args(kind)
     if origin is Annotated:

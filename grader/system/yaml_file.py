@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
@@ -185,9 +184,3 @@ def did_you_mean(key: object, known: Iterable[object]) -> Message:
     if near := nearest(str(key), names):
         return msg("did you mean {near}? There are {names}", near=repr(near[0]), **there)
     return msg("there are {names}", **there)
-
-
-def is_amount(value: object) -> bool:
-    """Whether a value is a number that is finite and not negative."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    return number and math.isfinite(value) and value >= 0  # type: ignore[arg-type, operator]

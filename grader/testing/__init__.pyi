@@ -1,10 +1,5 @@
-from grader.scenes.turtlesim.driving import Controller as Controller
-from grader.scenes.turtlesim.driving import pen as pen
-from grader.scenes.turtlesim.driving import twist as twist
 from grader.testing.checking import check_exercise as check_exercise
 from grader.testing.driving import drive as drive
-from grader.testing.examination import Examination as Examination
 from grader.testing.extensions import check_report as check_report
 from grader.testing.extensions import check_scene as check_scene
-from grader.testing.solutions import FILE_NAME as FILE_NAME
-from grader.testing.solutions import read_solutions as read_solutions
+from grader.testing.solutions import right_solutions as right_solutions

@@ -9,24 +9,23 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader.exercise.asking import Answers, NoFinding, NotReached
-from grader.exercise.check import OF_FILES, answers, judge_by
+from grader.exercise.asking import OF_FILES, Answers, NoFinding, NotReached
+from grader.exercise.check import answers, judge_by
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.exercise.places import describe
 from grader.exercise.result.diagnosis import diagnose
 from grader.exercise.verdict import Evidence, Finding, Verdict
-from grader.grading import gather, run_all, runner
+from grader.grading import gather, record
 from grader.judging import AnyPath
 from grader.recording.recording import Recording, Recordings, Run
-from grader.recording.subject import CAST_SCENE, Start, Trace, load_subject
-from grader.run.opening import open_submission
+from grader.recording.subject import CAST_SCENE, Start, Trace
+from grader.scenes.subject import load_subject
 from grader.system.scratch import make_folder
 from grader.testing import parrot
 from grader.testing.examination import Examination, Fault, Problem, Trial
 from grader.testing.extensions import changed_in_a_bag
 from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
-from grader.text.message import Message, msg, plain_text
+from grader.text.message import Message, msg
 
 #: Called after each run with the number of finished runs, that of all, and the solution's name.
 Progress = Callable[[int, int, str], None]
@@ -131,8 +130,7 @@ def _run(
 
         def run(solution: Solution, name: str) -> Recordings:
             path = paths[solution.name]
-            with open_submission(path, **exercise.opening) as submission:
-                recordings = run_all(submission, exercise, runner(exercise, "virtual"))
+            recordings = record(path, exercise)
             if solution.is_right and exercise.is_started and name != AGAIN:
                 at = folder / "parrots" / name
                 parroted[name] = parrot.record(path, exercise, recordings, at)
@@ -296,25 +294,22 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
             try:
                 finding = answered(name)
             except NoFinding as error:
-                faults.append(Fault(name, plain_text(str(error))))
-                return Finding(0, plain_text("The check found nothing."))
+                faults.append(Fault(name, Message.of(str(error))))
+                return Finding(0, Message.of("The check found nothing."))
             except NotReached as hit:
                 is_whole = False
                 if hit.by == name:
                     faults.append(Fault(name, hit.what))
-                return Finding(0, plain_text("The check found nothing."))
+                return Finding(0, Message.of("The check found nothing."))
             odd = list(_odd_about(finding, exercise, recordings))
             faults.extend(Fault(name, text) for text in odd)
             return finding
 
         return judge_by(watched, exercise.checks, exercise.points)
 
-    def described(_: object, error: BaseException) -> str:
-        return str(describe(error, exercise.folder))
-
     # both times in the same process, which may keep state that it should not
     judging = (exercise.checks, exercise.points, exercise.tolerances)
-    first, second = map(judged, answers(recordings, *judging, described, rounds=2))
+    first, second = map(judged, answers(recordings, *judging, rounds=2))
     for once, again in zip(first, second, strict=True):
         if is_whole and repr(once) != repr(again):  # repr: NaN is not equal to itself
             text = msg("finds something else when it is asked again about the same recordings")

@@ -11,10 +11,11 @@ from grader.exercise.result.result import Result, RunSummary
 from grader.exercise.verdict import Verdict
 from grader.recording import bag
 from grader.recording.mcap import read_mcap
-from grader.recording.subject import Subject, Trace, load_subject
+from grader.recording.subject import Trace
 from grader.reports.formats import ErrorReport, load
 from grader.reports.report import Artifacts, Report
-from grader.text.message import NOTHING, Message, msg, plain_text
+from grader.scenes.subject import Subject, load_subject
+from grader.text.message import NOTHING, Message, msg
 
 
 def check_scene(name: str, setting: str = "") -> list[Message]:
@@ -72,7 +73,7 @@ def check_report(name: str) -> list[Message]:
 
 
 def _reports() -> Iterator[tuple[Message, Report | ErrorReport]]:
-    title, seen, nowhere = plain_text("It moves"), plain_text("It was seen."), Path("/nowhere")
+    title, seen, nowhere = Message.of("It moves"), Message.of("It was seen."), Path("/nowhere")
     for what, status, score, run in (
         (msg("a finished result"), "passed", 10.0, RunSummary("virtual", "finished")),
         (msg("a failed result"), "failed", 2.5, RunSummary("virtual", "crashed", 1)),

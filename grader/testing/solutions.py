@@ -42,7 +42,7 @@ from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
 from grader.system.yaml_file import Keys, Mistake, read_yaml
-from grader.text.message import reason
+from grader.text.message import Message
 
 FILE_NAME = "mutants.yaml"
 #: What is left of a check's points: a share from 0 to 1, or some of them.
@@ -174,9 +174,15 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
         ) from None
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            "{path} cannot be used: {why}", path=str(path), why=reason(error)
+            "{path} cannot be used: {why}", path=str(path), why=Message.of(error)
         ) from None
     return found
+
+
+def right_solutions(exercise: Exercise) -> list[Path]:
+    """Return the paths of the right solutions of an exercise that names some."""
+    is_there = (exercise.folder / FILE_NAME).is_file()
+    return [each.path for each in read_solutions(exercise) if each.is_right] if is_there else []
 
 
 def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]:

@@ -79,6 +79,19 @@ class Message:
         """
         raise TypeError(f"a message in a page is lost; render it: {self.key!r}")
 
+    @classmethod
+    def of(cls, what: str | Message | Exception) -> Message:
+        """Return a message as it is, that of an exception, or one of a text.
+
+        The text is never translated: a name, code, a program's output.
+        """
+        if isinstance(what, Exception):
+            is_message = len(what.args) == 1 and isinstance(what.args[0], Message)
+            what = what.args[0] if is_message else str(what)
+        if isinstance(what, Message):
+            return what
+        return cls(_KEY_OF_TEXT, {_TEXT: what}) if what else NOTHING
+
     @property
     def is_row(self) -> bool:
         """Whether it is a row of parts, each with a sentence of its own."""
@@ -134,7 +147,7 @@ class Message:
         """
         checked = text or _a_text
         if isinstance(data, str):
-            return plain_text(checked(data))
+            return Message.of(checked(data))
         if not isinstance(data, dict) or "key" not in data or depth > _DEEPEST:
             raise ValueError(f"expected a message: a key with values; found {reprlib.repr(data)}")
         if unknown := data.keys() - {"key", "values", "many", "words"}:
@@ -163,17 +176,15 @@ class Message:
         return made
 
 
-def msg(key: str, /, **values: Any) -> Message:
+def msg(key: str, many: str = "", /, **values: Any) -> Message:
     """Make a sentence: `msg("It made {turns:.1f} turns.", turns=2.5)`.
 
     Numbers are written as in the reader's language; numbers that are code are passed as texts.
+
+    Args:
+        many: the sentence for any `n` but 1: `msg("{n} pin", "{n} pins", n=3)`.
     """
-    return Message(key, {name: _value(value) for name, value in values.items()})
-
-
-def msg_many(one: str, many: str, n: float, /, **values: Any) -> Message:
-    """Make a sentence about `{n}` things: `msg_many("{n} pin", "{n} pins", 3)`."""
-    return Message(one, {name: _value(v) for name, v in {"n": n, **values}.items()}, many)
+    return Message(key, {name: _value(value) for name, value in values.items()}, many)
 
 
 def in_context(english: str, context: str) -> Message:
@@ -182,16 +193,6 @@ def in_context(english: str, context: str) -> Message:
     Translators find it by both, as 'left (of a wall)'.
     """
     return Message(f"{english} ({context})", words={"en": english})
-
-
-def plain_text(text: str) -> Message:
-    """Make a message of a text that is never translated: a name, code, a program's output."""
-    return Message(_KEY_OF_TEXT, {_TEXT: text}) if text else NOTHING
-
-
-def as_message(text: str | Message) -> Message:
-    """Return a message as it is, or a text as a message that is never translated."""
-    return text if isinstance(text, Message) else plain_text(text)
 
 
 def authored(text: str) -> Message:
@@ -209,7 +210,7 @@ def joined(parts: Iterable[str | Message], between: str | Message = "") -> Messa
         else:
             row.append(part)
     if len(row) == 1:
-        return as_message(row[0])
+        return Message.of(row[0])
     values = {f"p{number}": _value(part) for number, part in enumerate(row) if part}
     return Message("".join(f"{{{name}}}" for name in values), values)
 
@@ -218,19 +219,13 @@ def series(items: Iterable[str | Message]) -> Message:
     """Join things as a series: 'a', 'a and b', 'a, b and c'."""
     *those, last = list(items) or [NOTHING]
     if not those:
-        return as_message(last)
+        return Message.of(last)
     return msg("{those} and {last}", those=joined(those, ", "), last=last)
 
 
 def chained(items: Iterable[str | Message]) -> Message:
     """Join things with "and" between each two: 'a and b and c'."""
     return joined(items, msg(" and "))
-
-
-def reason(error: Exception) -> Message:
-    """Return the message of an exception."""
-    is_message = len(error.args) == 1 and isinstance(error.args[0], Message)
-    return error.args[0] if is_message else plain_text(str(error))
 
 
 def fill(

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-import unicodedata
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
-from difflib import SequenceMatcher, get_close_matches
+from difflib import get_close_matches
 from functools import cache
 from itertools import islice
-from typing import Any
+from typing import Any, TypeVar
 
-from grader.text.message import Message, Text, joined, msg, plain_text
+from grader.text.message import Message, Text, joined, msg
 
+Cleaned = TypeVar("Cleaned")
 _ESCAPE_SEQUENCES = re.compile(
     r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)?|[@-Z\\^_])"
 )
@@ -29,15 +30,6 @@ _REPLACEMENT = "\ufffd"
 #: a narrow terminal any word may come to the start of a line.
 _COMMANDS = re.compile(r"^([^\S\n]*)::|##(?=\[|vso\[)", re.MULTILINE | re.IGNORECASE)
 _COMMANDS_WRAPPED = re.compile(r"::(?=[a-z-]+[ :])|##(?=\[|vso\[)", re.IGNORECASE)
-#: Letters that people spell otherwise than by leaving out the accent.
-_SPELLED = str.maketrans(
-    {"ß": "ss", "æ": "ae", "ø": "o", "ł": "l", "đ": "d", "œ": "oe", "ı": "i"}
-    | {"ẞ": "SS", "Æ": "AE", "Ø": "O", "Ł": "L", "Đ": "D", "Œ": "OE"}
-)
-#: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
-_ALIKE = 0.85
-#: Words of a name that are shorter are no misspellings of each other: last_x, last_y.
-_SHORT = 3
 #: A name is compared with so many others of this length at most: the time grows with its cube.
 _MOST_NAMES, _LONGEST_NAME = 200, 100
 
@@ -56,13 +48,33 @@ def _controls_but(keep: str) -> re.Pattern[str]:
     return re.compile(f"(?![{re.escape(keep)}]){_CONTROLS}") if keep else re.compile(_CONTROLS)
 
 
-def plain(text: str) -> str:
+def plain(value: Cleaned, limit: int = sys.maxsize) -> Cleaned:
     r"""Remove colours, control characters and commands for a runner of CI.
 
     `\n` is the only line break of the result.
+
+    Args:
+        value: a text, a message, or JSON or a dataclass with texts.
+        limit: texts are cut to this many characters first.
     """
-    text = without_controls(_LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", text)), keep="\t\n")
-    return _COMMANDS.sub(lambda match: f"{match[1]}: :" if match[0].endswith(":") else "# #", text)
+    made: Any = value
+    if isinstance(value, str):
+        text = _LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", clip(value, limit)))
+        made = _COMMANDS.sub(_spaced, without_controls(text, keep="\t\n"))
+    elif isinstance(value, Message):
+        made = value.map_texts(lambda text: plain(text, limit))
+    elif isinstance(value, Mapping):
+        made = {plain(key, limit): plain(item, limit) for key, item in value.items()}
+    elif isinstance(value, list | tuple):
+        made = type(value)(plain(item, limit) for item in value)
+    elif is_dataclass(value) and not isinstance(value, type):
+        parts = {each.name: plain(getattr(value, each.name), limit) for each in fields(value)}
+        made = replace(value, **parts)
+    return made  # type: ignore[no-any-return]
+
+
+def _spaced(command: re.Match[str]) -> str:
+    return f"{command[1]}: :" if command[0].endswith(":") else "# #"
 
 
 def for_terminal(text: str) -> str:
@@ -70,54 +82,32 @@ def for_terminal(text: str) -> str:
     return _COMMANDS_WRAPPED.sub(lambda match: " ".join(match[0]), plain(text))
 
 
-def plain_all(value: Any, limit: int = 1_000_000) -> Any:
-    """Make each text of a value plain, which is JSON or a dataclass.
+def one_line(text: Cleaned) -> Cleaned:
+    """Replace every run of white space by one space; in a message also around an empty value."""
+    made: Any = text
+    if isinstance(text, Message):
+        made = text.map_texts(lambda each: _BLANKS.sub(" ", each))
+        line = one_line(str(made))
+        return made if str(made) == line else Message.of(line)  # type: ignore[return-value]
+    return " ".join(made.split())  # type: ignore[return-value]
+
+
+def clip(text: str, limit: int, *, keeps_end: bool = False) -> str:
+    """Cut a text to `limit` characters.
 
     Args:
-        limit: texts are cut to this many characters first.
+        keeps_end: cut the middle out, of about so many characters, with a note.
     """
-    if isinstance(value, str):
-        return plain(clip(value, limit))
-    if isinstance(value, Message):
-        return value.map_texts(lambda text: plain(clip(text, limit)))
-    if isinstance(value, Mapping):
-        return {plain(clip(key, limit)): plain_all(item, limit) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return type(value)(plain_all(item, limit) for item in value)
-    if is_dataclass(value) and not isinstance(value, type):
-        texts = {
-            field.name: plain_all(getattr(value, field.name), limit) for field in fields(value)
-        }
-        return replace(value, **texts)
-    return value
-
-
-def unaccented(text: str) -> str:
-    """Return a text with its letters without accents, in their case: `Zoe` for `Zoë`."""
-    if text.isascii():
+    if len(text) <= limit:
         return text
-    made = unicodedata.normalize("NFKD", text.translate(_SPELLED))
-    return "".join(sign for sign in made if not unicodedata.combining(sign))
+    if not keeps_end:
+        return text[: limit - 1] + "…"
+    half = limit // 2
+    left_out = len(text) - 2 * half
+    return f"{text[:half]}\n[… {left_out} characters left out …]\n{text[-half:]}"
 
 
-def one_line(text: str) -> str:
-    """Replace every run of white space by one space."""
-    return " ".join(text.split())
-
-
-def in_one_line(message: Message) -> Message:
-    """Replace every run of white space in a message by one space, also around an empty value."""
-    made = message.map_texts(lambda text: _BLANKS.sub(" ", text))
-    shown = one_line(str(made))
-    return made if str(made) == shown else plain_text(shown)
-
-
-def clip(text: str, limit: int) -> str:
-    """Cut a text to `limit` characters."""
-    return text if len(text) <= limit else text[: limit - 1] + "…"
-
-
-def clip_inside(text: str, limit: int) -> str:
+def _clip_inside(text: str, limit: int) -> str:
     """Cut the middle out of a text of one line that has more than `limit` characters."""
     if len(text) <= limit:
         return text
@@ -125,18 +115,9 @@ def clip_inside(text: str, limit: int) -> str:
     return f"{text[: limit - 1 - half]}…{text[-half:]}"
 
 
-def clip_middle(text: str, limit: int) -> str:
-    """Cut the middle out of a text that has more than about `limit` characters, with a note."""
-    if len(text) <= limit:
-        return text
-    half = limit // 2
-    left_out = len(text) - 2 * half
-    return f"{text[:half]}\n[… {left_out} characters left out …]\n{text[-half:]}"
-
-
 def shown(text: object, limit: int = 300) -> str:
     """Return a stranger's text or name as a sentence has it: one line of `limit` characters."""
-    return clip_inside(one_line(plain(clip_inside(str(text), 4 * limit))), limit)
+    return _clip_inside(one_line(plain(_clip_inside(str(text), 4 * limit))), limit)
 
 
 def listed(names: Iterable[Text], limit: int = 10) -> Message:
@@ -166,21 +147,6 @@ def number(value: float) -> float | int:
     """Round a number for JSON: two decimals at most, and an int where it is whole."""
     rounded = round(value, 2)
     return int(rounded) if float(rounded).is_integer() else rounded
-
-
-def misspelt(name: str, other: str) -> bool:
-    """Whether one name is a misspelling of the other."""
-    one, two = name.lower().split("_"), other.lower().split("_")
-    if "".join(one) == "".join(two):
-        return True
-    if any(c.isdigit() for c in name + other):
-        return False
-    if len(one) == len(two):
-        others = [pair for pair in zip(one, two, strict=True) if pair[0] != pair[1]]
-        if any(min(map(len, pair)) < _SHORT for pair in others):
-            return False
-    alike = SequenceMatcher(None, name, other)  # the first two take little time, and are as sure
-    return min(alike.real_quick_ratio(), alike.quick_ratio()) >= _ALIKE and alike.ratio() >= _ALIKE
 
 
 def place(x: float, y: float) -> Message:

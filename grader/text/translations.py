@@ -14,7 +14,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Final
 
-from grader.text.message import Message, fill, msg, msg_many
+from grader.text.message import Message, fill, msg
 
 #: Code -> the language's name for itself.
 LANGUAGES: Final = {"en": "English", "fr": "français", "zh": "中文"}
@@ -55,14 +55,9 @@ def of_environment(environment: Mapping[str, str] = os.environ) -> str:
     return ENGLISH
 
 
-def tr(key: str, /, **values: Any) -> str:
+def tr(key: str, many: str = "", /, **values: Any) -> str:
     """Render a sentence in the language of this process's user; see `msg`."""
-    return translate(msg(key, **values))
-
-
-def tr_many(one: str, many: str, n: float, /, **values: Any) -> str:
-    """Render a sentence about `{n}` things; see `msg_many`."""
-    return translate(msg_many(one, many, n, **values))
+    return translate(msg(key, many, **values))
 
 
 def translate(message: str | Message, language: str = "") -> str:

@@ -77,7 +77,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help=tr("with --regrade: write it"),
     )
-    options.add_of_outputs(parser)
+    add_of_outputs(parser)
+
+
+def add_of_outputs(parser: argparse.ArgumentParser) -> None:
+    """Declare the options for what is written of a whole class."""
+    parser.add_argument(
+        "--after-due",
+        action="store_true",
+        help=tr("students may see now what their exercise hides until it is due"),
+    )
+    parser.add_argument(
+        "--assignment",
+        default="",
+        metavar="NAME",
+        help=tr('what Canvas calls the exercise, as in "Spiral (4711)" (its title)'),
+    )
 
 
 def main(args: argparse.Namespace) -> int:

@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from grader.cli import say
-from grader.reports import points
-from grader.text import Message, clip, for_terminal, msg, tr, tr_many, translate
+from grader.reports.wording import points
+from grader.text import Message, clip, msg, plain, tr, translate
 from grader_class.batch import Planned
 from grader_class.entry import Entry, HandIn, State
 from grader_class.store import Store
@@ -33,17 +33,17 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
     """Show the progress; yield the function to call with each finished hand-in."""
     total, before = planned.hand_ins, len(planned.done)
     if planned.alike:
-        alike = tr_many(
+        alike = tr(
             "{n:,} hand-in not run: the same content has been run already.",
             "{n:,} hand-ins not run: the same content has been run already.",
-            planned.alike,
+            n=planned.alike,
         )
         console.print(alike)
     if before:
-        graded = tr_many(
+        graded = tr(
             "{n:,} hand-in of {total} graded before.",
             "{n:,} hand-ins of {total} graded before.",
-            before,
+            n=before,
             total=total,
         )
         console.print(graded)
@@ -89,7 +89,7 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
                 bar,
                 advance=1,
                 failed=tr("{failed} failed", failed=failed) if failed else "",
-                description=clip(for_terminal(f"{hand_in.known_as}: {_outcome(entry)}"), 60),
+                description=clip(plain(f"{hand_in.known_as}: {_outcome(entry)}"), 60),
             )
 
         yield show
@@ -103,8 +103,8 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
         for state, what in _STATES.items()
         if states[state]
     )
-    summary = tr_many(
-        "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", len(entries), counts=counts
+    summary = tr(
+        "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", n=len(entries), counts=counts
     )
     console.print(summary)
     scores = [e.score for e in entries if e.state == "judged" and e.score is not None]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from grader import Exercise, UsageError, load_exercise
 from grader.exercise import installed, names
-from grader.system import DEFAULT_EXERCISE, files
+from grader.system import files
 from grader.system import versions as system
 from grader.text import msg, number, tr
 from grader_class.course import repository
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exercises",
         nargs="+",
-        default=[DEFAULT_EXERCISE],
+        default=(),
         metavar="NAME",
         help=tr("which ones, in their order (the challenge); the list is below"),
     )
@@ -85,6 +85,7 @@ def main(args: argparse.Namespace) -> int:
             names=" ".join(args.exercises),
         )
     exercises = [load_exercise(installed(name).name) for name in dict.fromkeys(args.exercises)]
+    exercises = exercises or [load_exercise()]
     _check_points(args.kind, args.pass_points, exercises)
     source = _source(args.source, args.ros)
     how = repository.Settings(source, args.pass_points, args.ros)

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from rich.console import Console
 
-from grader.cli import JUDGED, options, say
+from grader.cli import JUDGED, say
 from grader.exercise import View
 from grader.text import msg, tr
+from grader_class.cli.batch import add_of_outputs
 
 NEEDS_LINUX = True
 
@@ -25,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME|FOLDER|FILE",
         help=tr("what the class was judged by, if it is no installed one"),
     )
-    options.add_of_outputs(parser)
+    add_of_outputs(parser)
 
 
 def main(args: argparse.Namespace) -> int:

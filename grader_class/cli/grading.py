@@ -16,8 +16,8 @@ from grader import Exercise, UsageError, exercise_for, load_exercise
 from grader.cli import GRADER_FAILED, JUDGED, options, say
 from grader.exercise import View
 from grader.run import cores, levels, marks_of
-from grader.system import DEFAULT_EXERCISE, files, require_ros
-from grader.text import NOTHING, Message, joined, listed, msg, msg_many
+from grader.system import files, requirements
+from grader.text import NOTHING, Message, joined, listed, msg
 from grader_class import batch, class_file, cluster, pool, pseudonyms, regrade
 from grader_class.batch import Order, Work
 from grader_class.class_file import CLASS, ClassFile
@@ -37,7 +37,7 @@ def grade_class(args: Namespace) -> int:
     if args.scheduler:  # a worker works in another folder
         args.submissions, args.out = args.submissions.absolute(), args.out.absolute()
     else:
-        require_ros(args.time)
+        requirements.require_ros(args.time)
         if args.isolation:
             levels.require(args.isolation)
     messages = Console(stderr=True, highlight=False)
@@ -46,7 +46,7 @@ def grade_class(args: Namespace) -> int:
     hidden = _pseudonyms(args, messages)
     with _found(args, messages, hidden) as (store, found, named):
         if exercise is None:
-            args.named = _named(found, messages)
+            args.named = _named(found, messages) or args.named
             exercise = load_exercise(args.named)
         path = args.exercise or args.named
         order = Order(
@@ -113,7 +113,7 @@ def _jobs(args: Namespace) -> int:
 
 
 def _named(found: Found, messages: Console) -> str:
-    """Return the one exercise that hand-ins name, else the default one."""
+    """Return the one exercise that hand-ins name; '' for none."""
     named: dict[str, list[str]] = {}
     said = NOTHING
     for hand_in in found.hand_ins:
@@ -128,7 +128,7 @@ def _named(found: Found, messages: Console) -> str:
             who=joined(list(who), "; "),
         )
     say(messages, said)
-    return next(iter(named), DEFAULT_EXERCISE)
+    return next(iter(named), "")
 
 
 def _pseudonyms(args: Namespace, messages: Console) -> Pseudonyms | None:
@@ -214,11 +214,11 @@ def _grade(args: Namespace, order: Order, found: Found, store: Store, messages: 
             order = replace(order, isolation=class_file.on_this_machine(order.isolation))
             class_file.note(args.out, order.isolation)
     if aside := store.set_aside(hand_in.id for hand_in in found.hand_ins):
-        note = msg_many(
+        note = msg(
             "{n:,} hand-in in {out} not among these submissions, and set aside in {aside}: {names}",
             "{n:,} hand-ins in {out} not among these submissions, and set aside in {aside}: "
             "{names}",
-            len(aside),
+            n=len(aside),
             out=args.out,
             aside=store.out / ASIDE,
             names=listed(aside),

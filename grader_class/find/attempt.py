@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.submission import is_junk
-from grader.text import NOTHING, Message, Text, listed, one_line, shown
+from grader.text import NOTHING, Message, listed, one_line, shown
 from grader_class.entry import Person
 
 _MAX_NAME = 200  # characters of a person's name or id
@@ -111,7 +111,7 @@ def composed(name: str) -> str:
     return unicodedata.normalize("NFC", name)
 
 
-def add_note(notes: list[Message], what: Message, names: Iterable[Text]) -> None:
+def add_note(notes: list[Message], what: Message, names: Iterable[str | Message]) -> None:
     """Add a note about some `{names}`, if there are any."""
     if every := list(names):
         notes.append(what.given(names=listed(every)))

@@ -13,7 +13,7 @@ from typing import Final
 from grader import SubmissionError, UsageError
 from grader.submission import ArchiveLimits, Budget, Member, TooMuch, is_archive, unpack
 from grader.system import make_folder
-from grader.text import Message, listed, msg, msg_many, shown
+from grader.text import Message, listed, msg, shown
 from grader.text import joined as joined_texts
 from grader_class.class_file import CLASS
 from grader_class.entry import HandIn
@@ -107,10 +107,10 @@ def _first_note(layout: Message, hand_ins: Sequence[HandIn]) -> Message:
     missing = sum(hand_in.problem in (NOT_HANDED_IN, UNCLEAR) for hand_in in hand_ins)
     there = len(hand_ins) - missing
     notes = [
-        msg_many(
+        msg(
             "Read as {layout}: {n:,} hand-in.",
             "Read as {layout}: {n:,} hand-ins.",
-            there,
+            n=there,
             layout=layout,
         )
     ]

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Final
 import yaml
 
 from grader.submission import is_junk
-from grader.text import NOTHING, Message, in_one_line, msg, reason, shown
+from grader.text import NOTHING, Message, msg, one_line, shown
 from grader_class.entry import Person
 from grader_class.find.attempt import Attempt, Export, Item, Piece, add_note, person, read_time
 
@@ -108,7 +108,7 @@ class Gradescope(Layout):
                 why = msg(
                     "{file} cannot be read ({why})",
                     file=self.METADATA,
-                    why=in_one_line(reason(error)),
+                    why=one_line(Message.of(error)),
                 )
         notes.append(msg("Names, ids and times are missing, since {why}.", why=why))
         return {}

@@ -11,6 +11,7 @@ import os
 import re
 import shutil
 import stat
+import unicodedata
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -18,12 +19,17 @@ from pathlib import Path
 from typing import Final
 
 from grader.submission import is_junk, short
-from grader.text import NOTHING, Message, msg, shown, unaccented
+from grader.text import NOTHING, Message, msg, shown
 from grader_class import store
 from grader_class.entry import MAX_ID, HandIn, Person, id_of
 from grader_class.find.attempt import Attempt, Piece, add_note, moment
 from grader_class.find.joining import is_of_roster
 
+#: Letters that people spell otherwise than by leaving out the accent.
+_SPELLED = str.maketrans(
+    {"ß": "ss", "æ": "ae", "ø": "o", "ł": "l", "đ": "d", "œ": "oe", "ı": "i"}
+    | {"ẞ": "SS", "Æ": "AE", "Ø": "O", "Ł": "L", "Đ": "D", "Œ": "OE"}
+)
 _EMPTY: Final = msg("What was handed in is an empty folder.")
 _NOWHERE: Final = msg("What was handed in is a link that leads nowhere.")
 _ELSEWHERE: Final = msg("What was handed in is a link to a folder. Hand in the folder itself.")
@@ -209,7 +215,7 @@ def safe_ids(wanted: Sequence[str]) -> list[str]:
 
 def safe_id(text: str) -> str:
     """Return an id of letters, digits and `._@+-` alone, and none that a system reserves."""
-    letters = unaccented(text)
+    letters = _unaccented(text)
     id = _OTHERS.sub("-", letters).lstrip(".-").rstrip(".-")
     unwritten = sum(not sign.isascii() and sign.isalnum() for sign in letters)
     if len(id) > MAX_ID or unwritten:  # without them two names may be one
@@ -220,3 +226,11 @@ def safe_id(text: str) -> str:
 def _marked(id: str, text: str) -> str:
     digest = hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:8]
     return f"{id[: MAX_ID - 9].rstrip('.-')}-{digest}" if id else f"student-{digest}"
+
+
+def _unaccented(text: str) -> str:
+    """Return a text with its letters without accents, in their case: `Zoe` for `Zoë`."""
+    if text.isascii():
+        return text
+    made = unicodedata.normalize("NFKD", text.translate(_SPELLED))
+    return "".join(sign for sign in made if not unicodedata.combining(sign))

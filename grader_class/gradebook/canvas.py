@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from grader.reports import cell, table
 from grader_class.gradebook.feedback import has_feedback
 from grader_class.gradebook.grade import (
     SIS_LOGIN_ID,
@@ -20,6 +19,7 @@ from grader_class.gradebook.grade import (
     decimal,
     safe_column,
 )
+from grader_class.reports.csv import cell, table
 
 _HEADER = ("Student", "ID", SIS_USER_ID, SIS_LOGIN_ID, "Section")
 _POINTS_POSSIBLE = "Points Possible"

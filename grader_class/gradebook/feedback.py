@@ -13,13 +13,14 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 
 from grader import Recording
-from grader.exercise import ErrorResult, RunSummary, View
-from grader.reports import Artifacts, ErrorReport, Report, points, render
-from grader.system import files
-from grader.text import LANGUAGES, Message, msg, shown, tr, translate
+from grader.exercise import ErrorResult, View
+from grader.reports import Artifacts, ErrorReport, Report, render
+from grader.reports.wording import points
+from grader.text import Message, msg, shown, tr, translate, translations
 from grader_class.entry import Entry
 from grader_class.gradebook.grade import LONGEST, Grade, out_of
 from grader_class.page.thumb import Thumb
+from grader_class.zipping import zipped
 
 #: The time of a line in ROS's log; and an address in memory, in Python's format.
 _LOGGED_AT, _ADDRESS = re.compile(r"\[\d{9,11}\.\d{9}\]"), re.compile(r"\b0x[0-9a-f]{8,16}\b")
@@ -46,7 +47,7 @@ class Feedback:
         """
         suffix = PurePath(name).suffix.lower()
         if suffix == ".zip":
-            return files.zipped([(PAGE, self.page(entry))])
+            return zipped([(PAGE, self.page(entry))])
         return self.page(entry) if suffix in (".html", ".htm") else self.markdown(entry)
 
     def page(self, entry: Entry) -> bytes:
@@ -85,12 +86,11 @@ class Feedback:
             error = ErrorResult("submission", entry.message, entry.max_score)
             return ErrorReport(error, entry.folder)
         result = entry.result
-        result = replace(
-            result,
-            run=_without_circumstances(result.run),
-            varied_runs=tuple(map(_without_circumstances, result.varied_runs)),
-            provenance=None,
+        # without what differs between equal runs
+        run, *varied = (
+            replace(run, wall_s=0.0, isolation="") for run in (result.run, *result.varied_runs)
         )
+        result = replace(result, run=run, varied_runs=tuple(varied), provenance=None)
         return Report(result, _WithoutRecordings(result, entry.folder), self.view)
 
 
@@ -114,14 +114,9 @@ class _WithoutRecordings(Artifacts):
 
 def is_ours(comment: str) -> bool:
     """Whether the grader wrote a comment, in any language."""
-    return any(translate(MARK, language) in comment for language in LANGUAGES)
+    return any(translate(MARK, language) in comment for language in translations.LANGUAGES)
 
 
 def has_feedback(entry: Entry) -> bool:
     """Whether there is feedback: something was handed in, and the grader has not failed."""
     return entry.state in ("judged", "unusable")
-
-
-def _without_circumstances(run: RunSummary) -> RunSummary:
-    """Return a run without what differs between equal runs."""
-    return replace(run, wall_s=0.0, isolation="")

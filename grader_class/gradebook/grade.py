@@ -7,10 +7,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from grader.reports import is_safe_id, points
+from grader.reports.wording import points
 from grader.text import tr
 from grader_class.entry import Entry, HandIn, Person
 from grader_class.find.joining import UNCLEAR
+from grader_class.reports.csv import is_safe_id
 
 #: The longest text in a cell [characters].
 LONGEST = 300

@@ -10,7 +10,6 @@ import html
 import re
 from collections.abc import Sequence
 
-from grader.reports import cell, table
 from grader.text import one_line, plain
 from grader_class.gradebook.feedback import PAGE, Feedback, has_feedback, is_ours
 from grader_class.gradebook.grade import (
@@ -22,6 +21,7 @@ from grader_class.gradebook.grade import (
     participant,
     safe_column,
 )
+from grader_class.reports.csv import cell, table
 
 #: The columns of Moodle 3 and 4 in English. Moodle searches for Identifier, Grade, Last modified
 #: (grade) and Feedback comments, by exactly these names.

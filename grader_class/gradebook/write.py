@@ -18,9 +18,8 @@ from pathlib import Path
 from typing import Any
 
 from grader.exercise import View
-from grader.reports import cell, table
 from grader.system import files
-from grader.text import Message, clip, listed, msg, plain_all, translate
+from grader.text import Message, clip, listed, msg, plain, translate
 from grader_class.entry import Entry
 from grader_class.find.joining import NOT_CLEAR, UNCLEAR
 from grader_class.gradebook import canvas, moodle
@@ -34,6 +33,8 @@ from grader_class.gradebook.grade import (
     is_of_worksheet,
     participant,
 )
+from grader_class.reports.csv import cell, table
+from grader_class.zipping import zipped
 
 CSV, JSON_LINES, EXPORT = "gradebook.csv", "gradebook.jsonl", "export"
 MOODLE_WORKSHEET, MOODLE_GRADES = "moodle-grading-worksheet.csv", "moodle-grade-import.csv"
@@ -112,7 +113,7 @@ def _feedback(everybody: Sequence[Grade], feedback: Feedback) -> dict[str, bytes
 
     def made(members: Mapping[str, Grade]) -> bytes:
         each = ((name, feedback.file(name, members[name].entry)) for name in sorted(members))
-        return files.zipped(each) if members else b""
+        return zipped(each) if members else b""
 
     for_moodle, for_canvas = moodle.feedback_files(everybody), canvas.feedback_files(everybody)
     others = {f"{g.entry.id}.html": g for g in everybody if has_feedback(g.entry)}
@@ -170,7 +171,7 @@ def _line(grade: Grade) -> Any:
         "checks": {check: verdict.score for check, verdict in entry.verdicts.items()},
         "message": str(entry.message),
     }
-    return plain_all(line)
+    return plain(line)
 
 
 # What an import lacks, and who is left out of it ------------------------------------------------

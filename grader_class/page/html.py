@@ -21,11 +21,11 @@ from urllib.parse import quote
 import jinja2
 
 from grader import Exercise, Result, Verdict
-from grader.exercise import PAGE as REPORT
 from grader.exercise import SubmissionInfo
-from grader.recording import load_subject
-from grader.reports import outcome_text, points, templating
-from grader.text import NOTHING, Message, clip, msg, plain, plain_text, shown, tr, translate
+from grader.reports import templating
+from grader.reports.wording import outcome_text, points
+from grader.scenes import load_subject
+from grader.text import NOTHING, Message, clip, msg, plain, shown, tr, translate
 from grader_class.entry import SUBMISSIONS, Entry, State
 from grader_class.page.thumb import EDGE_PX, UNITS, Thumb
 
@@ -69,7 +69,7 @@ class Student:
         """The address of its report, relative to the class page; '' where there is none."""
         if self.entry.result is None:
             return ""
-        return f"{SUBMISSIONS}/{quote(self.entry.id, safe='@+')}/{REPORT}"
+        return f"{SUBMISSIONS}/{quote(self.entry.id, safe='@+')}/{Result.PAGE}"
 
     @property
     def status(self) -> str:
@@ -262,7 +262,7 @@ def _row(verdicts: Sequence[Verdict], lines: Sequence[_Line]) -> CheckRow:
     first_line, alike = _most_frequent(lines)
     return CheckRow(
         check=verdicts[0].check,
-        title=verdicts[0].title or plain_text(verdicts[0].check),
+        title=verdicts[0].title or Message.of(verdicts[0].check),
         max_score=verdicts[0].max_score,
         count=len(verdicts),
         passed=sum(verdict.passed for verdict in verdicts),

@@ -19,8 +19,9 @@ from PIL import Image
 
 from grader import Recording, Recordings
 from grader.exercise import json_file
-from grader.recording import Floats, load_subject
 from grader.reports import draw
+from grader.scenes import load_subject
+from grader.scenes.view import Floats
 from grader.system import strict_json
 from grader.text import clip, translate
 

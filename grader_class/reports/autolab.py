@@ -6,8 +6,10 @@ import json
 from typing import Any, Final
 
 from grader import UsageError
-from grader.reports import ErrorReport, Format, Report, word
+from grader.reports import ErrorReport, Format, Report
+from grader.reports.wording import word
 from grader.text import msg, number, one_line, tr
+from grader_class.reports.lines import led_lines
 
 _STAGE = "Checks"
 
@@ -17,7 +19,7 @@ def render(report: Report) -> str:
     checks: dict[str, Any] = {
         verdict.check: {"passed": True}
         if verdict.passed
-        else {"passed": False, "hint": _hint(word(verdict), report.led_lines(verdict))}
+        else {"passed": False, "hint": _hint(word(verdict), led_lines(report, verdict))}
         for verdict in report.verdicts
     }
     if report.not_shown:

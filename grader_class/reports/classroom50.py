@@ -12,6 +12,7 @@ from typing import Any, Final
 from grader import UsageError, Verdict
 from grader.reports import ErrorReport, Format, Report
 from grader.text import msg, number, one_line
+from grader_class.reports.lines import led_lines
 
 _SCHEMA = "classroom50/result/v1"
 _NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "COMMIT_URL", "RELEASE_URL")
@@ -29,7 +30,7 @@ def render(report: Report) -> str:
             "max-score": max_score,
             "status": verdict.status,
             "exact-score": number(verdict.score),
-            "message": "\n".join(report.led_lines(verdict)),
+            "message": "\n".join(led_lines(report, verdict)),
         }
         for verdict, score, max_score in zip(report.verdicts, scores, max_scores, strict=True)
     ]

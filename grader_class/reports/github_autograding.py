@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from grader.reports import ErrorReport, Format, Report
 from grader.text import msg, number, translate
+from grader_class.reports.lines import led_lines
 
 
 def render(report: Report) -> str:
@@ -18,7 +19,7 @@ def render(report: Report) -> str:
             f"{verdict.check}: {translate(verdict.title)}",
             "pass" if verdict.passed else "fail",
             verdict.score,
-            report.led_lines(verdict),
+            led_lines(report, verdict),
         )
         for verdict in report.verdicts
     ]

@@ -12,8 +12,9 @@ from typing import Any, Final
 
 from grader import Verdict
 from grader.exercise import is_hidden
-from grader.reports import ErrorReport, Format, Report, pictures
-from grader.text import clip_middle, msg, number, tr, translate
+from grader.reports import ErrorReport, Format, Report, canvas_uri
+from grader.text import clip, msg, number, tr, translate
+from grader_class.reports.lines import solid_words, verdict_lines
 
 _OUTPUT_LIMIT = 20_000
 _HIDDEN = {"after_due": "after_due_date", "never": "hidden"}
@@ -66,7 +67,7 @@ def _tests(report: Report) -> list[dict[str, Any]]:
 
 
 def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
-    lines = report.lines(verdict)
+    lines = verdict_lines(report, verdict)
     if verdict.status == "not_judged":
         lines.insert(0, tr("Not judged."))
     elif verdict.is_partial:
@@ -84,13 +85,13 @@ def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
 def _overview(report: Report) -> str:
     parts = [f"<p><strong>{html.escape(report.first_line)}</strong></p>"]
     parts += [f"<p>{html.escape(line)}</p>" for line in (*report.advice, *report.notes)]
-    picture = pictures.canvas_uri(report)
+    picture = canvas_uri(report)
     if picture:
         alt = html.escape(tr("The window at the end"))
         parts.append(f'<p><img src="{picture}" width="500" alt="{alt}"></p>')
-    elif words := pictures.solid_words(report):
+    elif words := solid_words(report):
         parts.append(f"<p>{html.escape(words)}</p>")
-    output = clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    output = clip(report.output.strip("\n"), _OUTPUT_LIMIT, keeps_end=True)
     if output:
         printed = html.escape(tr("What the node printed:"))
         parts.append(f"<p>{printed}</p><pre>{html.escape(output)}</pre>")

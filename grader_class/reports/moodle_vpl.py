@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from grader import Verdict
-from grader.reports import ErrorReport, Format, Report, score_text, title_of, word
+from grader.reports import ErrorReport, Format, Report
+from grader.reports.wording import score_text, title_of, word
 from grader.text import msg, number, one_line, tr, translate
 
 

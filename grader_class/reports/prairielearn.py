@@ -6,8 +6,10 @@ import json
 from typing import Any, Final
 
 from grader import Verdict
-from grader.reports import ErrorReport, Format, Report, pictures, title_of, word
-from grader.text import clip, clip_middle, msg, number, tr, translate
+from grader.reports import ErrorReport, Format, Report, canvas_uri
+from grader.reports.wording import title_of, word
+from grader.text import clip, msg, number, tr, translate
+from grader_class.reports.lines import solid_words, verdict_lines
 
 #: PrairieLearn refuses a file above 1 MB.
 LIMIT_BYTES = 1_000_000
@@ -16,7 +18,7 @@ _OUTPUT_LIMIT = 20_000
 
 def render(report: Report) -> str:
     """Return the JSON document, without picture or even explanations if it would be too large."""
-    picture = pictures.canvas_uri(report)
+    picture = canvas_uri(report)
     images = [{"label": tr("The window at the end"), "url": picture}] if picture else []
     for shown, tests_in_full in ((images, True), ([], True), ([], False)):
         document = json.dumps(_document(report, shown, tests_in_full)) + "\n"
@@ -35,13 +37,13 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
     nothing = {"name": report.not_shown_name, "points": 0, "max_points": 0}
     left_out = [{**nothing, "message": report.not_shown}] if report.not_shown else []
     lines = [report.first_line, *report.advice, *report.notes]
-    if not images and (words := pictures.solid_words(report)):
+    if not images and (words := solid_words(report)):
         lines.append(words)
     return {
         "gradable": True,
         "score": _share(report),
         "message": clip("\n".join(lines), 1000),
-        "output": clip_middle(report.output, _OUTPUT_LIMIT),
+        "output": clip(report.output, _OUTPUT_LIMIT, keeps_end=True),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,
     }
@@ -55,7 +57,7 @@ def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
     }
     if in_full:
         test["description"] = translate(verdict.title)
-        test["message"] = "\n".join(report.lines(verdict))
+        test["message"] = "\n".join(verdict_lines(report, verdict))
     return test
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from grader.submission import Function, last, scope_nodes
-from grader.system import Expression, ExpressionError
+from grader.system import expressions
 from grader_diagnosis.lint.scopes import Found, Source
 
 #: The window's side [m], as turtlesim draws it.
@@ -90,8 +90,8 @@ class Values:
         """
         self._steps = 0
         try:
-            found = Expression("", self._resolve(node)).value({"x": x, "y": y})
-        except (ExpressionError, ArithmeticError, RecursionError) as error:
+            found = expressions.Expression("", self._resolve(node)).value({"x": x, "y": y})
+        except (expressions.ExpressionError, ArithmeticError, RecursionError) as error:
             raise Unknown from error
         if not isinstance(found, bool | float) or math.isnan(found):
             raise Unknown

@@ -15,11 +15,12 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from grader.recording import LintFinding, SourceLine
+from grader.recording.observations import LintFinding, SourceLine
 from grader.submission import Function, last, parse, read_bounded, scope_nodes, seen
-from grader.text import misspelt, nearest
+from grader.text import nearest
 from grader_diagnosis.lint import paths, ros_mistakes, scopes
 from grader_diagnosis.lint.scopes import Found, Source
+from grader_diagnosis.misspelling import misspelt
 
 #: So many findings are kept, and so much of a name or a line [characters].
 MOST, LONGEST = 80, 300

@@ -14,7 +14,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.recording import LintFinding, RanFile
+from grader.recording.observations import LintFinding, RanFile
 from grader.submission import Function, last
 from grader_diagnosis.lint.scopes import LEAVES, Found, Parents, Source
 

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from grader.submission import Function, last
-from grader.text import misspelt
 from grader_diagnosis.lint import scopes
 from grader_diagnosis.lint.conditions import Values
 from grader_diagnosis.lint.scopes import LEAVES, Found, Source, is_read
+from grader_diagnosis.misspelling import misspelt
 
 #: Of a class so many methods are compared with those of another.
 MOST_METHODS = 100

@@ -14,9 +14,9 @@ from itertools import chain
 from typing import TypeGuard
 
 from grader.submission import Function, last
-from grader.text import misspelt
 from grader_diagnosis.lint import conditions, python_mistakes, scopes
 from grader_diagnosis.lint.scopes import Found, Source, is_read, unread
+from grader_diagnosis.misspelling import misspelt
 
 #: Of larger sources, in the nodes of their syntax trees times their files, nothing is looked for.
 MOST_NODES = 60_000

@@ -27,11 +27,12 @@ from grader.submission import (
     step,
     trace,
 )
-from grader.text import Message, msg, plain_text
+from grader.text import Message, msg
 from grader_robots.inspection import files, meshes
 
 if TYPE_CHECKING:
-    from grader.recording import Part, Trace
+    from grader.recording import Trace
+    from grader.scenes.view import Part
 
 
 #: So many descriptions are looked at with other numbers.
@@ -147,7 +148,7 @@ class _Robots:
             by=by,
             is_launched=launched,
             source=next((each for each in map(self._examination.own, sources) if each), ""),
-            problem=Obstacle("error", plain_text(refused)) if refused else None,
+            problem=Obstacle("error", Message.of(refused)) if refused else None,
             meshes=named or (),
             is_xml=named is not None,
         )
@@ -162,7 +163,7 @@ class _Robots:
 
     def _add_file(self, file: str, text: str, errors: str) -> None:
         """Add what xacro makes of a file, or says of it."""
-        problem = Obstacle("error", plain_text(f"xacro: {errors}"[:1000]), file, 0)
+        problem = Obstacle("error", Message.of(f"xacro: {errors}"[:1000]), file, 0)
         if text:
             try:
                 number = self._examination.number(text, is_file=True)

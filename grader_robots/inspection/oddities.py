@@ -21,7 +21,7 @@ from grader.submission import (
     Setup,
     Varied,
 )
-from grader.text import NOTHING, plain_text
+from grader.text import NOTHING, Message
 
 _SETUP: Final = Setup("", "", "", "", NOTHING, (), None, (), (), (), "", (), (), ())
 _LAUNCH: Final = LaunchFile("", None, (), (), (), (), (), (), (), "")
@@ -59,9 +59,9 @@ TRACES: Final[Mapping[str, PackageTrace]] = {
     "ends its set-up with nothing to say": PackageTrace(
         replace(_SETUP, problem=Obstacle("", NOTHING))
     ),
-    "has an odd manifest": PackageTrace(replace(_SETUP, manifest=plain_text(_ODD))),
+    "has an odd manifest": PackageTrace(replace(_SETUP, manifest=Message.of(_ODD))),
     "has an odd script": PackageTrace(
-        replace(_SETUP, scripts=(InstalledScript(_ODD, "", "", plain_text(_ODD), "", False),))
+        replace(_SETUP, scripts=(InstalledScript(_ODD, "", "", Message.of(_ODD), "", False),))
     ),
     "starts what has no name": PackageTrace(_SETUP, launches=(replace(_LAUNCH, nodes=(_NODE,)),)),
     "lacks what has no name": PackageTrace(
@@ -69,7 +69,7 @@ TRACES: Final[Mapping[str, PackageTrace]] = {
         launches=(
             replace(
                 _LAUNCH,
-                problem=Obstacle("what", plain_text(_ODD), _ODD, -1),
+                problem=Obstacle("what", Message.of(_ODD), _ODD, -1),
                 includes=(Include("", "", ()),),
                 lacking=tuple(Lacking(kind, "", "", "") for kind in ("file", "package", "?")),
                 moved=_ODD,

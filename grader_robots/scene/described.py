@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from grader.recording import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
+from grader.scenes.view import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
 from grader.submission import Description, PackageTrace
 from grader.text import NOTHING, Message, joined, msg
 from grader_robots.robot_py.kinematics import forward, joint_transform, tree

@@ -10,8 +10,8 @@ from typing import Literal, NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording import Floats, Tree, TreeNode
-from grader.text import NOTHING, Message, Text, joined, msg, series
+from grader.scenes.view import Floats, Tree, TreeNode
+from grader.text import NOTHING, Message, joined, msg
 from grader_robots.scene.shapes import MOST_NODES, descend, name_of, named
 from grader_robots.scene.trace import TF, TF_STATIC, TICK_S, RobotTrace, Transform
 
@@ -19,7 +19,10 @@ Ints = npt.NDArray[np.int64]
 
 #: The frame in which a robot moves.
 ODOM = "odom"
-_SENDERS: dict[str, Text] = {"scene": "robot_state_publisher", "submission": msg("your node")}
+_SENDERS: dict[str, str | Message] = {
+    "scene": "robot_state_publisher",
+    "submission": msg("your node"),
+}
 
 
 class JointMotion(NamedTuple):
@@ -223,7 +226,7 @@ def _node(depth: int, name: str, frame: Hung | None, is_lost: bool) -> TreeNode:
     if frame is None:
         return TreeNode(depth, name_of(name), msg("hangs on nothing"), mark)
     senders = sorted((_SENDERS[each] for each in frame.senders), key=str)
-    details: list[Text] = [_pace(frame), series(senders)]
+    details: list[str | Message] = [_pace(frame), joined(senders, msg(" and "))]
     if depth == 0:
         details.append(msg("goes round in a circle by {frame}", frame=name_of(frame.parent)))
     if len(frame.parents) > 1:

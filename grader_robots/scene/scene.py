@@ -9,8 +9,9 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from grader.recording import BagMessage, Channel, Endpoint, Pictures, Start, Trace, View
+from grader.recording import BagMessage, Channel, Endpoint, Pictures, Start, Trace
 from grader.scenes import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
+from grader.scenes.view import View
 from grader.text import NOTHING, Message, msg, tr
 from grader_robots.robot_py.robot_state import RefusedDescription, Robot
 from grader_robots.scene import driving, trace, view

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from grader.recording import Floats, Placing, Shape, Solid, SolidFrame
-from grader.text import Message, joined, listed, msg, msg_many, shown
+from grader.scenes.view import Floats, Placing, Shape, Solid, SolidFrame
+from grader.text import Message, joined, listed, msg, shown
 from grader_robots.robot_py.kinematics import matrix, quaternion, translation
 from grader_robots.robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere, Visual
 
@@ -73,10 +73,10 @@ def solid(
     made, left_out = _shapes(model, numbers, meshes)
     name = name_of(model.name)
     parts = [
-        msg_many(
+        msg(
             "The robot {name} with {n:,} link: {links}",
             "The robot {name} with {n:,} links: {links}",
-            len(model.links),
+            n=len(model.links),
             name=name,
             links=named(list(model.links)),
         ),

@@ -12,11 +12,11 @@ from collections.abc import Iterator
 import numpy as np
 from PIL import Image, ImageDraw
 
-from grader.recording import (
+from grader.recording import Pixels
+from grader.scenes.view import (
     Curve,
     Floats,
     PenChange,
-    Pixels,
     Placing,
     Plane,
     Solid,

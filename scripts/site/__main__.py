@@ -18,6 +18,7 @@ import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator
 from importlib import import_module
+from inspect import ismodule
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -73,10 +74,14 @@ SIZE = {"width": 1280, "height": 1000}
 
 
 def api_of(package: str) -> str:
-    """Return the part of the API's page about a package: its public classes and functions."""
+    """Return the part of the API's page about a package: what is public, and modules that are."""
     face = import_module(package)
     objects = (getattr(face, name) for name in face.__all__)
-    names = (f"{each.__module__}.{each.__qualname__}" for each in objects if callable(each))
+    names = (
+        each.__name__ if ismodule(each) else f"{each.__module__}.{each.__qualname__}"
+        for each in objects
+        if callable(each) or ismodule(each)
+    )
     ours = (name for name in names if name.startswith("grader."))
     return f"\n## {package}\n" + "".join(f"\n::: {name}\n" for name in ours)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from grader.scenes.turtlesim.driving import REST_TICKS
-from grader.testing import drive, pen, twist
+from grader.scenes.turtlesim.driving import REST_TICKS, pen, twist
+from grader.testing import drive
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import SIZE_M, Pose
 

@@ -13,7 +13,7 @@ from grader.errors import (
     SubmissionError,
     Whose,
 )
-from grader.text.message import msg, plain_text
+from grader.text.message import Message, msg
 
 
 def kinds():
@@ -27,7 +27,7 @@ def test_every_error_says_whose_turn_it_is_in_one_text():
         assert (str(error.message), str(error)) == ("what was found", "what was found")
         assert error.whose in get_args(Whose)
         assert kind("found {n}", n=2).message == msg("found {n}", n=2)
-        assert kind("found {n}").message == plain_text("found {n}")
+        assert kind("found {n}").message == Message.of("found {n}")
 
 
 def test_only_our_own_failure_and_that_of_a_check_exit_with_3():

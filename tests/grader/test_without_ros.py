@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 from grader.recording.reading import scene_of
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from tests import archive
 
 #: Hides ROS from a process, and has verbs do their work in it.

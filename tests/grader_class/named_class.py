@@ -1,6 +1,6 @@
 """What a class hands in, as Moodle exports it: names of students in all places that have some."""
 
-from grader.reports.csv import table
+from grader_class.reports.csv import table
 from tests.grader_class.classes import CONTROLLER
 
 AT = "2026-11-01T12:00Z"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import UsageError
-from grader.exercise.result.result import RESULT
+from grader.exercise.result.result import Result
 from grader.text.message import msg
 from grader_class import export, pool
 from grader_class.class_file import CLASS, ClassFile
@@ -92,7 +92,7 @@ def folder(graded, tmp_path):
 
 @pytest.mark.parametrize("how", NO_FILE)
 def test_what_is_no_file_of_ours_is_neither_waited_for_nor_read_whole(folder, how):
-    for name in (RESULT, ENTRY):
+    for name in (Result.FILE, ENTRY):
         replaced(folder / name, NO_FILE[how])
         with pytest.raises(UsageError, match=name):
             Entry.read(folder)
@@ -102,7 +102,10 @@ def test_what_is_no_file_of_ours_is_neither_waited_for_nor_read_whole(folder, ho
 
 @pytest.mark.parametrize(
     ("name", "change"),
-    [*((ENTRY, each) for each in NO_ENTRY.values()), *((RESULT, e) for e in NO_RESULT.values())],
+    [
+        *((ENTRY, each) for each in NO_ENTRY.values()),
+        *((Result.FILE, e) for e in NO_RESULT.values()),
+    ],
     ids=[*NO_ENTRY, *NO_RESULT],
 )
 def test_an_entry_or_a_result_whose_values_cannot_be_is_none(folder, name, change):
@@ -146,7 +149,10 @@ def test_whatever_was_changed_in_a_class_the_same_call_ends_as_before(
     (folders["right"] / ENTRY).unlink()
     os.truncate(runs["right"] / RECORDING / "recording.mcap", 1000)
     # the result of somebody else, and a picture that is waited for
-    replaced(folders["twin"] / RESULT, lambda path: shutil.copy(folders["leaves"] / RESULT, path))
+    replaced(
+        folders["twin"] / Result.FILE,
+        lambda path: shutil.copy(folders["leaves"] / Result.FILE, path),
+    )
     replaced(runs["twin"] / THUMB, os.mkfifo)
     # of its run nothing is there but why it could not be started, which is no file
     replaced(folders["crashes"] / ENTRY, os.mkfifo)

@@ -18,7 +18,7 @@ from grader.recording.observations import (
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.saving import save_all
-from grader.text.message import plain_text
+from grader.text.message import Message
 from grader.text.strings import one_line
 from grader_diagnosis.diagnose import diagnose
 from tests.grader.recording.test_printed import CODE
@@ -31,8 +31,8 @@ RIGHT = run_of(said())
 
 
 def verdict(check, status="failed", score=0.0, most=10.0, **more):
-    texts = (plain_text(f"{check} was seen."), plain_text(f"{check} help"))
-    return Verdict(check, plain_text(check), status, score, most, *texts, **more)
+    texts = (Message.of(f"{check} was seen."), Message.of(f"{check} help"))
+    return Verdict(check, Message.of(check), status, score, most, *texts, **more)
 
 
 def test_at_full_marks_there_is_none_but_for_a_crash():

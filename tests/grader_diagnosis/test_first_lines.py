@@ -9,7 +9,7 @@ from grader.recording.recording import Recordings
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.scenes.scene import Limits
-from grader.text.message import plain_text
+from grader.text.message import Message
 from grader_diagnosis import standstill
 from grader_diagnosis.case import Case
 from grader_diagnosis.diagnose import diagnose
@@ -35,7 +35,7 @@ SHOWS_BY_ITSELF = {
 LOSING = [name for name, row in JUDGED.items() if "says" in row]
 WITHOUT_A_RUN = "tests/grader/submission/test_interfaces.py finds them without a run"
 WRONG = hand_ins.read("interfaces")["wrong"]
-LOST = [Verdict("check", plain_text("Check"), "failed", 0, 20, plain_text("It lacks something."))]
+LOST = [Verdict("check", Message.of("Check"), "failed", 0, 20, Message.of("It lacks something."))]
 
 
 def said_of(group):
@@ -59,8 +59,8 @@ WITH_PEERS = first_of_each_rule(TUTORIALS, without=[MISTAKES[name]["key"] for na
 def test_the_first_line_is_the_cause(name):
     row, lost = MISTAKES[name], []
     if "check" in row:  # what it found
-        texts = map(plain_text, row["check"])
-        lost = [Verdict("check", plain_text("Check"), "failed", 0, 20, *texts)]
+        texts = map(Message.of, row["check"])
+        lost = [Verdict("check", Message.of("Check"), "failed", 0, 20, *texts)]
     expect_said(diagnose(Recordings(runs.recorded(name, PLAN, PATIENCE)), lost), row)
 
 

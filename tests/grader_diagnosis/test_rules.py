@@ -18,7 +18,7 @@ from grader.recording.observations import (
 )
 from grader.recording.recording import NOT_THERE, OwnInterfaces, PublishedTopic, Recordings
 from grader.recording.subject import Endpoint
-from grader.text.message import plain_text
+from grader.text.message import Message
 from grader_diagnosis.case import Case
 from grader_diagnosis.diagnose import DISTURBING, RULES, diagnose
 from tests.grader_diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
@@ -55,7 +55,7 @@ STAMPED = end("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped")
 UNUSED = replace(VELOCITY, used=0)
 ONE_POSE = replace(POSES, used=1)
 NOT_A_POSE = end("subscription", "/pose", "geometry_msgs/msg/Pose", used=0)
-FLAG = plain_text("the node used 6 s of processor time without waiting for ROS")
+FLAG = Message.of("the node used 6 s of processor time without waiting for ROS")
 
 MISSPELT = {
     "set_up": "setup.py",
@@ -196,7 +196,7 @@ CAUSES = {
     ),
     "publishes_to_nobody: Your mine/msg/Num is not the .* nothing: Num.msg has more": replace(
         run_of(said(end("publisher", "/nums", "mine/msg/Num"), VELOCITY), "time_limit"),
-        interfaces=OwnInterfaces({}, {}, {"mine/msg/Num": plain_text("Num.msg has more")}),
+        interfaces=OwnInterfaces({}, {}, {"mine/msg/Num": Message.of("Num.msg has more")}),
     ),
     "publishes_to_nobody: You publish .* on /turtle1/cmd_vel, but": run_of(
         topics=(PublishedTopic("/turtle1/cmd_vel", STAMPED.type),)
@@ -359,8 +359,8 @@ SILENT = {
 
 
 def of_check(rationale, help_="", **observed):
-    texts = map(plain_text, (rationale, help_))
-    verdict = Verdict("check", plain_text("Check"), "failed", 0, 20, *texts)
+    texts = map(Message.of, (rationale, help_))
+    verdict = Verdict("check", Message.of("Check"), "failed", 0, 20, *texts)
     found = diagnose(Recordings(run_of(said(**observed))), [verdict])
     assert found is not None
     return found
@@ -409,7 +409,7 @@ def test_a_slip_stands_with_the_line_that_it_is_in():
     findings = tuple(
         LintFinding(kind, "a", "b", LINE) for kind in ("method", "without_self", "class")
     )
-    assert of_check("It ran into a wall.", lint_findings=findings).cause == plain_text(
+    assert of_check("It ran into a wall.", lint_findings=findings).cause == Message.of(
         "It ran into a wall."
     )
     made = SourceLine("drive.py", 43, "watch", "request = SetPen.Request()")

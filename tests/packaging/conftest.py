@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCES = (
     *("LICENSE", "MANIFEST.in", "README.md", "grader", "grader_class", "grader_diagnosis"),
     *("grader_robots", "interfaces", "launch", "package.xml", "pyproject.toml", "setup.py", "tf2"),
-    *("turtlesim_challenge", "turtlesim_py"),
+    *("ros_doubles", "turtlesim_challenge", "turtlesim_py"),
 )
 
 STARTED = "Starting turtlesim with node name /turtlesim"

@@ -17,7 +17,7 @@ EXTENSIONS = ("grader_class", "grader_diagnosis", "grader_robots")
 #: With EXAMPLES=1000, `make test-all`: the core's suite; else what is soon over.
 IS_WHOLE = int(os.environ.get("EXAMPLES") or 0) >= 1000
 SOON_OVER = (
-    "tests/grader/cli/test_run.py::test_a_right_solution_gets_full_marks_by_either_clock",
+    "tests/grader/cli/test_run.py::test_a_right_solution_gets_full_marks",
     "tests/grader/test_fixture_verdicts.py",
 )
 #: What is no part of a checkout, and what of it is no part of the core.

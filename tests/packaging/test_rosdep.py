@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.reports import names
+from grader.reports.formats import names
 from grader.system.requirements import OPTIONAL
 from tests.programs import ran
 

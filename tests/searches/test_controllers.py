@@ -10,7 +10,8 @@ import pytest
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
-from grader.testing import drive, pen, twist
+from grader.scenes.turtlesim.driving import pen, twist
+from grader.testing import drive
 from tests.conftest import EXAMPLES
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import SIZE_M, TICK_S, Pose

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from grader.exercise.check import OF_FILES
+from grader.exercise.asking import OF_FILES
 from grader.exercise.comparing import is_number, is_range
 from grader.scenes.cast import script
-from grader.system.strict_json import not_negative
+from grader.system.strict_json import above_zero, not_negative
 from grader.system.yaml_file import decoded, expect
 
 #: The names that a template may use; None for any: fields that are only known in the run.
 Names = Mapping[str, Set[str] | None]
-
-
-def _above_zero(number: float) -> float:
-    if not 0 < number < math.inf:
-        raise ValueError(f"expected a number above 0, found {number!r:.80}")
-    return number
 
 
 def _message_type(name: str) -> str:
@@ -57,7 +50,7 @@ class ExpectedRate:
             and there are messages to the end.
     """
 
-    hz: Annotated[float, _above_zero]
+    hz: Annotated[float, above_zero]
     tolerance: Annotated[float, not_negative] = 0.1
 
 

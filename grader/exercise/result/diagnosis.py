@@ -14,7 +14,7 @@ from grader.recording.recording import Recordings
 from grader.system import extensions
 from grader.system.strict_json import SPARSE
 from grader.text.message import Message, msg
-from grader.text.strings import in_one_line
+from grader.text.strings import one_line
 
 #: The key of a diagnosis that repeats the finding of a check.
 CHECK = "check"
@@ -104,8 +104,8 @@ def costliest(verdicts: Sequence[Verdict]) -> Diagnosis | None:
     first = worst.evidence[0] if worst.evidence else None
     return Diagnosis(
         CHECK,
-        in_one_line(worst.rationale) or msg("{title}: not as asked for.", title=worst.title),
-        in_one_line(worst.help),
+        one_line(worst.rationale) or msg("{title}: not as asked for.", title=worst.title),
+        one_line(worst.help),
         run=first.run if first is not None else 0,
         time_s=first.time_s if first is not None else None,
         check=worst.check,

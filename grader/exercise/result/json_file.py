@@ -15,7 +15,7 @@ from grader.errors import GraderError, UsageError, Whose
 from grader.system import files, strict_json
 from grader.system.files import read_ours
 from grader.system.strict_json import Made
-from grader.text.message import Message, joined, msg, plain_text, reason
+from grader.text.message import Message, joined, msg
 from grader.text.strings import plain
 
 #: No file of ours is longer [bytes].
@@ -89,7 +89,7 @@ def typed(kind: type[Made], data: Any, phrases: Any = None) -> Made:
     def read(text: Any) -> Message:
         if not isinstance(text, str):
             raise ValueError(f"expected a text, found {text!r:.80}")
-        return Message.parse(known[text]) if text in known else plain_text(text)
+        return Message.parse(known[text]) if text in known else Message.of(text)
 
     try:
         return strict_json.from_json(kind, data, strict_json.OURS._replace(read=read))
@@ -110,7 +110,7 @@ def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
     try:
         return make(data)
     except ValueError as error:
-        raise UsageError(joined([str(path), reason(error)], " ")) from None
+        raise UsageError(joined([str(path), Message.of(error)], " ")) from None
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from grader.exercise.exercise import Exercise
 from grader.exercise.policies import Late, LatePolicy
@@ -29,15 +29,11 @@ FAMILY = "turtlesim-grader/result/"
 SCHEMA = f"{FAMILY}v1"
 #: Files that `grader run` writes beside a result file: name -> path relative to it.
 ARTIFACTS = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
-#: The names of the result file, and of the page beside it.
-RESULT, PAGE = "result.json", "report.html"
 #: Its parts in the order for a reader: the result before how it was made.
 IN_ORDER = (
     *("exercise", "submission", "score", "max_score", "handed_in", "not_shown", "diagnosis"),
     *("verdicts", "run", "varied_runs", "artifacts", "provenance"),
 )
-#: A total is rounded to hundredths, its parts need not be [points].
-ROUNDING = 0.01 + 1e-9
 
 
 def artifacts(nominal: Recording) -> dict[str, str]:
@@ -167,7 +163,14 @@ class Result:
         diagnosis: the earliest cause of lost points; None where none is lost, and in older files.
         handed_in: whose it is, and what being late costs; None where it is not known.
         not_shown: what it leaves out for students; None where it is whole.
+
+        FILE, PAGE: the names of its file, and of the page beside that.
+        ROUNDING: a total is rounded to hundredths, its parts need not be [points].
     """
+
+    FILE: ClassVar = "result.json"
+    PAGE: ClassVar = "report.html"
+    ROUNDING: ClassVar = 0.01 + 1e-9
 
     exercise: str
     submission: str
@@ -208,7 +211,7 @@ class Result:
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise ValueError(f"is damaged: it has two verdicts of the check {twice!r}")
-        more = next((v for v in result.verdicts if v.score > v.max_score + ROUNDING), None)
+        more = next((v for v in result.verdicts if v.score > v.max_score + Result.ROUNDING), None)
         if more is not None:
             raise ValueError(
                 f"is damaged: it gives {more.score:g} of {more.max_score:g} points for the check "
@@ -216,7 +219,7 @@ class Result:
             )
         for key in ("score", "max_score"):
             total, found = sum(getattr(v, key) for v in result.verdicts), getattr(result, key)
-            if abs(total - found) > ROUNDING:
+            if abs(total - found) > Result.ROUNDING:
                 raise ValueError(
                     f"is damaged: its {key} is {found:g}, that of its verdicts {total:g}"
                 )
@@ -240,13 +243,13 @@ class Result:
         """
         files.write(Path(path), json_file.text(self.to_json()))
 
-    def put(self, path: Path) -> None:
-        """Replace whatever has this name by the result file; see `files.put`.
+    def put(self, folder: Path) -> None:
+        """Write the result file into a folder for results; see `files.put`.
 
         Raises:
             UsageError: it cannot be written.
         """
-        files.put(path, json_file.text(self.to_json()).encode("utf-8"))
+        files.put(folder / self.FILE, json_file.text(self.to_json()).encode("utf-8"))
 
 
 def build(

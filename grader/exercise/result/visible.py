@@ -12,7 +12,7 @@ from typing import Literal
 from grader.exercise.result.diagnosis import Diagnosis, costliest
 from grader.exercise.result.result import NotShown, Result
 from grader.exercise.verdict import Verdict, Visible
-from grader.text.message import NOTHING, Message, msg, plain_text
+from grader.text.message import NOTHING, Message, msg
 
 #: The reader: a student, a student when the exercise is over, a teacher.
 View = Literal["student", "after_due", "whole"]
@@ -64,7 +64,7 @@ def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
 
 
 def _no_finding(verdict: Verdict) -> Message:
-    title = verdict.title or plain_text(verdict.check)
+    title = verdict.title or Message.of(verdict.check)
     if verdict.status == "passed":
         return msg(
             "“{title}” passed. What was found is not shown: only its points are.", title=title

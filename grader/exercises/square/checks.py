@@ -7,9 +7,9 @@ from itertools import pairwise, takewhile
 from typing import Any
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.driven_path import DrivenPath, Side
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.turtlesim.driven_path import DrivenPath, Side
 from grader.scenes.turtlesim.trace import USUAL_START, TurtleTrace, stands_still
 from grader.text.message import NOTHING, Message, joined, msg
 from turtlesim_py.world.events import CmdVel

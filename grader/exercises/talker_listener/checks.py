@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from grader.exercise.check import OF_FILES, Checks, Tolerances
+from grader.exercise.asking import OF_FILES
+from grader.exercise.check import Checks, Tolerances
 from grader.exercise.sentences import unless_unknown
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recordings

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.driven_path import DrivenPath
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.cast.trace import CastTrace
+from grader.scenes.turtlesim.driven_path import DrivenPath
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.text.message import chained, msg
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.driven_path import DrivenPath
 from grader.exercise.expect.judging import no_service
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.cast.trace import CastTrace
+from grader.scenes.turtlesim.driven_path import DrivenPath
 from grader.scenes.turtlesim.trace import USUAL_START, TurtleTrace
 from grader.text.message import msg
 from turtlesim_py.world.events import TeleportAbsolute, TeleportRelative

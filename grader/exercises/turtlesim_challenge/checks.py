@@ -18,7 +18,7 @@ from grader.exercises.turtlesim_challenge.rate import judge_calls, judge_rate
 from grader.exercises.turtlesim_challenge.spiral import judge_spiral
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
-from grader.text.message import Message, joined, msg, msg_many
+from grader.text.message import Message, joined, msg
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 
@@ -75,12 +75,12 @@ def _unmoved(path: Path, commands: Sequence[CmdVel], more: Message) -> Finding:
     if fast is not None:
         return Finding(0, joined([fast.text, more]), fast.help)
     if not any(value for call in commands for value in (*call.linear, *call.angular)):
-        text = msg_many(
+        text = msg(
             "Your node published {n} velocity command in {seconds:.1f} s, and never moved "
             "turtle1: all were zeros.",
             "Your node published {n} velocity commands in {seconds:.1f} s, and never moved "
             "turtle1: all were zeros.",
-            len(commands),
+            n=len(commands),
             seconds=seconds,
         )
         help_ = msg(

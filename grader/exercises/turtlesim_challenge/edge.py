@@ -12,7 +12,7 @@ from grader.exercises.turtlesim_challenge.stops import (
     judge_stop,
 )
 from grader.recording.recording import Recordings
-from grader.text.message import Message, chained, joined, msg, msg_many
+from grader.text.message import Message, chained, joined, msg
 from turtlesim_py.world.turtle import TICK_S
 
 SOON_S = 5.0
@@ -49,10 +49,10 @@ def _all_right(stops: list[Stop]) -> Message:
     late = [number for number, stop in enumerate(stops) if stop.kind == "late"]
     ended = next(stop for stop in stops if stop.kind != "late")
     if not late and len(stops) > 1:
-        return msg_many(
+        return msg(
             "It stopped by a command, {gap_m:.2f} m from the wall, and in the varied run too.",
             "It stopped by a command, {gap_m:.2f} m from the wall, and in the {n} varied runs too.",
-            len(stops) - 1,
+            n=len(stops) - 1,
             gap_m=ended.gap_m,
         )
     if not late:
@@ -135,10 +135,10 @@ def _one_wall_only(stops: list[Stop]) -> Finding | None:
     wall = WALL_NAMES[worst.wall]
     return Finding(
         0,
-        msg_many(
+        msg(
             "It stopped at the {walls} wall, but not at the {wall} one. In {which}: {seen}",
             "It stopped at the {walls} walls, but not at the {wall} one. In {which}: {seen}",
-            len(at),
+            n=len(at),
             walls=chained([WALL_NAMES[name] for name in at]),
             wall=wall,
             which=_which_run(worst.path.number),

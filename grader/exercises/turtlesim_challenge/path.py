@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from grader.exercise.driven_path import DrivenPath
 from grader.recording.recording import Recording
+from grader.scenes.turtlesim.driven_path import DrivenPath
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.text.message import msg
 from turtlesim_py.world.events import (

@@ -8,7 +8,7 @@ from grader.exercises.turtlesim_challenge import colours, mistakes, pens
 from grader.exercises.turtlesim_challenge.edge import in_run
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path, Visit
 from grader.recording.recording import Recordings
-from grader.text.message import Message, joined, msg, msg_many
+from grader.text.message import Message, joined, msg
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.turtle import TICK_S
 
@@ -67,10 +67,10 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 
 def _all_right(right: int, entered: int, varied: int) -> Message:
-    elsewhere = msg_many(
+    elsewhere = msg(
         ", and in the varied run too",
         ", and in the {n} varied runs too",
-        varied,
+        n=varied,
     )
     return msg(
         "All {entries} gave the pen its quadrant's colour{short}{elsewhere}.",
@@ -81,7 +81,7 @@ def _all_right(right: int, entered: int, varied: int) -> Message:
 
 
 def _entries(number: int) -> Message:
-    return msg_many("{n} entry", "{n} entries", number)
+    return msg("{n} entry", "{n} entries", n=number)
 
 
 def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pens.Coloring:
@@ -115,10 +115,10 @@ def _explain(
     sentences += _demanded(found, tolerances)
     if found.wanted > len(found.by_quadrant):
         sentences.append(
-            msg_many(
+            msg(
                 "Of the four quadrants {n} was entered for long enough.",
                 "Of the four quadrants {n} were entered for long enough.",
-                len(found.by_quadrant),
+                n=len(found.by_quadrant),
             )
         )
     if not found.is_conclusive:

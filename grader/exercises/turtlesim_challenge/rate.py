@@ -13,7 +13,7 @@ from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import WATCHDOG_TICKS
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, Path
-from grader.text.message import Message, joined, msg, msg_many
+from grader.text.message import Message, joined, msg
 from turtlesim_py.world.events import CmdVel, SetPen
 from turtlesim_py.world.turtle import TICK_S
 
@@ -110,10 +110,10 @@ def judge_calls(path: Path, tolerances: Tolerances) -> Finding:
     if all(call.off for call in calls):
         return Finding(
             0,
-            msg_many(
+            msg(
                 "The {n} call of set_pen switches the pen off: none gives it a colour.",
                 "All {n} calls of set_pen switch the pen off: none gives it a colour.",
-                len(calls),
+                n=len(calls),
             ),
             msg("What do your requests say of `off`? 0 is a pen that draws."),
             (path.at(calls[0].tick, msg("the pen is switched off here")),),
@@ -124,8 +124,8 @@ def judge_calls(path: Path, tolerances: Tolerances) -> Finding:
     if len(calls) <= needed + tolerances["spare_calls"]:
         text = msg(
             "{calls} for {entries}.",
-            calls=msg_many("{n} call", "{n} calls", len(calls)),
-            entries=msg_many("{n} entry", "{n} entries", counts[0]),
+            calls=msg("{n} call", "{n} calls", n=len(calls)),
+            entries=msg("{n} entry", "{n} entries", n=counts[0]),
         )
         if len(calls) + tolerances["spare_calls"] < min(counts):
             help_ = msg("Call it at each entry into another quadrant, not only at the first.")

@@ -7,23 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from grader.recording.view import Floats, Placing, Shape, Solid, Times, Track, View
+from grader.scenes.view import Floats, PenChange, Placing, Shape, Solid, Times, Track, View
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000
 #: More tracks than this are not drawn; a submission can spawn any number.
 _TRACKS = 5
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """A part of a track with one pen, from sample to sample; `drawn` unless the pen was off."""
-
-    first: int
-    last: int
-    color: str
-    width: int
-    drawn: bool
+Stretch = tuple[int, int, PenChange]
 
 
 @dataclass(frozen=True)
@@ -33,7 +23,7 @@ class SampledTrack:
     Attributes:
         x, y: where it was at each sample [px, y down]; NaN where it was not there.
         theta: its heading at each sample [rad].
-        stretches: the track in parts, one for each pen.
+        stretches: the track in parts: from sample to sample, with the pen there.
     """
 
     x: Floats
@@ -47,9 +37,9 @@ class SampledTrack:
     def lifted(self) -> str:
         """Return the stretches on which the pen was off as the `d` of an SVG path."""
         return "".join(
-            svg_path(self.x[s.first : s.last + 1], self.y[s.first : s.last + 1])
-            for s in self.stretches
-            if not s.drawn
+            svg_path(self.x[first : last + 1], self.y[first : last + 1])
+            for first, last, pen in self.stretches
+            if not pen.drawn
         )
 
 
@@ -127,7 +117,7 @@ def _stretches(track: Track, times_ns: Times) -> tuple[Stretch, ...]:
         # The stroke that leads to the sample of a change has the new colour already.
         end = max(sample - 1, start) if change else sample
         if end > start:
-            stretches.append(Stretch(start, end, pen.color, pen.width, pen.drawn))
+            stretches.append((start, end, pen))
         start = end
         pen = change or pen
     return tuple(stretches)

@@ -24,8 +24,6 @@ from grader.exercise.result.diagnosis import Diagnosis
 from grader.exercise.result.result import RunSummary
 from grader.exercise.verdict import Evidence
 from grader.recording.recording import Recording
-from grader.recording.subject import Subject, load_subject
-from grader.recording.view import Floats, Plane, Solid, Table, Tree
 from grader.reports import readable, wording
 from grader.reports.formats import ErrorReport, Format
 from grader.reports.page import templating
@@ -34,6 +32,8 @@ from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, recor
 from grader.reports.page.plots import HEIGHT, WIDTH, Drawn, Plots, expected, plots
 from grader.reports.report import Report
 from grader.scenes.scene import Scene
+from grader.scenes.subject import Subject, load_subject
+from grader.scenes.view import Floats, Plane, Solid, Table, Tree
 from grader.text import strings as text
 from grader.text.message import msg
 from grader.text.translations import current, number, tr, translate
@@ -249,7 +249,7 @@ def _view(report: Report, number: int, on_paper: bool) -> RunView:
         picture=recorded_uri(report, number) if number else canvas_uri(report),
         expected=expected(report, drawing.plots) if number == 0 else {},
         pins=pins(report, number),
-        output=text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
+        output=text.clip(output.strip("\n"), _OUTPUT_LIMIT, keeps_end=True),
         on_paper=on_paper,
     )
 
@@ -285,7 +285,11 @@ def _script_data(shown: Animation) -> dict[str, Any]:
                 "x": _numbers(track.x, 1),
                 "y": _numbers(track.y, 1),
                 "a": _numbers(-np.degrees(track.theta), 0),
-                "ink": [[s.first, s.last, s.color, s.width] for s in track.stretches if s.drawn],
+                "ink": [
+                    [first, last, pen.color, pen.width]
+                    for first, last, pen in track.stretches
+                    if pen.drawn
+                ],
             }
             for track in shown.tracks
         ],

@@ -13,10 +13,7 @@ from dataclasses import dataclass
 
 from PIL import Image, UnidentifiedImageError
 
-from grader.recording.subject import load_subject
-from grader.recording.view import Solid
 from grader.reports.report import Point, Report
-from grader.text.translations import translate
 
 #: A larger picture is reduced to 256 colours. Only noise is larger: a spiral has some 20 kB.
 _LIMIT_BYTES = 150_000
@@ -40,13 +37,6 @@ def recorded_uri(report: Report, run: int) -> str:
     """Return the final window of a run's recording; '' without one, or without a picture."""
     recording = report.recordings.get(run)
     return _uri(recording.canvas) if recording is not None and recording.canvas else ""
-
-
-def solid_words(report: Report) -> str:
-    """Return in words what only a page can draw, of the nominal run; '' where there is nothing."""
-    recording = report.recordings.get(0)
-    parts = load_subject(recording.scene).view(recording.trace).parts if recording else ()
-    return next((translate(part.text) for part in parts if isinstance(part, Solid)), "")
 
 
 def _uri(data: bytes) -> str:

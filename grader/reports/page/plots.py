@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grader.recording.view import Call, Curve, Floats, View
 from grader.reports.page.animation import svg_path
 from grader.reports.report import Report
+from grader.scenes.view import Call, Curve, Floats, View
 from grader.text import strings as text
 from grader.text.translations import tr, translate
 

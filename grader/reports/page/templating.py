@@ -20,7 +20,7 @@ from markupsafe import Markup
 
 from grader.system import versions as system
 from grader.text import strings as text
-from grader.text.translations import current, number, tr, tr_many, translate
+from grader.text.translations import current, number, tr, translate
 
 #: The style of all pages.
 STYLE = Path(__file__).parent / "templates" / "page.css"
@@ -46,7 +46,6 @@ def environment(folder: Path, page: str) -> jinja2.Environment:
     made.filters.update(points=text.points, clip=text.clip, t=translate)
     made.globals.update(
         tr=tr,
-        tr_many=tr_many,
         t=translate,
         number=number,
         language=current,

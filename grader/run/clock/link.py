@@ -12,8 +12,6 @@ import os
 import socket
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, NoReturn
 
 from grader.run.clock.scheduler import Scheduler
 from grader.run.lockstep import real
@@ -74,15 +72,13 @@ class SimulatorSockets:
             data, descriptors, _, _ = socket.recv_fds(self._connection, PIECE_BYTES, 1)
         except OSError:
             data = b""
-        if not data:
-            real.leave(1)
-        packet = self._decode(data)
-        if not isinstance(packet, Table) or len(descriptors) != 1:
-            self.fail(packet, "a table")
-        os.set_inheritable(descriptors[0], False)
-        self._mailbox = socket.socket(fileno=descriptors[0])
+        table = self._decode(data)
+        assert isinstance(table, Table)
+        (mailbox,) = descriptors
+        os.set_inheritable(mailbox, False)
+        self._mailbox = socket.socket(fileno=mailbox)
         self._mailbox.setblocking(False)
-        return packet
+        return table
 
     def send(self, packet: Packet) -> None:
         try:
@@ -91,15 +87,13 @@ class SimulatorSockets:
         except OSError:
             real.leave(1)
 
-    def receive(self) -> Packet:
+    def receive(self) -> Table | Reply:
         data: bytes | None = None
         while data is None:
             try:
                 data = self._packets.read()
             except OSError:
                 data = b""
-        if not data:
-            real.leave(1)
         return self._decode(data)
 
     def mail(self, pieces: list[bytes]) -> list[bytes]:
@@ -117,42 +111,18 @@ class SimulatorSockets:
         """Write the tick where it is read after this process, even if that ends silently."""
         PROGRESS.pack_into(self._progress, 0, tick)
 
-    def fail(self, packet: object, expected: str) -> NoReturn:
-        """Refuse a wrong packet: the submission has read or written on the socket."""
-        self._break(ProtocolError(f"{packet!r:.200} where {expected} was expected"))
-
-    def _decode(self, data: bytes) -> Packet:
+    def _decode(self, data: bytes) -> Table | Reply:
+        """Decode a packet; refuse a wrong one: the submission has used the socket."""
+        if not data:
+            real.leave(1)
         try:
-            return decode(data)
+            packet = decode(data)
+            if isinstance(packet, Table | Reply):
+                return packet
+            raise ProtocolError(f"{packet!r:.200} was not expected")
         except ProtocolError as error:
-            self._break(error)
-
-    def _break(self, error: ProtocolError) -> NoReturn:
-        self._refuse(msg("broke our virtual time ({error})", error=f"{error!r:.200}"))
-        raise error
-
-
-@dataclass
-class Agreed:
-    """The simulator's last reply, and whether anything was mailed since.
-
-    Attributes:
-        tick: the simulator's tick in that reply; the program may be further by now.
-        foreseen: the last tick of the forecast.
-        until_ns: other programs may do something from then on.
-        parcels: the messages of the forecast that have not been delivered, by tick.
-        replied_s: when the reply came, in real time [s].
-        has_mail: whether something was mailed since, which the forecast does not consider.
-        has_mail_for_others: whether some of it is for other programs, which must get it now.
-    """
-
-    tick: int = 0
-    foreseen: int = 0
-    until_ns: int = NEVER
-    parcels: deque[Parcel] = field(default_factory=deque)
-    replied_s: float = 0.0
-    has_mail: bool = False
-    has_mail_for_others: bool = False
+            self._refuse(msg("broke our virtual time ({error})", error=f"{error!r:.200}"))
+            raise
 
 
 class SimulatorLink(EndpointRegistry):
@@ -193,7 +163,14 @@ class SimulatorLink(EndpointRegistry):
         self.is_recorded = False
         self._scheduler = scheduler
         self._sockets = SimulatorSockets(connection, page, refuse)
-        self._agreed = Agreed(until_ns=0 if number else NEVER)
+        #: the last reply, when it came in real time [s], and the last tick of its forecast
+        self._reply = Reply(0, False, 0, 0 if number else NEVER)
+        self._replied_s, self._foreseen = 0.0, 0
+        #: the messages of the forecast that have not been delivered, by tick
+        self._parcels: deque[Parcel] = deque()
+        #: something was mailed since, which the forecast does not consider; it is for other
+        #: programs, which must get it now
+        self._has_mail = self._has_mail_for_others = False
         self._now_ns = 0
         self._is_introduced = False
         self._sent = self._sent_bytes = 0
@@ -204,26 +181,26 @@ class SimulatorLink(EndpointRegistry):
     @guarded
     def advance(self, deadline_ns: int) -> None:
         """Move time to the next event: our deadline, or something from the simulator."""
-        scheduler, agreed = self._scheduler, self._agreed
-        free_ns = min((self.tick + 1) * TICK_NS, agreed.until_ns)
-        if deadline_ns < free_ns and not agreed.has_mail_for_others:
+        scheduler = self._scheduler
+        free_ns = min((self.tick + 1) * TICK_NS, self._reply.until_ns)
+        if deadline_ns < free_ns and not self._has_mail_for_others:
             scheduler.set_now(max(deadline_ns, scheduler.now_ns))
             return
         self.connect()
         if deadline_ns == NEVER:
             self.on_standstill()
         listens = self.is_listening()
-        if self._agreed.has_mail or not self._use_forecast(deadline_ns, listens=listens):
+        if self._has_mail or not self._use_forecast(deadline_ns, listens=listens):
             self._exchange(deadline_ns, listens=listens)
         scheduler.set_now(max(scheduler.now_ns, self._now_ns))
         self.on_arrival()
 
     def _use_forecast(self, deadline_ns: int, *, listens: bool) -> bool:
         """Let forecast ticks pass; return whether any has."""
-        last = min(deadline_ns // TICK_NS, self._agreed.foreseen)
+        last = min(deadline_ns // TICK_NS, self._foreseen)
         if listens:
             last = min(last, self.tick + 1)
-        if self.tick >= last or real.monotonic() > self._agreed.replied_s + LONGEST_ALONE_S:
+        if self.tick >= last or real.monotonic() > self._replied_s + LONGEST_ALONE_S:
             return False
         self._move_to(last * TICK_NS)
         return True
@@ -234,31 +211,31 @@ class SimulatorLink(EndpointRegistry):
         if now_ns // TICK_NS > self.tick:
             self.tick = now_ns // TICK_NS
             self._sockets.write_tick(self.tick)
-        parcels = self._agreed.parcels
-        while parcels and parcels[0].time_ns <= now_ns:
-            self._deliver(parcels.popleft())
+        while self._parcels and self._parcels[0].time_ns <= now_ns:
+            self._deliver(self._parcels.popleft())
 
     def synchronise(self) -> None:
         """Have the simulator catch up with our tick and our mail; no time passes."""
         self.connect()
-        if self._agreed.has_mail or self.tick > self._agreed.tick:
+        if self._has_mail or self._is_ahead():
             self._exchange()
+
+    def _is_ahead(self) -> bool:
+        """Whether ticks of the forecast have passed since the last reply."""
+        return self.tick > self._reply.now_ns // TICK_NS
 
     def _exchange(self, deadline_ns: int = 0, *, listens: bool = False) -> None:
         """Ask for time, to a deadline or, without one, for none, and handle the reply."""
         now_ns = self._scheduler.now_ns
-        self._sockets.send(Advance(deadline_ns, listens, self.tick, now_ns, self._agreed.has_mail))
+        self._sockets.send(Advance(deadline_ns, listens, self.tick, now_ns, self._has_mail))
         removed: list[int] = []
-        while not isinstance(packet := self._sockets.receive(), Reply):
-            if not isinstance(packet, Table):
-                self._sockets.fail(packet, "a reply")
+        while isinstance(packet := self._sockets.receive(), Table):
             removed += packet.removed
             self.add_others(packet)
             self._connect_anew()
-        self._agreed = Agreed(
-            *(packet.now_ns // TICK_NS, packet.foreseen, packet.until_ns),
-            *(deque(packet.parcels), real.monotonic()),
-        )
+        self._reply, self._replied_s = packet, real.monotonic()
+        self._parcels, self._foreseen = deque(packet.parcels), packet.foreseen
+        self._has_mail = self._has_mail_for_others = False
         self._move_to(packet.now_ns)
         if removed:
             self.remove_others(removed)
@@ -266,7 +243,9 @@ class SimulatorLink(EndpointRegistry):
         if packet.is_over:
             self.on_over()
             real.leave(0)
-        self._mail_for_late()
+        parcels, self._for_late = self._for_late, []
+        for parcel in parcels:  # what writers keep for readers that come late
+            self.send_parcel(parcel)
 
     # Messages ---------------------------------------------------------------------------------
 
@@ -275,46 +254,24 @@ class SimulatorLink(EndpointRegistry):
         self.connect()
         self._scheduler.charge(QUESTION_UNITS)
 
-    def publish(self, writer: Writer, data: bytes) -> None:
-        """Send to readers of this process at once, to the simulator by its mailbox."""
-        super().publish(writer, data)
-        for remote in writer.remote:
-            self._mail(Parcel(remote.number, 0, writer.sent, self._scheduler.now_ns, data))
-        self._has_sent(data, writer.local)
-
-    def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
-        """Send a request, in the same way."""
-        number = super().ask(writer, client, data)
-        for remote in writer.remote:
-            client.awaited += 1
-            now_ns = self._scheduler.now_ns
-            self._mail(Parcel(remote.number, client.number, number, now_ns, data))
-        self._has_sent(data, writer.local)
-        return number
-
-    def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
-        """Send a response, in the same way."""
-        super().respond(writer, to, data)
-        if isinstance(to.client, int):
-            self._mail(Parcel(to.client, 0, to.number, self._scheduler.now_ns, data))
-        self._has_sent(data, [to.client] if isinstance(to.client, Reader) else [])
-
-    def _has_sent(self, data: bytes, local: list[Any]) -> None:
+    def note_sent(self, data: bytes, *, is_local: bool) -> None:
+        """Count a message, and charge for it; the run ends where there are too many."""
         self._sent += 1
         self._sent_bytes += len(data)
         if self._sent > MOST_SENT or self._sent_bytes > MOST_SENT_BYTES:
             self.note(Kind.FLOODING)
             self.on_over()
             real.leave(0)
-        if local:
+        if is_local:
             self.on_arrival()
         self._scheduler.charge(SEND_UNITS)
 
-    def _mail(self, parcel: Parcel) -> None:
+    def send_parcel(self, parcel: Parcel) -> None:
+        """Put a message into the simulator's mailbox; where that is full, have it emptied."""
         rest = list(pieces(encode(Mail([parcel]))))
         while True:
-            self._agreed.has_mail = True
-            self._agreed.has_mail_for_others |= parcel.endpoint >> SHIFT != 0
+            self._has_mail = True
+            self._has_mail_for_others |= parcel.endpoint >> SHIFT != 0
             if not (rest := self._sockets.mail(rest)):
                 return
             self._exchange()
@@ -346,10 +303,10 @@ class SimulatorLink(EndpointRegistry):
         table = self.pop_table()
         self._connect_anew()
         if table.added or table.removed:
-            if self.tick > self._agreed.tick:  # forecast for the readers that there were
+            if self._is_ahead():  # forecast for the readers that there were
                 self._exchange()
-            self._agreed.parcels.clear()
-            self._agreed.foreseen = self.tick
+            self._parcels.clear()
+            self._foreseen = self.tick
             self._sockets.send(table)
             if self.is_recorded:  # hidden readers of what is new, before anything is published
                 self._exchange()
@@ -365,12 +322,6 @@ class SimulatorLink(EndpointRegistry):
                         for kept in writer.history
                     ]
         self.count_meetings()
-
-    def _mail_for_late(self) -> None:
-        """Send readers that come late what writers keep for such."""
-        parcels, self._for_late = self._for_late, []
-        for parcel in parcels:
-            self._mail(parcel)
 
     def note(self, kind: Kind, remark: Message = NOTHING) -> None:
         """Send the simulator a note about this process."""

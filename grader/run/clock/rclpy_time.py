@@ -57,7 +57,7 @@ def install(
     graph.install()
     _order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
-    _replace_ok(scheduler)
+    _charge_for(rclpy.context.Context, "ok", scheduler)
     allow_nested_spins()
     _replace_events_executor()
     scheduler.on_unknown_thread = lambda: link.refuse(
@@ -237,20 +237,6 @@ def allow_nested_spins() -> None:
 
     if hasattr(rclpy.executors.Executor, "_enter_spin"):
         rclpy.executors.Executor._enter_spin = enter_spin
-
-
-def _replace_ok(scheduler: Scheduler) -> None:
-    """Charge for `Context.ok`, without rclpy's lock: executors call it three times a message."""
-
-    def ok(self: Any) -> bool:
-        scheduler.charge()
-        context = self.handle
-        if context is None:
-            return False
-        with context:
-            return bool(faults.pass_on(context.ok))
-
-    rclpy.context.Context.ok = functools.wraps(rclpy.context.Context.ok)(ok)
 
 
 def _replace_events_executor() -> None:

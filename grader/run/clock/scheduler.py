@@ -180,9 +180,6 @@ class Scheduler:
         if me.ident != real.get_ident():
             self.on_unknown_thread()
         me.ready = False
-        if len(self.runners) == 1:
-            self._pass_time(me, deadline_ns)
-            return
         if deadline_ns < NEVER:
             self._serial += 1
             me.alarm = self._serial
@@ -191,22 +188,6 @@ class Scheduler:
             self._switch(me)
         finally:
             me.alarm = 0
-
-    def _pass_time(self, me: Runner, deadline_ns: int) -> None:
-        """Block the only thread: what alarms and `_switch` would do, without them."""
-        self.inside += 1
-        while not me.ready and self.now_ns < deadline_ns:
-            if self.interrupted:
-                self.interrupted = False
-                break
-            self.poll()
-            if not me.ready:
-                self.advance(deadline_ns)
-        me.ready = True
-        self._queue.clear()
-        self.inside -= 1
-        if self.on_leaving is not None and not self.inside:
-            self.on_leaving()
 
     def _switch(self, me: Runner) -> None:
         if me is self.main:

@@ -1,6 +1,7 @@
 """Locks and threads that pass the baton on instead of blocking.
 
-All of `threading`, `queue` and `concurrent.futures` is built on these few.
+All of `threading`, `queue` and `concurrent.futures` is built on these few; Python's own reentrant
+lock, too, where it takes the one that is written in Python.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ from typing import Any
 from grader.run.clock.scheduler import Runner, Scheduler
 from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.protocol import NEVER
-from grader.run.lockstep.real import get_ident
 
 SCHEDULER: Scheduler
 
@@ -28,7 +28,7 @@ class Lock:
 
     def __init__(self) -> None:
         self._locked = False
-        self._waiting: deque[Runner] | None = None
+        self._waiting = deque[Runner]()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Acquire the lock; return False where that is not possible in time."""
@@ -46,8 +46,6 @@ class Lock:
 
     def _wait(self, deadline_ns: int) -> bool:
         me = SCHEDULER.current
-        if self._waiting is None:
-            self._waiting = deque()
         while self._locked:
             if SCHEDULER.now_ns >= deadline_ns:
                 return False
@@ -70,72 +68,18 @@ class Lock:
     def locked(self) -> bool:
         return self._locked
 
-    def __enter__(self) -> bool:
-        if not self._locked:
-            self._locked = True
-            return True
-        return self.acquire()
+    __enter__ = acquire
 
     def __exit__(self, *_: object) -> None:
-        if self._locked and not self._waiting:
-            self._locked = False
-        else:
-            self.release()
+        self.release()
 
     def _at_fork_reinit(self) -> None:
         self._locked = False
-        self._waiting = None
+        self._waiting.clear()
 
     acquire_lock = acquire
     release_lock = release
     locked_lock = locked
-
-
-class RLock(threading._PyRLock):  # type: ignore[name-defined]
-    """As Python's, with a short cut where no other thread holds it."""
-
-    _block: Lock
-    _owner: int | None
-    _count: int
-
-    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock, again if this thread holds it; return False where not in time."""
-        me = get_ident()
-        if self._owner == me:
-            self._count += 1
-            return True
-        block = self._block
-        if not block._locked and timeout == -1:
-            block._locked = True
-        elif not block.acquire(blocking, timeout):
-            return False
-        self._owner, self._count = me, 1
-        return True
-
-    def __enter__(self) -> bool:
-        block = self._block
-        if self._owner is None and not block._locked:
-            block._locked = True
-            self._owner, self._count = get_ident(), 1
-            return True
-        return self.acquire()
-
-    def release(self) -> None:
-        """Release the lock, if it was acquired only once."""
-        if self._owner != get_ident():
-            as_python_does(RuntimeError("cannot release un-acquired lock"))
-        self._count -= 1
-        if not self._count:
-            self._owner = None
-            self._block.release()
-
-    def __exit__(self, *_: object) -> None:
-        block = self._block
-        if self._count == 1 and not block._waiting and self._owner == get_ident():
-            self._owner, self._count = None, 0
-            block._locked = False
-        else:
-            self.release()
 
 
 class ThreadHandle:
@@ -144,9 +88,6 @@ class ThreadHandle:
     def __init__(self, ident: int = 0) -> None:
         self.ident = ident
         self._alive = Lock()
-
-    def begin(self) -> None:
-        self._alive.acquire()
 
     def is_done(self) -> bool:
         return not self._alive.locked()
@@ -174,11 +115,10 @@ def install(scheduler: Scheduler) -> None:
     _thread.LockType = Lock  # type: ignore[assignment, misc]
     _thread.start_new_thread = _start_new_thread
     _thread.start_new = _start_new_thread
-    _thread.RLock = RLock  # type: ignore[misc]
+    _thread.RLock = threading._PyRLock  # type: ignore[attr-defined, misc]
     _replace(threading, "_allocate_lock", Lock)
     _replace(threading, "Lock", Lock)
     _replace(threading, "_CRLock", None)
-    _replace(threading, "_PyRLock", RLock)
     if hasattr(threading, "_start_joinable_thread"):  # CPython 3.13
         _replace(threading, "_start_joinable_thread", _start_joinable_thread)
         _replace(threading, "_ThreadHandle", ThreadHandle)
@@ -212,7 +152,7 @@ def _start_joinable_thread(
     function: Callable[[], object], handle: ThreadHandle | None = None, daemon: bool = True
 ) -> ThreadHandle:
     started = handle or ThreadHandle()
-    started.begin()
+    started._alive.acquire()
     started.ident = SCHEDULER.spawn(lambda: _quietly(function), started._set_done)
     return started
 

@@ -88,11 +88,8 @@ def _sleep(seconds: Any) -> None:
 
 
 def _seconds(offset_ns: int) -> Callable[[], float]:
-    def now() -> float:
-        SCHEDULER.charge()
-        return (offset_ns + SCHEDULER.now_ns) / 1e9
-
-    return now
+    now_ns = _nanoseconds(offset_ns)
+    return lambda: now_ns() / 1e9
 
 
 def _nanoseconds(offset_ns: int) -> Callable[[], int]:

@@ -68,8 +68,15 @@ def replace_select(scheduler: Scheduler) -> None:
         return found
 
     scheduler.poll = wake_ready
+
+    def replace_selector(kind: Any) -> None:
+        ask = kind.select
+        kind.select = guarded(
+            lambda self, timeout=None: wait(lambda: pass_on(ask, self, 0), timeout)
+        )
+
     for kind in (selectors.EpollSelector, selectors.PollSelector, selectors.SelectSelector):
-        _replace_selector(kind, wait)
+        replace_selector(kind)
     real_select = select.select
 
     def virtual_select(
@@ -82,15 +89,6 @@ def replace_select(scheduler: Scheduler) -> None:
         return wait(ready, timeout) or ([], [], [])
 
     select.select = guarded(virtual_select)
-
-
-def _replace_selector(kind: Any, wait: Callable[..., Any]) -> None:
-    real_select = kind.select
-
-    def virtual_select(self: Any, timeout: float | None = None) -> Any:
-        return wait(lambda: pass_on(real_select, self, 0), timeout)
-
-    kind.select = guarded(virtual_select)
 
 
 # Signals --------------------------------------------------------------------------------------

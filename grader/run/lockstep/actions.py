@@ -68,8 +68,7 @@ class _Action(Registered):
     def reader(self, kind: str, part: str, c_qos: Any) -> Reader:
         """Make a reader of a part of the action."""
         part_type = self._types[part]
-        messages = {"topic": "", "request": "Request", "response": "Response"}[kind]
-        message = getattr(part_type, messages) if messages else part_type
+        message = part_type if kind == "topic" else getattr(part_type, kind.capitalize())
         return Reader(
             self.channel(kind, part), ros_type(part_type), profile(c_qos), message=message
         )

@@ -222,7 +222,7 @@ PROGRAM: tuple[Assumption, ...] = (
     *_has("rclpy.executors", "", "SingleThreadedExecutor"),
     *_has("rclpy.task", "Future", "done"),
     *_has("rclpy.task", "Task", "__call__"),
-    *_has("rclpy.context", "Context", "ok", "handle"),
+    *_has("rclpy.context", "Context", "ok"),
     *_has("rclpy.client", "Client", "call"),
     *_has("rclpy.timer", "Rate", "sleep"),
     *_has("rclpy.action", "ActionClient", "send_goal", "_get_result", "_cancel_goal"),

@@ -25,7 +25,7 @@ from rclpy.qos import (
     qos_check_compatible,
 )
 
-from grader.run.lockstep.protocol import SHIFT, EndpointInfo, Table
+from grader.run.lockstep.protocol import EPOCH_NS, SHIFT, EndpointInfo, Parcel, Table
 from grader.text.message import Message
 
 #: The depth of another process's queue, at most: rclpy's C++ takes no more than an int.
@@ -304,6 +304,13 @@ class EndpointRegistry:
         """Send a message to all readers of the topic, after `connect`."""
         writer.sent += 1
         self.deliver(writer, Arrived(data, self.now_ns(), writer.sent))
+        self.send_to_others(writer, data)
+        self.note_sent(data, is_local=bool(writer.local))
+
+    def send_to_others(self, writer: Writer, data: bytes) -> None:
+        """Send a topic's message to the readers in other processes."""
+        for remote in writer.remote:
+            self.send(remote.number, 0, writer.sent, data)
 
     def deliver(self, writer: Writer, arrived: Arrived) -> None:
         """Deliver a writer's message to the readers of this process."""
@@ -317,16 +324,34 @@ class EndpointRegistry:
 
         The response comes into `client`.
         """
-        writer.sent += 1
+        number = writer.sent = writer.sent + 1
         for reader in writer.local:
-            reader.items.append(Arrived(data, self.now_ns(), writer.sent, client))
-        return writer.sent
+            reader.items.append(Arrived(data, self.now_ns(), number, client))
+        for remote in writer.remote:
+            client.awaited += 1
+            self.send(remote.number, client.number, number, data)
+        self.note_sent(data, is_local=bool(writer.local))
+        return number
 
     def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
         """Send the response to a request."""
         writer.sent += 1
         if isinstance(to.client, Reader):
             to.client.items.append(Arrived(data, self.now_ns(), to.number))
+        elif to.client is not None:
+            self.send(to.client, 0, to.number, data)
+        self.note_sent(data, is_local=isinstance(to.client, Reader))
+
+    def send(self, to: int, client: int, number: int, data: bytes) -> None:
+        """Send a message to another process; the values are those of a `Parcel`."""
+        self.send_parcel(Parcel(to, client, number, self.now_ns() - EPOCH_NS, data))
+
+    def send_parcel(self, parcel: Parcel) -> None:
+        """Send a message over the link of this side."""
+        raise NotImplementedError
+
+    def note_sent(self, data: bytes, *, is_local: bool) -> None:
+        """Called after each message; `is_local`: a reader of this process has it."""
 
 
 def _by_channel(readers: Iterable[Reader]) -> dict[str, list[Reader]]:

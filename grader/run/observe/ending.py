@@ -103,7 +103,10 @@ def called(kind: str, thread: Thread) -> Stuck | None:
     at = _students(thread)
     if at < 0:
         return None
-    call = _called_by(thread[at - 1]) if at else ""
+    call = ""
+    if at:  # as the author has written it
+        frame = thread[at - 1]
+        call = WAITS.get((frame.library, frame.name), frame.function)[:LONGEST]
     return Stuck(kind, thread[at], call)
 
 
@@ -223,11 +226,6 @@ def _waits(frame: Frame) -> bool:
 def in_spin(frame: Frame) -> bool:
     """Whether a frame is of a function that spins, for once or for ever."""
     return frame.library in SPINS and "spin" in frame.name
-
-
-def _called_by(frame: Frame) -> str:
-    """Return a function's name as the author has written it."""
-    return WAITS.get((frame.library, frame.name), frame.function)[:LONGEST]
 
 
 # In the submission's process ------------------------------------------------------------------

@@ -79,17 +79,15 @@ def _install(witness: Witness) -> None:
     future, timer = rclpy.task.Future, rclpy.timer.Timer
     made = witness.made
 
-    _after(publisher, "__init__", lambda it, _: made("publisher", it, it.topic_name, it.msg_type))
-    _after(
+    after(publisher, "__init__", lambda it, _: made("publisher", it, it.topic_name, it.msg_type))
+    after(
         subscription, "__init__", lambda it, _: made("subscription", it, it.topic_name, it.msg_type)
     )
-    _after(
-        client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type)
-    )
-    _after(timer, "__init__", lambda it, _: witness.ending.note_callback(it.callback))
-    _after(timer, "__init__", lambda it, _: witness.made_timer(it))
-    _after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
-    _after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
+    after(client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type))
+    after(timer, "__init__", lambda it, _: witness.ending.note_callback(it.callback))
+    after(timer, "__init__", lambda it, _: witness.made_timer(it))
+    after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
+    after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
     _around_wait(witness, client, "wait_for_service", lambda it, _: it, lambda _, there: there)
     # virtual time's wrapper would cost time
     is_done = inspect.unwrap(future.done)
@@ -113,22 +111,31 @@ def _install_actions(witness: Witness) -> None:
         name = client._node.resolve_service_name(client._action_name)
         witness.made("action_client", client, name, client._action_type)
 
-    _after(ActionClient, "__init__", made)
-    _after(ActionClient, "send_goal_async", lambda it, _: witness.used(it))
+    after(ActionClient, "__init__", made)
+    after(ActionClient, "send_goal_async", lambda it, _: witness.used(it))
     _around_wait(witness, ActionClient, "wait_for_server", lambda it, _: it, lambda _, there: there)
 
 
-def _after(owner: Any, name: str, call: Callable[[Any, Any], None]) -> None:
-    """Have a function called after each call of a method, with its object and what it returned."""
-    method = getattr(owner, name)
+def _around(owner: Any, name: str, around: Callable[..., Any]) -> None:
+    """Put a function in the place of another; it gets that, and then what that would get."""
+    original = getattr(owner, name)
 
-    @functools.wraps(method)
-    def called(self: Any, *args: Any, **kwargs: Any) -> Any:
+    @functools.wraps(original)  # it is shown by its name where a program is stuck in it
+    def called(*args: Any, **kwargs: Any) -> Any:
+        return around(original, *args, **kwargs)
+
+    setattr(owner, name, called)
+
+
+def after(owner: Any, name: str, call: Callable[[Any, Any], None]) -> None:
+    """Have a function called after each call of a method, with its object and what it returned."""
+
+    def called(method: Any, self: Any, *args: Any, **kwargs: Any) -> Any:
         returned = method(self, *args, **kwargs)
         quietly(call, self, returned)
         return returned
 
-    setattr(owner, name, called)
+    _around(owner, name, called)
 
 
 def _requested(witness: Witness, client: Any, answer: Any) -> None:
@@ -150,10 +157,8 @@ def _around_wait(
         awaited: returns what is waited for, from the method's object and arguments.
         has_come: returns whether the wait was successful, from that and what the method returned.
     """
-    method = getattr(owner, name)
 
-    @functools.wraps(method)
-    def waiting(self: Any, *args: Any, **kwargs: Any) -> Any:
+    def waiting(method: Any, self: Any, *args: Any, **kwargs: Any) -> Any:
         what = quietly(awaited, self, args or tuple(kwargs.values()))
         end: UsedEnd | None = getattr(what, "_witnessed", None)
         if end is None:
@@ -163,15 +168,13 @@ def _around_wait(
         quietly(lambda: witness.end_wait(wait, has_come=bool(has_come(what, returned))))
         return returned
 
-    setattr(owner, name, waiting)
+    _around(owner, name, waiting)
 
 
 def _around_callbacks(witness: Witness, task: Any) -> None:
     """Report to the witness when the tasks that an executor runs begin and end."""
-    run = task.__call__
 
-    @functools.wraps(run)
-    def call(self: Any) -> Any:
+    def call(run: Any, self: Any) -> Any:
         if not witness.begin_callback():
             return run(self)
         try:
@@ -179,53 +182,47 @@ def _around_callbacks(witness: Witness, task: Any) -> None:
         finally:
             quietly(witness.end_callback, getattr(self, "_exception", None))
 
-    task.__call__ = call
+    _around(task, "__call__", call)
 
 
 def _before_done_callbacks(witness: Witness, future: Any) -> None:
-    add = future.add_done_callback
-
-    @functools.wraps(add)
-    def added(self: Any, callback: Any) -> Any:
+    def add(added: Any, self: Any, callback: Any) -> Any:
         quietly(witness.ending.note_callback, callback)
-        return add(self, callback)
+        return added(self, callback)
 
-    future.add_done_callback = added
+    _around(future, "add_done_callback", add)
 
 
 def _around_executor(witness: Witness, executor: Any) -> None:
     """Report to the witness what subscriptions receive, and when an executor first spins."""
-    receive, wait = executor._take_subscription, executor.wait_for_ready_callbacks
 
-    @functools.wraps(receive)
-    def received(self: Any, subscription: Any) -> Any:
+    def received(receive: Any, self: Any, subscription: Any) -> Any:
         found = receive(self, subscription)
         if found is not None:
             quietly(witness.used, subscription)
         return found
 
-    @functools.wraps(wait)
-    def first_wait(self: Any, *args: Any, **kwargs: Any) -> Any:
+    def first_wait(wait: Any, self: Any, *args: Any, **kwargs: Any) -> Any:
         executor.wait_for_ready_callbacks = wait
         quietly(witness.spins)
         return wait(self, *args, **kwargs)
 
-    executor._take_subscription = received
-    executor.wait_for_ready_callbacks = first_wait
+    _around(executor, "_take_subscription", received)
+    _around(executor, "wait_for_ready_callbacks", first_wait)
 
 
 def _after_single_messages(witness: Witness, module: Any) -> None:
     """Report what `wait_for_message` receives: its message goes past all executors."""
-    wait = module.wait_for_message
 
-    @functools.wraps(wait)  # it is shown by its name where a program is stuck in it
-    def wait_for_message(msg_type: Any, node: Any, topic: Any, *args: Any, **kwargs: Any) -> Any:
+    def wait_for_message(
+        wait: Any, msg_type: Any, node: Any, topic: Any, *args: Any, **kwargs: Any
+    ) -> Any:
         found = wait(msg_type, node, topic, *args, **kwargs)
         if found[0]:
             quietly(lambda: witness.heard(node.resolve_topic_name(topic)))
         return found
 
-    module.wait_for_message = wait_for_message
+    _around(module, "wait_for_message", wait_for_message)
 
 
 # In real time ---------------------------------------------------------------------------------
@@ -238,32 +235,30 @@ def install_in_real_time(witness: Witness) -> None:
 
     install(witness)
     for kind, name in ((rclpy.clock.Clock, "sleep_until"), (rclpy.timer.Rate, "sleep")):
-        setattr(kind, name, timed(witness, getattr(kind, name)))
+        time_waits(witness, kind, name)
     start_new_thread(_go_on_asking, (witness,))
 
 
 def install_in_events_executor(witness: Witness, module: Any) -> None:
     """Have the executor in C++ call when it is made: it calls nothing of Python's but callbacks."""
-    make = module.EventsExecutor
 
-    def events_executor(*args: Any, **kwargs: Any) -> Any:
+    def events_executor(make: Any, *args: Any, **kwargs: Any) -> Any:
         quietly(witness.spins)
         return make(*args, **kwargs)
 
-    module.EventsExecutor = events_executor
+    _around(module, "EventsExecutor", events_executor)
 
 
-def timed(witness: Witness, wait: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a function that waits so that it reports to the witness how long it has waited."""
+def time_waits(witness: Witness, owner: Any, name: str) -> None:
+    """Have a function that waits report to the witness how long it has waited."""
 
-    @functools.wraps(wait)
-    def waiting(*args: Any, **kwargs: Any) -> Any:
+    def waiting(wait: Any, *args: Any, **kwargs: Any) -> Any:
         before_s = time.monotonic()
         returned = wait(*args, **kwargs)
         witness.waited(time.monotonic() - before_s)
         return returned
 
-    return waiting
+    _around(owner, name, waiting)
 
 
 def is_met(kind: str, entity: Any) -> Callable[[], bool]:

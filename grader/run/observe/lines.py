@@ -152,15 +152,9 @@ def _first(node: ast.AST, block: list[ast.stmt]) -> int:
     """Return where the first mark may stand: after the docstring, and what must be on top."""
     first = 0
     if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-        match block[0]:
-            case ast.Expr(value=ast.Constant(value=str())):
-                first = 1
-    while first < len(block):
-        match block[first]:
-            case ast.ImportFrom(module="__future__"):
-                first += 1
-            case _:
-                break
+        first = int(ast.get_docstring(node, clean=False) is not None)
+    while getattr(block[first] if first < len(block) else None, "module", "") == "__future__":
+        first += 1
     return first
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 #: Where the kernel shows the quotas of control groups, and to which this process belongs.
@@ -49,20 +49,12 @@ def reserve_core(run: int) -> Iterator[int]:
     from grader.system import scratch
 
     possible = available()
-    with ExitStack() as held:
-        for core in possible:
-            if lock := scratch.acquire_lock(f"core-{core}"):
-                held.enter_context(lock)
-                break
-        else:
-            core = possible[run % len(possible)]
-        yield core
+    with scratch.hold_one("core", possible) as core:
+        yield possible[run % len(possible)] if core is None else core
 
 
 def pin(core: int, *pids: int) -> None:
-    """Keep all threads of processes on a core; those to come follow. -1: on any."""
-    if core < 0:
-        return
+    """Keep all threads of processes on a core; those to come follow."""
     with suppress(OSError):  # not allowed, gone, or no /proc
         for thread in (each for pid in pids for each in Path(f"/proc/{pid}/task").iterdir()):
             with suppress(OSError):  # ended meanwhile

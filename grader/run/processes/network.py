@@ -101,14 +101,13 @@ def reserve_domain() -> Iterator[int]:
 
     The lock belongs to the open file, so that it vanishes with the process, however that ends.
     """
-    for domain in random.sample(DOMAINS, len(DOMAINS)):
-        if lock := scratch.acquire_lock(f"domain-{domain}"):
-            with lock:
-                yield domain
-            return
-    raise GraderFailure(
-        "all {domains} ROS domains are in use by other runs; try again later", domains=len(DOMAINS)
-    )
+    with scratch.hold_one("domain", random.sample(DOMAINS, len(DOMAINS))) as domain:
+        if domain is None:
+            raise GraderFailure(
+                "all {domains} ROS domains are in use by other runs; try again later",
+                domains=len(DOMAINS),
+            )
+        yield domain
 
 
 #: Ways that this system has refused for good.

@@ -36,7 +36,7 @@ ROOT = Path(__file__).resolve().parents[3]
 #: Packages of ours, which contain the checks, or a solution.
 HIDDEN = (
     *("grader", "grader_class", "grader_diagnosis", "grader_robots", "turtlesim_challenge"),
-    "turtlesim_py",
+    *("ros_doubles", "turtlesim_py"),
 )
 #: ... but for what works in the submission's own process.
 HOST = (
@@ -46,7 +46,7 @@ HOST = (
     "grader/run/processes/__init__.py",
     "grader/system/linux.py",
     # what inspects a package
-    *("grader/system/limited.py", "grader/submission"),
+    *("grader/system/limited.py", "grader/submission", "ros_doubles"),
     *("grader_robots/__init__.py", "grader_robots/inspection"),
     "grader/system/strict_json.py",
     # ... and the sentences of its remarks

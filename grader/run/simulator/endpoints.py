@@ -9,9 +9,7 @@ from rclpy.qos import QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
 from grader.run.lockstep.endpoints import deserialized
 from grader.run.lockstep.protocol import (
-    EPOCH_NS,
     SHIFT,
-    TICK_NS,
     EndpointInfo,
     Parcel,
     Parcels,
@@ -52,7 +50,6 @@ class SimulatorEndpoints(EndpointRegistry):
         """`flag` is called with remarks for the result."""
         super().__init__(now_ns)
         self._flag = flag
-        self.tick = 0
         #: since the last call of `pop_outgoing` something was sent that may be waited for
         self.answered = False
         self._outgoing: Parcels = []
@@ -62,7 +59,6 @@ class SimulatorEndpoints(EndpointRegistry):
         #: what hidden readers have received
         self._heard: list[tuple[str, str, int, bytes, int]] = []
         self.published: dict[str, str] = {}
-        self._may_have_unread = True
 
     # What the student's side reads and publishes ----------------------------------------------
 
@@ -125,39 +121,24 @@ class SimulatorEndpoints(EndpointRegistry):
     def pop_heard(self) -> list[tuple[str, str, int, bytes, int]]:
         """Return what hidden readers have received since the last call, in the order of sending.
 
-        Topic, type, when it was sent [ns, on the clock of the run], CDR, the sender's number.
+        Topic, type, when it was sent [ns from the start], CDR, the sender's number.
         """
         heard, self._heard = self._heard, []
         return heard
 
     # Messages ---------------------------------------------------------------------------------
 
-    def publish(self, writer: Writer, data: bytes) -> None:
-        """Send to readers in this process at once, to the student's side with the next reply."""
-        super().publish(writer, data)
-        self._may_have_unread = self._may_have_unread or bool(writer.local)
+    def send_to_others(self, writer: Writer, data: bytes) -> None:
+        """Send a topic's message once to all programs that hear the writer."""
         if writer.remote or writer.is_lasting:
-            self._send(writer.number, 0, writer.sent, data, is_answer=not writer.is_stream)
+            self.send(writer.number, 0, writer.sent, data)
 
-    def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
-        """Send a request in the same way; its response comes to the client's number."""
-        number = super().ask(writer, client, data)
-        self._may_have_unread = self._may_have_unread or bool(writer.local)
-        for reader in writer.remote:
-            self._send(reader.number, client.number, number, data)
-        return number
-
-    def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
-        """Send a response in the same way."""
-        super().respond(writer, to, data)
-        if isinstance(to.client, int):
-            self._send(to.client, 0, to.number, data)
-
-    def _send(
-        self, to: int, client: int, number: int, data: bytes, *, is_answer: bool = True
-    ) -> None:
-        self._outgoing.append(Parcel(to, client, number, self.tick * TICK_NS, data))
-        self._outgoing_bytes += len(data)
+    def send_parcel(self, parcel: Parcel) -> None:
+        """Have a message sent with the next reply."""
+        self._outgoing.append(parcel)
+        self._outgoing_bytes += len(parcel.data)
+        writer = self.own.get(parcel.endpoint)
+        is_answer = not (isinstance(writer, Writer) and writer.is_stream)
         # more than a few pictures are sent as soon as an answer would be
         self.answered = self.answered or is_answer or self._outgoing_bytes > MOST_OUTGOING
 
@@ -176,7 +157,6 @@ class SimulatorEndpoints(EndpointRegistry):
             since_ns, until_ns: of the turn, from the start of the run; the messages say themselves
                 when in it they were sent.
         """
-        self._may_have_unread = True
         for endpoint, client, number, time_ns, data in parcels:
             reader = self.own.get(endpoint)
             if not isinstance(reader, Reader):
@@ -190,7 +170,7 @@ class SimulatorEndpoints(EndpointRegistry):
                 self._flag(msg("a message on {channel} could not be read", channel=reader.channel))
                 continue
             if reader.is_hidden:
-                sent_ns = EPOCH_NS + min(max(since_ns, time_ns), until_ns)
+                sent_ns = min(max(since_ns, time_ns), until_ns)
                 self._heard.append((reader.name, reader.type, sent_ns, data, member))
                 continue
             asked_by = client if reader.kind == "request" else None
@@ -212,6 +192,4 @@ class SimulatorEndpoints(EndpointRegistry):
 
     def has_unread(self) -> bool:
         """Whether something waits to be served."""
-        if self._may_have_unread:
-            self._may_have_unread = any(reader.items for reader in self.readers)
-        return self._may_have_unread
+        return any(reader.items for reader in self.readers)

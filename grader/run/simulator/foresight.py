@@ -37,7 +37,7 @@ class Foresight:
         self._length = 1
         self._vain = 0
 
-    def foresee(self, tick: int, request: Advance, quiet: int = MOST_TICKS) -> None:
+    def foresee(self, tick: int, request: Advance, quiet: int) -> None:
         """Forecast the ticks after this one, as far as is worth while.
 
         Args:

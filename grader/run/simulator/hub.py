@@ -1,12 +1,12 @@
 """The simulator's process in a run in virtual time: the hub of the submission's programs.
 
-    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PAGE ... PIDS CORE PATIENCE SHOWN
+    python -m grader.run.simulator.virtual_main FD FILE PLAN PROGRAMS CORE PATIENCE SHOWN
 
-The first three and SHOWN as in `grader.run.simulator.real_time`; LINK is the socket to a program's
-process and PAGE a descriptor of the page in which that notes the tick that it has reached, both for
-each program; PIDS a JSON list of their processes, each with its name, with the place of the one at
-whose end it is started (-1: with the run), and how long after that [ns]; CORE the
-processor core that all are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON.
+The first three and SHOWN as in `grader.run.simulator.real_time`; PROGRAMS is a JSON list with, of
+each, the socket to its process, the page in which that notes the tick that it has reached, its
+process id, its name, the place of the one at whose end it is started (-1: with the run), and how
+long after that [s]; CORE the processor core that all are to share, PATIENCE a
+`grader.run.limits.Patience` as JSON.
 
 One program runs at a time, in the order in which they were started, until it asks for time
 (`grader.run.lockstep.protocol`). What it has sent goes on its way then, and who gets something, or
@@ -31,7 +31,6 @@ import rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from grader.errors import SceneFailure
-from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.lockstep import actions, endpoints, waitsets
@@ -50,14 +49,8 @@ from grader.run.processes import cores
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import MOST_TICKS, Foresight
 from grader.run.simulator.link import NONSENSE, Refused, StudentLink
-from grader.run.simulator.process import (
-    FeedWriter,
-    make_cast,
-    protect_process,
-    scene_in_time,
-    send_message,
-)
-from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason, load_scene
+from grader.run.simulator.process import SceneRun, protect_process, send_message
+from grader.scenes.scene import STEP_NS, Reason, expect_reason
 from grader.text.message import msg
 
 #: So many new objects are searched for garbage: what a run records stays to its end.
@@ -123,7 +116,7 @@ class LinkedProgram:
         return number >> SHIFT == self.number
 
 
-class Hub:
+class Hub(SceneRun):
     """Ticks a scene and gives its programs their turns, to the end of the run."""
 
     def __init__(
@@ -133,7 +126,7 @@ class Hub:
         plan: Plan,
         share_core: Callable[[], None],
         on_met: Callable[[], None],
-        shown: str = "",
+        shown: str,
     ) -> None:
         """Set up the scene.
 
@@ -156,21 +149,14 @@ class Hub:
         self._waiter = waitsets.Waiter(lambda: self.now_ns)
         waitsets.install(self._waiter)
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, links[0][0].flag)
+        self.tap, self.heard = self._registry.tap, self._registry.pop_heard
         endpoints.install(self._registry)
         actions.install()
         if plan.definitions or plan.own_definitions:
             endpoints.make_importable(plan.definitions)
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-        self._scene = load_scene(plan.scene)
         assert STEP_NS == TICK_NS
-        self._feed = FeedWriter.of(shown, TICK_NS)
-        send = None if self._feed is None else self._feed.write
-        self._cast = make_cast(plan, self)
-        hooks = Hooks(self._registry.has_unread, send, self._cast)
-        with scene_in_time(plan.scene):
-            self._simulation = self._scene.simulate(
-                plan.limits, plan.start, hooks, plan.interfaces, plan.setting
-            )
+        super().__init__(plan, shown, self, self._registry.has_unread)
         self._simulation.record()
         self._foresight = Foresight(self._simulation, self._registry)
         self._tick = 0
@@ -180,8 +166,8 @@ class Hub:
 
     # The run ----------------------------------------------------------------------------------
 
-    def run(self) -> dict[str, Any]:
-        """Give turns to the end of the run; return how it ended."""
+    def run(self, file: Path) -> dict[str, Any]:
+        """Give turns to the end of the run, and save the recording; return how it ended."""
         self._registry.pop_table()
         for member in self._alive():
             if not member.start_ns:
@@ -206,8 +192,7 @@ class Hub:
         if self._feed is not None:
             self._feed.close()
         flags = dict.fromkeys(flag for member in self._members for flag in member.link.flags)
-        more = () if self._cast is None else self._cast.flags
-        return {
+        ending = {
             "reason": self._reason,
             "programs": [
                 {
@@ -219,8 +204,10 @@ class Hub:
                 for member in self._members
             ],
             "was_at_rest": self._was_at_rest,
-            "flags": [f.serialise() for f in (*flags, *self._simulation.flags, *more)],
+            "flags": [flag.serialise() for flag in (*flags, *self._scene_flags())],
         }
+        self._save(file, self._registry.published)
+        return ending
 
     def _start(self, member: LinkedProgram) -> None:
         """Let a program run for the first time."""
@@ -242,26 +229,8 @@ class Hub:
         while not self._reason:
             self._make_tick()
 
-    def save(self, file: Path) -> None:
-        """Write the recording where the grader finds it."""
-        with scene_in_time(self._scene.name):
-            trace = self._simulation.trace()
-            handover.leave(file, self._scene, trace, self._registry.published, self._cast)
-
-    # For a cast, see `grader.scenes.cast.playing.Wire`
-
-    def tap(self, topic: str, kind: str, message: Any) -> None:
-        """Record what the program publishes on a topic with a type."""
-        self._registry.tap(topic, kind, message)
-
-    def heard(self) -> list[tuple[str, str, int, bytes, int]]:
-        return [
-            (topic, kind, time_ns - EPOCH_NS, data, number)
-            for topic, kind, time_ns, data, number in self._registry.pop_heard()
-        ]
-
     def has_unread(self, node: str) -> bool:
-        """Whether something waits for a node of the cast's."""
+        """Whether something waits for a node of the cast's; see `playing.Wire`."""
         readers = self._registry.readers
         return any(reader.items for reader in readers if reader.node == node)
 
@@ -291,7 +260,7 @@ class Hub:
         if not news and not any(each.request.listens for each in others):
             quiet = MOST_TICKS if self._cast is None else self._cast.quiet_ticks()
             before = min(quiet, (member.until_ns - 1) // TICK_NS - tick)
-            with scene_in_time(self._scene.name):
+            with self._in_time():
                 self._foresight.foresee(tick, member.request, before)
             parcels += (p for p in self._foresight.parcels if self._gets(member, p.endpoint))
         foreseen = max(tick, self._foresight.end)
@@ -411,7 +380,7 @@ class Hub:
 
     def _catch_up(self, reached: int, member: LinkedProgram) -> None:
         """Make the forecast ticks that a program has used."""
-        with scene_in_time(self._scene.name):  # a second's ticks at most
+        with self._in_time():  # a second's ticks at most
             while self._tick < min(reached, self._foresight.end) and not self._reason:
                 self._count_tick()
                 reason = self._foresight.make_tick(EPOCH_NS + self.now_ns)
@@ -428,9 +397,7 @@ class Hub:
         self._waiter.set_now(self.now_ns)
         if self._cast is not None:
             self._cast.act()
-        with scene_in_time(self._scene.name):
-            reason = self._simulation.tick(EPOCH_NS + self.now_ns)
-        self._reason = expect_reason(self._scene.name, reason)
+        self._reason = self._tick_scene(EPOCH_NS + self.now_ns)
 
     def _count_tick(self) -> None:
         if self._feed is not None:
@@ -438,7 +405,6 @@ class Hub:
             for member in self._members:
                 member.link.excused_cpu_s = self._feed.cpu_s
         self._tick += 1
-        self._registry.tick = self._tick
         self.now_ns = self._time_ns = self._tick * TICK_NS
 
 
@@ -446,26 +412,23 @@ def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
     protect_process()
     control = socket.socket(fileno=int(argv[0]))
-    *ends, pids, core, patience, shown = argv[3:]
-    starts, limits = json.loads(pids), Patience(**json.loads(patience))
-    students, names = [pid for pid, *_ in starts], [name for _, name, *_ in starts]
+    programs, core, patience = map(json.loads, argv[3:6])
+    students, names = [pid for _, _, pid, *_ in programs], [each[3] for each in programs]
     links = []
-    for link, page, (pid, _, after, start_ns) in zip(ends[::2], ends[1::2], starts, strict=True):
-        its = (socket.socket(fileno=int(link)), int(page), pid, limits, {*students} - {pid})
-        links.append((StudentLink(*its), after + 1, start_ns))
+    for link, page, pid, _, after, delay_s in programs:
+        its = (socket.socket(fileno=link), page, pid, Patience(**patience), {*students} - {pid})
+        links.append((StudentLink(*its), after + 1, round(delay_s * 1e9)))
 
     def share_core() -> None:
         # for all, from here: a submission's process may not choose its cores
-        cores.pin(int(core), os.getpid(), *students)
+        cores.pin(core, os.getpid(), *students)
 
     plan = Plan.from_json(argv[2])
     try:
-        hub = Hub(links, names, plan, share_core, lambda: send_message(control, "met"), shown)
+        hub = Hub(links, names, plan, share_core, lambda: send_message(control, "met"), argv[6])
         gc.freeze()
         gc.set_threshold(GARBAGE)
-        ending = hub.run()
-        hub.save(Path(argv[1]))
-        send_message(control, "done", **ending)
+        send_message(control, "done", **hub.run(Path(argv[1])))
     except Refused as refusal:
         why = refusal.why.serialise()
         send_message(control, "refused", reason=why, program=hub.heard_last - 1)

@@ -1,4 +1,4 @@
-"""What a simulator's process does by either clock: protect itself, and send messages and news.
+"""What a simulator's process does by either clock: protect itself, run a scene, send news.
 
 It sends its progress to the grader. To the audience of a run it sends news of the scene, and keeps
 the run slow enough to watch: over a socket from which it reads nothing, so that the outcome of a
@@ -14,14 +14,18 @@ import select
 import signal
 import socket
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, Any, Final, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 from grader.recording.subject import overdue, scene_at_work
+from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.limits import SCENE_S, SIMULATOR_BYTES
+from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason, load_scene
 from grader.system import linux
+from grader.text.message import Message
 
 if TYPE_CHECKING:
     from grader.scenes.cast.playing import Playing
@@ -44,26 +48,66 @@ def protect_process() -> None:
     signal.signal(signal.SIGALRM, overdue)
 
 
-def scene_in_time(scene: str) -> AbstractContextManager[None]:
-    """Raise a `SceneFailure` also for a scene's code that takes longer than `SCENE_S`."""
-    return scene_at_work(scene, within_s=SCENE_S)
+class SceneRun:
+    """A scene at work, with its cast and its audience."""
 
+    def __init__(
+        self,
+        plan: Plan,
+        shown: str,
+        wire: Any,
+        has_unread: Callable[[], bool] = lambda: True,
+        *,
+        are_compiled: bool = False,
+    ) -> None:
+        """Set up the scene; ROS is up.
 
-def make_cast(plan: Plan, wire: Any, *, are_compiled: bool = False) -> Playing | None:
-    """Make the scripted peers of a run; None where it has none.
+        Args:
+            shown: a `LiveFeed` argument; '' where there is no audience.
+            wire: a `grader.scenes.cast.playing.Wire`, for a cast.
+            has_unread: as in `Hooks`.
+            are_compiled: whether interfaces that are not installed were compiled for this run.
+        """
+        self._scene = load_scene(plan.scene)
+        self._feed = FeedWriter(**json.loads(shown)) if shown else None
+        self._cast: Playing | None = None
+        if plan.cast is not None:
+            from grader.scenes.cast import script  # here: most runs have none
+            from grader.scenes.cast.playing import Playing
 
-    Args:
-        wire: a `grader.scenes.cast.playing.Wire`.
-        are_compiled: whether interfaces that are not installed were compiled for this run.
-    """
-    if plan.cast is None:
-        return None
-    from grader.scenes.cast import script  # here: most runs have none
-    from grader.scenes.cast.playing import Playing
+            definitions = {**plan.own_definitions, **plan.definitions}
+            peers, end_s = script.parse(plan.cast), plan.limits.total_s
+            self._cast = Playing(
+                peers, plan.hears, definitions, end_s, wire, are_compiled=are_compiled
+            )
+        hooks = Hooks(has_unread, None if self._feed is None else self._feed.write, self._cast)
+        with self._in_time():
+            self._simulation = self._scene.simulate(
+                plan.limits, plan.start, hooks, plan.interfaces, plan.setting
+            )
 
-    definitions = {**plan.own_definitions, **plan.definitions}
-    peers, end_s = script.parse(plan.cast), plan.limits.total_s
-    return Playing(peers, plan.hears, definitions, end_s, wire, are_compiled=are_compiled)
+    def _in_time(self) -> AbstractContextManager[None]:
+        """Raise a `SceneFailure` also for the scene's code that takes longer than `SCENE_S`."""
+        return scene_at_work(self._scene.name, within_s=SCENE_S)
+
+    def _tick_scene(self, *now_ns: int) -> Reason:
+        with self._in_time():
+            reason = self._simulation.tick(*now_ns)
+        return expect_reason(self._scene.name, reason)
+
+    def _scene_flags(self) -> tuple[Message, ...]:
+        """The remarks of the scene and its cast."""
+        return (*self._simulation.flags, *(() if self._cast is None else self._cast.flags))
+
+    def _save(self, file: Path, published: Mapping[str, str]) -> None:
+        """Write the recording where the grader finds it.
+
+        Args:
+            published: the topics on which the submission has published: topic -> type.
+        """
+        with self._in_time():
+            trace = self._simulation.trace()
+            handover.leave(file, self._scene, trace, published, self._cast)
 
 
 def send_message(control: socket.socket, what: str, **more: Any) -> None:
@@ -82,7 +126,7 @@ class FeedWriter:
         cpu_s: the processor time that this has cost [s].
     """
 
-    def __init__(self, descriptor: int, speed: float | None, tick_ns: int) -> None:
+    def __init__(self, descriptor: int, speed: float | None) -> None:
         """Write to a socket.
 
         Args:
@@ -94,13 +138,8 @@ class FeedWriter:
         self._waiting = bytearray()
         self._patience_s = PATIENCE_S
         self._is_heard = True
-        self._tick_s = tick_ns / 1e9 / speed if speed else 0.0
+        self._tick_s = STEP_NS / 1e9 / speed if speed else 0.0
         self._due_s = 0.0
-
-    @classmethod
-    def of(cls, words: str, tick_ns: int) -> Self | None:
-        """Make one from `LiveFeed.argument`; None where there is no audience."""
-        return cls(**json.loads(words), tick_ns=tick_ns) if words else None
 
     def write(self, news: Mapping[str, Any]) -> None:
         """Write some news; never waits for long."""

@@ -5,7 +5,7 @@
 It exchanges JSON lines with the grader over CONTROL, a socket: it sends `ready`, `progress` about
 once a second, and `done` when the recording lies in FILE; it receives `start` when the submission's
 process is started, and `exited` when that has ended. PLAN is a `grader.run.handover.Plan`, SHOWN a
-`LiveFeed.argument`. The clock of the run starts when the submission has its first node, has ended,
+`LiveFeed` argument. The clock of the run starts when the submission has its first node, has ended,
 or has had FIRST_NODE_S for it [s]. If the grader goes away, so does the simulator.
 """
 
@@ -17,7 +17,7 @@ import socket
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
@@ -29,17 +29,10 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 
 from grader.errors import SceneFailure
-from grader.run import handover
 from grader.run.handover import Plan
 from grader.run.lockstep.protocol import EndpointInfo
-from grader.run.simulator.process import (
-    FeedWriter,
-    make_cast,
-    protect_process,
-    scene_in_time,
-    send_message,
-)
-from grader.scenes.scene import STEP_NS, Hooks, Reason, expect_reason, load_scene
+from grader.run.simulator.process import SceneRun, protect_process, send_message
+from grader.scenes.scene import STEP_NS, Reason
 from grader.text.message import Message, msg
 from turtlesim_py.ros import program
 
@@ -59,30 +52,7 @@ EVERY_TICKS: Final = 5
 LATE_NS: Final = 500_000_000
 
 
-class PublishedTopics:
-    """The topics on which the submission publishes, by the graph: often a name is wrong.
-
-    Attributes:
-        types: topic -> type.
-    """
-
-    def __init__(self, nodes: Sequence[Any]) -> None:
-        """Read the graph by the first of our nodes, whose publishers do not count."""
-        self.types: dict[str, str] = {}
-        self._nodes = nodes
-
-    def update(self) -> None:
-        """Add the topics that the graph shows now."""
-        first, own = self._nodes[0], Counter[str]()
-        for node in self._nodes:
-            called = node.get_name(), node.get_namespace()
-            own.update(t for t, _ in first.get_publisher_names_and_types_by_node(*called))
-        for topic, types in first.get_topic_names_and_types()[:MOST_TOPICS]:
-            if first.count_publishers(topic) > own[topic]:
-                self.types[topic] = types[0]
-
-
-class GradedSimulator:
+class GradedSimulator(SceneRun):
     """Runs a scene, and receives the submission's start and end from the grader."""
 
     def __init__(
@@ -91,20 +61,14 @@ class GradedSimulator:
         self._link = link
         self._first_node_s = first_node_s
         self._file = file
-        self._scene = load_scene(plan.scene)
-        self._feed = FeedWriter.of(shown, STEP_NS)
         self._wire = None if plan.cast is None else WallWire()
-        self._cast = make_cast(plan, self._wire, are_compiled=True)
-        hooks = Hooks(send_news=None if self._feed is None else self._feed.write, cast=self._cast)
-        with scene_in_time(plan.scene):
-            self._simulation = self._scene.simulate(
-                plan.limits, plan.start, hooks, plan.interfaces, plan.setting
-            )
+        super().__init__(plan, shown, self._wire, are_compiled=True)
         nodes = [] if self._scene.has_cast else [self._simulation.node]
         if self._cast is not None and self._wire is not None:
             nodes += [self._wire.node, *self._cast.nodes]
         self._ours = len(nodes) + len(self._scene.introduction.nodes[1:])
-        self._node, self._topics = nodes[0], PublishedTopics(nodes)
+        self._nodes, self._node = nodes, nodes[0]
+        self._published: dict[str, str] = {}
         self._names = {node.get_fully_qualified_name() for node in nodes}
         self._limits = plan.limits
         self._flags: list[Message] = []
@@ -125,9 +89,7 @@ class GradedSimulator:
             if not self._running and self._may_start():
                 self._start()
             self._play()
-            with scene_in_time(self._scene.name):
-                reason = self._simulation.tick()
-            expect_reason(self._scene.name, reason)
+            reason = self._tick_scene()
             if self._running:
                 self._report_progress()
                 reason = reason or self._overtime()
@@ -136,12 +98,9 @@ class GradedSimulator:
         program.follow_wall_clock(tick)
         if self._feed is not None:
             self._feed.close()
-        self._topics.update()
-        with scene_in_time(self._scene.name):
-            trace = self._simulation.trace()
-            handover.leave(self._file, self._scene, trace, self._topics.types, self._cast)
-            more = () if self._cast is None else self._cast.flags
-            flags = [f.serialise() for f in (*self._simulation.flags, *more, *self._flags)]
+        self._note_topics()
+        self._save(self._file, self._published)
+        flags = [flag.serialise() for flag in (*self._scene_flags(), *self._flags)]
         self._send("done", reason=reason, flags=flags)
 
     def _start(self) -> None:
@@ -166,8 +125,18 @@ class GradedSimulator:
     def _report_progress(self) -> None:
         self._ticks += 1
         if self._ticks % PROGRESS_TICKS == 1:
-            self._topics.update()
+            self._note_topics()
             self._send("progress", seconds=round(self._simulation.ticks * STEP_NS / 1e9, 1))
+
+    def _note_topics(self) -> None:
+        """Note on which topics the submission publishes, by the graph: often a name is wrong."""
+        own = Counter[str]()
+        for node in self._nodes:
+            called = node.get_name(), node.get_namespace()
+            own.update(t for t, _ in self._node.get_publisher_names_and_types_by_node(*called))
+        for topic, types in self._node.get_topic_names_and_types()[:MOST_TOPICS]:
+            if self._node.count_publishers(topic) > own[topic]:
+                self._published[topic] = types[0]
 
     def _overtime(self) -> Reason:
         """Return the reason to end a run whose ticks come far too late; '' otherwise."""

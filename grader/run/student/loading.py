@@ -18,9 +18,10 @@ import types
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.run.lockstep import faults
+from grader.run.observe import hooks
 
 #: Installed packages that a submission must never pick up in place of its own.
 OURS = ("turtlesim_challenge", "turtlesim_py", "grader")
@@ -71,12 +72,29 @@ class AfterImport:
 # What is started ------------------------------------------------------------------------------
 
 
-def call(
-    root: str,
-    target: str,
-    function: str | None,
-    on_error: Callable[[BaseException], None],
-) -> int:
+class ProgramStart(NamedTuple):
+    """What is started; as JSON the last argument of its process.
+
+    Attributes:
+        root: the folder that comes first on the import path.
+        target: a module, or the absolute path of a script.
+        function: what is called of it, "Controller.main"; None for a script as a whole.
+        arguments: those of the program.
+        beside: folders of other packages of the submission, which are installed there, too.
+    """
+
+    root: str
+    target: str
+    function: str | None
+    arguments: Sequence[str] = ()
+    beside: Sequence[str] = ()
+
+    @property
+    def is_script(self) -> bool:
+        return Path(self.target).is_absolute()
+
+
+def call(start: ProgramStart, on_error: Callable[[BaseException], None]) -> int:
     """Run a submission's program to its end; return its exit code.
 
     Tracebacks go without our own lines.
@@ -86,7 +104,7 @@ def call(
             that Python does not print.
     """
     try:
-        code = run(root, target, function)
+        code = run(start)
     except KeyboardInterrupt as interrupt:
         on_error(interrupt)
         return 130
@@ -104,25 +122,24 @@ def call(
     return code if isinstance(code, int) else 0
 
 
-def run(root: str, target: str, function: str | None) -> object:
+def run(start: ProgramStart) -> object:
     """Start a submission's program; return what its function returned."""
-    if Path(target).is_absolute():  # what is installed for `ros2 run` may end in anything
-        must_be_text(target)
-        if function is None:
-            runpy.run_path(target, run_name="__main__")
+    if start.is_script:  # what is installed for `ros2 run` may end in anything
+        must_be_text(start.target)
+        if start.function is None:
+            runpy.run_path(start.target, run_name="__main__")
             return None
-        name = Path(target).stem
-        spec = importlib.util.spec_from_file_location(name, target)
+        name = Path(start.target).stem
+        spec = importlib.util.spec_from_file_location(name, start.target)
         assert spec is not None and spec.loader is not None
         module = importlib.util.module_from_spec(spec)
         sys.modules[name] = module
         spec.loader.exec_module(module)
     else:
-        name, _, function = target.partition(":")
-        module = importlib.import_module(name)
-        check_origin(module, root)
-    start: Any = functools.reduce(getattr, str(function).split("."), module)
-    return start()
+        module = importlib.import_module(start.target)
+        check_origin(module, start.root)
+    function: Any = functools.reduce(getattr, str(start.function).split("."), module)
+    return function()
 
 
 def must_be_text(file: str) -> None:
@@ -161,19 +178,11 @@ def check_origin(module: types.ModuleType, root: str) -> None:
         )
 
 
-def hide_the_grader(
-    root: str, target: str, arguments: Sequence[str] = (), beside: Sequence[str] = ()
-) -> None:
-    """Make the interpreter look as it would on a student's machine.
-
-    Args:
-        beside: folders of other packages of the submission, which are installed there, too.
-    """
-    is_file = Path(target).is_absolute()
-    name = Path(target).name if is_file else target.partition(":")[0]
-    sys.argv = [name, *arguments]
-    sys.path[:1] = [root, *(folder for folder in beside if folder != root)]
-    sys.meta_path.insert(0, OnlyFromSubmission(root))
+def hide_the_grader(start: ProgramStart) -> None:
+    """Make the interpreter look as it would on a student's machine."""
+    sys.argv = [Path(start.target).name, *start.arguments]
+    sys.path[:1] = dict.fromkeys((start.root, *start.beside))
+    sys.meta_path.insert(0, OnlyFromSubmission(start.root))
     for name in [name for name in sys.modules if name.partition(".")[0] in OURS]:
         del sys.modules[name]
 
@@ -191,15 +200,8 @@ def accept_numbers(module: Any) -> None:
     Args:
         module: `rclpy.publisher`; each type of messages is changed when a publisher is made.
     """
-    make = module.Publisher.__init__
-
-    @functools.wraps(make)
-    def made(self: Any, *args: Any, **kwargs: Any) -> None:
-        make(self, *args, **kwargs)
-        with suppress(Exception):  # rclpy decides what it accepts
-            convert_lists(self.msg_type)
-
-    module.Publisher.__init__ = made
+    # where that fails, rclpy decides what it accepts
+    hooks.after(module.Publisher, "__init__", lambda made, _: convert_lists(made.msg_type))
 
 
 def convert_lists(message: Any) -> None:

@@ -1,17 +1,16 @@
 """Starts a program of a submission in real time.
 
-    python main.py INTRODUCTION EVIDENCE ROOT module:function
-    python main.py INTRODUCTION EVIDENCE ROOT path/to/script.py [function]
+    python main.py EVIDENCE INTRODUCTION START
 
-INTRODUCTION is a JSON list of four lists: topics and services that have to be connected when the
-submission gets them, see `Introduced`; the program's arguments; and the folders of other packages
-of the submission. EVIDENCE is the page of its
-account, -1 for none.
+EVIDENCE is the page of its account, -1 for none. INTRODUCTION is a JSON list of two lists: topics
+and services that have to be connected when the submission gets them, see `Introduced`. START is a
+`ProgramStart` as JSON.
 
 Started by path, not with -m, and of the grader it imports only what loads and observes a program,
-so that the submission finds the interpreter as on a student's machine. ROOT comes first on the
-import path.
+so that the submission finds the interpreter as on a student's machine.
 """
+
+from __future__ import annotations
 
 import sys
 from pathlib import Path
@@ -20,7 +19,6 @@ if __name__ == "__main__":
     sys.path[0] = str(Path(__file__).resolve().parents[3])
 
 import atexit
-import functools
 import json
 import time
 from collections import Counter
@@ -34,18 +32,17 @@ from grader.run.student import loading
 
 def main() -> None:
     """Start a program, and leave with its exit code."""
-    _, introduction, page, root, target, *more = sys.argv
-    sys.exit(start(introduction, int(page), root, target, more[0] if more else None))
+    page, introduction, words = sys.argv[1:]
+    sys.exit(run(int(page), Introduced(*json.loads(introduction)), words))
 
 
-def start(introduction: str, page: int, root: str, target: str, function: str | None) -> int:
+def run(page: int, introduced: Introduced, words: str) -> int:
     """Run a program to its end; return its exit code."""
+    start = loading.ProgramStart(*json.loads(words))
     now_s, started_s = time.monotonic, time.monotonic()
-    witness = Witness(page, root, lambda: now_s() - started_s, hooks.is_met)
+    witness = Witness(page, start.root, lambda: now_s() - started_s, hooks.is_met)
     hooks.install_in_threads(witness)
-    time.sleep = hooks.timed(witness, time.sleep)
-    topics, services, arguments, beside = json.loads(introduction)
-    introduced = Introduced(topics, services)
+    hooks.time_waits(witness, time, "sleep")
     code: int | None = None
 
     # registered first, so called last: when all threads have ended that Python waits for
@@ -54,7 +51,7 @@ def start(introduction: str, page: int, root: str, target: str, function: str | 
         if code is not None:
             witness.ending.returned(code)
 
-    loading.hide_the_grader(root, target, arguments, beside)
+    loading.hide_the_grader(start)
     sys.meta_path.insert(
         0,
         loading.AfterImport(
@@ -69,7 +66,7 @@ def start(introduction: str, page: int, root: str, target: str, function: str | 
         ),
     )
     witness.lines.install()
-    code = loading.call(root, target, function, witness.ending.raised)
+    code = loading.call(start, witness.ending.raised)
     return code
 
 
@@ -92,47 +89,26 @@ class Introduced:
         self.patience_s = 4.0
         #: of the very names: they are there, and will be found, unless their types are wrong
         self.sure_patience_s = 10.0
-        self._readers = Counter(topics)
-        self._topics, self._services = _with_endings(topics), _with_endings(services)
+        self._readers, self._topics, self._services = Counter(topics), topics, services
 
     def patch(self, module: Any) -> None:
-        """Replace the methods of `rclpy.node` that make publishers and clients."""
-        node = module.Node
-        create_publisher, create_client = node.create_publisher, node.create_client
+        """Add to the methods of `rclpy.node` that make publishers and clients."""
+        hooks.after(module.Node, "create_publisher", self._await_readers)
+        hooks.after(module.Node, "create_client", self._await_service)
 
-        @functools.wraps(create_publisher)
-        def connected_publisher(self_: Any, *args: Any, **kwargs: Any) -> Any:
-            publisher = create_publisher(self_, *args, **kwargs)
-            least = max(1, self._readers[publisher.topic_name])
-            is_met = lambda: publisher.get_subscription_count() >= least  # noqa: E731
-            self._await(publisher.topic_name, self._topics, is_met)
-            return publisher
+    def _await_readers(self, _: Any, publisher: Any) -> None:
+        name, least = publisher.topic_name, max(1, self._readers[publisher.topic_name])
+        self._await(name, self._topics, lambda: publisher.get_subscription_count() >= least)
 
-        @functools.wraps(create_client)
-        def connected_client(self_: Any, *args: Any, **kwargs: Any) -> Any:
-            client = create_client(self_, *args, **kwargs)
-            name = self_.resolve_service_name(client.srv_name)
-            self._await(name, self._services, client.service_is_ready)
-            return client
+    def _await_service(self, node: Any, client: Any) -> None:
+        name = node.resolve_service_name(client.srv_name)
+        self._await(name, self._services, client.service_is_ready)
 
-        node.create_publisher, node.create_client = connected_publisher, connected_client
-
-    def _await(
-        self, name: str, known: tuple[set[str], set[str]], is_connected: Callable[[], bool]
-    ) -> None:
-        names, endings = known
+    def _await(self, name: str, names: list[str], is_connected: Callable[[], bool]) -> None:
         if name in names:
             self.sure_patience_s -= _wait_for(is_connected, self.sure_patience_s)
-        elif _ending(name) in endings:
+        elif name.rpartition("/")[2] in [each.rpartition("/")[2] for each in names]:
             self.patience_s -= _wait_for(is_connected, self.patience_s)
-
-
-def _with_endings(names: list[str]) -> tuple[set[str], set[str]]:
-    return set(names), set(map(_ending, names))
-
-
-def _ending(name: str) -> str:
-    return name.rpartition("/")[2]
 
 
 def _wait_for(is_connected: Callable[[], bool], patience_s: float) -> float:

@@ -1,21 +1,19 @@
 """Starts a submission in virtual time: replaces the clocks, observes, runs its program.
 
-    python virtual_main.py FD EVIDENCE SCENE ROOT module:function
-    python virtual_main.py FD EVIDENCE SCENE ROOT path/to/script.py [function]
+    python virtual_main.py FD EVIDENCE INTRODUCTION START
     python virtual_main.py --fork-server SOCKET MESSAGES
 
-FD is the link to the simulator, EVIDENCE the page of the submission's account, SCENE a JSON list of
-the simulator's nodes, with names and namespaces, of whether two stamps have to differ, of the
-definitions of interfaces, of those that the simulator has otherwise, of whether it records what is
-published and logged, of its number among several programs (0: it is alone), of its arguments, and
-of the folders of other packages of the submission.
+FD is the link to the simulator, EVIDENCE the page of the submission's account. INTRODUCTION is a
+JSON list: whether two stamps have to differ, the definitions of interfaces, those that the
+simulator has otherwise, whether it records what is published and logged, and its number among
+several programs (0: it is alone). START is a `ProgramStart` as JSON.
 Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
 the same. Everything of ours is imported before the submission is, and then forgotten by the import
 system.
 
 As a fork server it does the same up to where the link comes in, imports what nearly every
 submission needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with
-the arguments of the first two forms, and a submission finds it as if it had been started with them.
+the arguments of the first form, and a submission finds it as if it had been started with them.
 """
 
 from __future__ import annotations
@@ -57,9 +55,10 @@ def main() -> None:
         if fault:
             sys.exit(str(fault))  # the run reports it, after a cold start
         words = become_one_of_many(scheduler, state, words[2:])
-    _, fd, page, introduction, root, target, *more = words
+    fd, page, introduction, program = words[1:]
+    start = loading.ProgramStart(*json.loads(program))
     connection = socket.socket(fileno=int(fd))
-    witness = Witness(int(page), root, lambda: scheduler.now_ns / 1e9, is_met)
+    witness = Witness(int(page), start.root, lambda: scheduler.now_ns / 1e9, is_met)
 
     def give_up(kind: Kind, what: Message) -> None:
         with suppress(OSError):  # the simulator is gone
@@ -88,9 +87,9 @@ def main() -> None:
         witness.ending.raised(error)
 
     unsupported_calls.refuse_processes(refuse)
-    loading.hide_the_grader(root, target, *json.loads(introduction)[-2:])
+    loading.hide_the_grader(start)
     witness.lines.install()
-    code = loading.call(root, target, more[0] if more else None, on_error)
+    code = loading.call(start, on_error)
     threads.join_all()
     connect()
     witness.ending.returned(code)
@@ -138,7 +137,7 @@ def install(
     from grader.run.clock.link import SimulatorLink
     from grader.run.lockstep import endpoints
 
-    compares_stamps, texts, unlike, is_recorded, number, *_ = json.loads(introduction)
+    compares_stamps, texts, unlike, is_recorded, number = json.loads(introduction)
     link = SimulatorLink(scheduler, connection, page, refuse, number)
     main = scheduler.main.ident
 

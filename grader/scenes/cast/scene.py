@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage, Start, Trace
-from grader.recording.view import Cell, Table, View
 from grader.ros.bag_types import BagTypes
 from grader.ros.cdr import string
 from grader.scenes.cast import timeline, trace
@@ -24,6 +23,7 @@ from grader.scenes.scene import (
     Simulation,
     command_by_hand,
 )
+from grader.scenes.view import Cell, Table, View
 from grader.text.message import Message, msg
 from grader.text.translations import tr
 

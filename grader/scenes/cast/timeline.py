@@ -139,11 +139,10 @@ def render(playback: Playback) -> str:
     """Return the page, with a timeline of each run in it."""
     other = playback.other
     others = () if other is None else tuple((f"{other.title}: {r.title}", r) for r in other.runs)
-    data = {"runs": [_run(*each) for each in (*((r.title, r) for r in playback.runs), *others)]}
+    runs = [_run(*each) for each in (*((r.title, r) for r in playback.runs), *others)]
+    data = {"tick_s": STEP_NS / 1e9, "runs": runs}
     live = PAGE / "live"
-    return render_page(
-        playback, PAGE / "replay.html", data, STEP_NS / 1e9, [PAGE, live], [live / "timeline.css"]
-    )
+    return render_page(playback, PAGE / "replay.html", data, [PAGE, live], [live / "timeline.css"])
 
 
 def _run(title: str, run: PlayedRun) -> dict[str, Any]:

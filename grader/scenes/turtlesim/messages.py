@@ -23,10 +23,10 @@ import numpy.typing as npt
 
 from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage
-from grader.recording.view import Times
 from grader.ros.bag_types import BagTypes
 from grader.ros.cdr import MARK, CdrReader, string, string_of
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace, check
+from grader.scenes.view import Times
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import CmdVel, Event, EventError, from_json, to_json
 from turtlesim_py.world.trajectory import Trajectory

@@ -31,12 +31,13 @@ _OF_THE_NODE = frozenset(("clear", "reset", "spawn", "kill"))
 
 def render(playback: Playback) -> str:
     data = {
+        "tick_s": TICK_S,
         "sprites": {SPRITE: base64.b64encode(picture.sprite(SPRITE).tobytes()).decode()},
         "sprite": SPRITE,
         "runs": [_run(run) for run in playback.runs],
         "other": None if playback.other is None else _other(playback, playback.other),
     }
-    return render_page(playback, PLAYER / "player.html", data, TICK_S)
+    return render_page(playback, PLAYER / "player.html", data)
 
 
 def _run(run: PlayedRun) -> dict[str, Any]:

@@ -10,14 +10,14 @@ from pathlib import PurePath
 from typing import Any, ClassVar, Final
 
 from grader.recording.mcap import Channel
-from grader.recording.subject import BagMessage, Endpoint, Start, Trace
-from grader.recording.view import Pictures, View
+from grader.recording.subject import BagMessage, Endpoint, Pictures, Start, Trace
 from grader.scenes.live import LivePage
 from grader.scenes.playback import Playback
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
 from grader.scenes.turtlesim import interfaces, messages, view, words
 from grader.scenes.turtlesim.interfaces import endpoints_of
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace
+from grader.scenes.view import View
 from grader.text.message import NOTHING, Message, msg
 from grader.text.translations import tr
 from turtlesim_py.world import picture

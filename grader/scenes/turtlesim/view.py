@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
 from grader.scenes.turtlesim import words
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.scenes.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
 from grader.text.message import NOTHING, Message, msg
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.canvas import Pen

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.text import strings as text
-from grader.text.message import NOTHING, Message, as_message, joined, msg, msg_many, plain_text
+from grader.text.message import NOTHING, Message, joined, msg
 from turtlesim_py.ros.interfaces import NEWER, OLDER
 from turtlesim_py.world.events import (
     Clear,
@@ -105,12 +105,12 @@ def _asked_for(event: Event) -> Message:
         case RotateAbsolute():
             return msg("to heading {heading}", heading=_degrees(event.theta))
         case Spawn():
-            name = as_message(_clipped(event.name)) or msg("a name of its choice")
+            name = Message.of(_clipped(event.name)) or msg("a name of its choice")
             return joined([name, text.place(event.x, event.y)], ", ")
         case Kill():
-            return plain_text(_clipped(event.name))
+            return Message.of(_clipped(event.name))
         case SetParameter():
-            return plain_text(f"{_clipped(event.name)} = {_clipped(str(event.value))}")
+            return Message.of(f"{_clipped(event.name)} = {_clipped(str(event.value))}")
     return NOTHING
 
 
@@ -150,7 +150,7 @@ def _ink(part: Pixels, background: str) -> Message:
     colors, counts = np.unique(packed, return_counts=True)
     most = int(np.argmax(counts))
     name = color(*int(colors[most]).to_bytes(3, "big"))
-    pixels = msg_many("{n:,} pixel", "{n:,} pixels", len(packed))
+    pixels = msg("{n:,} pixel", "{n:,} pixels", n=len(packed))
     if len(colors) == 1:
         return msg("all {color}, {pixels}", color=name, pixels=pixels)
     if 2 * counts[most] > len(packed):
@@ -196,10 +196,10 @@ def remarks(
     for kind, effect in _INTERVENTIONS.items():
         calls = [event for event in trace.events if isinstance(event, kind)]
         if calls:
-            yield msg_many(
+            yield msg(
                 "The node called {call} once, first at {first_s:.2f} s: {effect}.",
                 "The node called {call} {n} times, first at {first_s:.2f} s: {effect}.",
-                len(calls),
+                n=len(calls),
                 call=kind.op,
                 first_s=calls[0].tick * TICK_S,
                 effect=effect,

@@ -14,10 +14,10 @@ from typing import Annotated, Any, Final
 
 from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder
-from grader.submission.examining import commands, known
+from grader.submission.examining import commands
 from grader.submission.examining.launch_time import LaunchTime
 from grader.submission.examining.layout import Workspace
-from grader.submission.examining.steps import LIMITS, NotKnown, end_of, it
+from grader.submission.examining.steps import LIMITS, NotKnownHere, end_of, it
 from grader.submission.program import (
     BASE,
     LONGEST_ARGUMENTS,
@@ -37,6 +37,7 @@ from grader.submission.trace import (
 )
 from grader.system.strict_json import STRANGERS
 from grader.text.message import Message, msg
+from ros_doubles import known
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
@@ -300,6 +301,17 @@ class LaunchRecord:
     def declared(self, name: str) -> None:
         self._add("declared", name)
 
+    def chose(self, name: str, value: str) -> None:
+        """An argument without a default has choices, of which this was taken."""
+        self.remark(
+            msg(
+                "its argument {name} has no default: looked at with {value}, the first of its "
+                "choices",
+                name=name,
+                value=value,
+            )
+        )
+
     def remark(self, remark: Message) -> None:
         self._add("remarks", remark)
 
@@ -328,7 +340,7 @@ class LaunchRecord:
         """Where a file is, or the one that was meant.
 
         Raises:
-            NotKnown: it is of another package, of which nobody knows the files here.
+            NotKnownHere: it is of another package, of which nobody knows the files here.
         """
         if os.path.exists(wanted):
             return wanted
@@ -338,7 +350,7 @@ class LaunchRecord:
             return self.path(own)
         if wanted.startswith(f"{self._place.stubs}/"):
             name = self._place.shown(wanted)
-            raise NotKnown(it(msg("needs {name}, a file of another package", name=name)))
+            raise NotKnownHere(it(msg("needs {name}, a file of another package", name=name)))
         meant = self._place.meant(wanted)
         self.lack("file", wanted, meant)
         return meant or wanted
@@ -433,7 +445,7 @@ class LaunchRecord:
         if path.endswith(".py"):
             description = _python(path, read)
         else:
-            from grader.submission.examining import frontend
+            from ros_doubles import frontend
 
             description = frontend.description(read)
         self.context.locals_ |= {_FILE: path, "current_launch_file_path": path}
@@ -444,7 +456,7 @@ class LaunchRecord:
         """A text with its substitutions, as in a launch file of XML."""
         from launch._core import perform_substitutions
 
-        from grader.submission.examining.frontend_substitutions import substitutions
+        from ros_doubles.frontend_substitutions import substitutions
 
         return str(perform_substitutions(self.context, substitutions(text)))
 

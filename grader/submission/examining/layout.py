@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+import ros_doubles
 from grader.submission import safe_files
 from grader.submission.answer import SetUpFacts
-from grader.submission.examining import cmake, known
+from grader.submission.examining import cmake
 from grader.submission.examining.packages import SourcePackage
 from grader.submission.examining.setup_call import evaluate
 from grader.submission.examining.steps import Ended, attempt, it
@@ -23,11 +24,12 @@ from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.python_source import read_source
 from grader.submission.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
 from grader.text.message import NOTHING, Message, msg
+from ros_doubles import known
 
 #: Set-ups that were evaluated already, by their folders.
 Known = Mapping[Path, tuple[SetUpFacts, Obstacle | None]]
 #: What stands in for ROS's packages, and where all of our code is.
-DOUBLES: Final = Path(__file__).parent / "doubles"
+DOUBLES: Final = Path(ros_doubles.__file__).parent
 CODE: Final = Path(__file__).resolve().parents[3]
 MARKS = "share/ament_index/resource_index/packages"
 #: Folders whose files a description package is expected to install.

@@ -19,7 +19,8 @@ from typing import Any, Final, Self, TypeVar
 from grader.submission.examining import leftovers
 from grader.submission.trace import Obstacle
 from grader.system import limited, strict_json
-from grader.text.message import NOTHING, Message, msg, plain_text, reason
+from grader.text.message import NOTHING, Message, msg
+from ros_doubles import NotKnown
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
 LIMITS: Final = limited.WorkLimits(
@@ -42,8 +43,11 @@ Own = Callable[[str], str]
 Made = TypeVar("Made")
 
 
-class NotKnown(Exception):
-    """A package uses what the grader does not know, which a message says: no fault of it."""
+class NotKnownHere(NotKnown):
+    """A package needs what nobody has here, which a message says: no fault of it."""
+
+    def __init__(self, message: Message) -> None:
+        Exception.__init__(self, message)
 
 
 class Ended(Exception):
@@ -62,16 +66,6 @@ class Ended(Exception):
 def it(clause: Message) -> Message:
     """A clause about what is evaluated; whoever tells of it may put a file's name for the "it"."""
     return msg("it {what}", what=clause)
-
-
-def not_known(name: str) -> NotKnown:
-    """Of a name that the original may have, and the grader does not know."""
-    return NotKnown(it(msg("uses {name}, which the grader does not know", name=name)))
-
-
-def not_there(name: str) -> NotKnown:
-    """Of something that belongs to another package."""
-    return NotKnown(it(msg("uses {name}, which the grader does not have", name=name)))
 
 
 #: All steps of a look may take so much processor time, and be idle for so long [s].
@@ -239,12 +233,17 @@ def problem_of(error: BaseException, own: Own) -> Obstacle:
     file, line = next((each for each in reversed(frames) if each[0]), ("", 0))
     if isinstance(error, SyntaxError) and error.filename and own(error.filename):
         file, line = own(error.filename), error.lineno or 0
+    if isinstance(error, NotKnownHere):
+        return Obstacle(kind, Message.of(error), file, line)
     if isinstance(error, NotKnown):
-        return Obstacle(kind, reason(error), file, line)
+        what = msg("uses {name}, which the grader does not know", name=str(error))
+        if error.is_of_others:
+            what = msg("uses {name}, which the grader does not have", name=str(error))
+        return Obstacle(kind, it(what), file, line)
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     raised = f"{type(error).__name__}: {' '.join(words.split())}"
     text = start_of(_ADDRESS.sub("at 0x...", raised), _LONGEST)
-    return Obstacle(kind, plain_text(text.rstrip(": ")), file, line)
+    return Obstacle(kind, Message.of(text.rstrip(": ")), file, line)
 
 
 def start_of(text: str, most: int) -> str:

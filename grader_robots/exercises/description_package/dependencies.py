@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from grader import Checks, Finding, Tolerances
-from grader.submission import DESKTOP, NamedMesh, shown
+from grader.submission import NamedMesh, shown
 from grader.text import Message, joined, msg
 from grader_robots.exercises.description_package import robots
 from grader_robots.exercises.description_package.facts import (
@@ -15,6 +15,7 @@ from grader_robots.exercises.description_package.facts import (
     unjudged,
 )
 from grader_robots.exercises.description_package.installing import AS_CREATED
+from ros_doubles.known import DESKTOP
 
 checks = Checks()
 #: What comes along with another package.

@@ -8,9 +8,10 @@ from functools import wraps
 from typing import NamedTuple
 
 from grader import Finding, Recordings, Tolerances
-from grader.exercise import UNKNOWN, CheckFunction, not_judged
-from grader.submission import SIMULATORS, Description, LaunchedNode, LaunchFile, PackageTrace, Setup
+from grader.exercise import UNKNOWN, not_judged
+from grader.submission import Description, LaunchedNode, LaunchFile, PackageTrace, Setup
 from grader.text import Message, msg
+from ros_doubles.known import SIMULATORS
 
 #: Obstacles of a launch file that may be one of several: it wants what its user knows, too.
 NO_FAULT = (UNKNOWN, "argument")
@@ -91,7 +92,9 @@ def includes_simulator(launch: LaunchFile) -> bool:
     return included or any(each.startswith(_SIMULATORS) for each in launch.processes)
 
 
-def of_package(judge: Callable[[PackageFacts, Tolerances], Finding]) -> CheckFunction:
+def of_package(
+    judge: Callable[[PackageFacts, Tolerances], Finding],
+) -> Callable[[Recordings, Tolerances], Finding]:
     """A check of a package; the same for every check where the inspection found nothing."""
 
     @wraps(judge)

@@ -10,8 +10,6 @@ from grader import Checks, Finding, Tolerances
 from grader.exercise import unless_unknown
 from grader.submission import (
     EMPTY,
-    FILES,
-    KNOWN,
     Lacking,
     LaunchedNode,
     LaunchFile,
@@ -33,6 +31,7 @@ from grader_robots.exercises.description_package.facts import (
 )
 from grader_robots.exercises.description_package.robots import of_description, of_text
 from grader_robots.robot_py.urdf import parse
+from ros_doubles.known import FILES, KNOWN
 
 checks = Checks()
 PUBLISHER = "robot_state_publisher"

@@ -10,8 +10,8 @@ import math
 import numpy as np
 
 from grader import Checks, Evidence, Expected, Finding, Tolerances
-from grader.recording import Floats
-from grader.text import NOTHING, Message, joined, msg, msg_many
+from grader.scenes.view import Floats
+from grader.text import NOTHING, Message, joined, msg
 from grader_robots.exercises.state_publisher.seen import (
     RobotRun,
     finite,
@@ -76,12 +76,12 @@ def joint_names(seen: RobotRun, tolerances: Tolerances) -> Finding:
     share = len(wanted & found) / len(wanted | found)
     texts = []
     if foreign:
-        several = msg_many(
+        several = msg(
             "The messages on /joint_states name {foreign}, which is none of the robot's moving "
             "joints.",
             "The messages on /joint_states name {foreign}, which are none of the robot's moving "
             "joints.",
-            len(foreign),
+            n=len(foreign),
             foreign=listed(foreign),
         )
         texts.append(several)

@@ -9,9 +9,9 @@ from functools import wraps
 import numpy as np
 
 from grader import Evidence, Finding, Recordings, Tolerances
-from grader.exercise import CheckFunction, error_first, how_it_ended
-from grader.recording import Floats
-from grader.text import Message, joined, msg, plain_text
+from grader.exercise import error_first, how_it_ended
+from grader.scenes.view import Floats
+from grader.text import Message, joined, msg
 from grader_robots.robot_py.model import Joint
 from grader_robots.scene.motion import joints, odometry
 from grader_robots.scene.trace import TICK_S, RobotTrace
@@ -64,7 +64,9 @@ class RobotRun:
         return Evidence(round(tick * TICK_S, 3), note, x, y, tick=tick)
 
 
-def of_run(judge: Callable[[RobotRun, Tolerances], Finding]) -> CheckFunction:
+def of_run(
+    judge: Callable[[RobotRun, Tolerances], Finding],
+) -> Callable[[Recordings, Tolerances], Finding]:
     """A check of what the node did; where an error ended the run, that is what to mend first."""
 
     @wraps(judge)
@@ -85,7 +87,7 @@ def listed(names: Iterable[str]) -> Message:
     few = ", ".join(each[:5])
     if len(each) > 5:
         return msg("{names} and {count} more", names=few, count=len(each) - 5)
-    return plain_text(few) if few else msg("nothing")
+    return Message.of(few) if few else msg("nothing")
 
 
 def rounded(value: float) -> float:

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from grader import Checks, Evidence, Finding, Tolerances
-from grader.text import NOTHING, Message, msg, msg_many
+from grader.text import NOTHING, Message, msg
 from grader_robots.exercises.state_publisher.seen import RobotRun, of_run, sentence
 from grader_robots.scene.trace import TF, TF_STATIC, TICK_S, RobotTrace
 
@@ -128,12 +128,12 @@ def _flood(seen: RobotRun, tolerances: Tolerances) -> Message:
     """What is sent more often than it should be, as a clause; ''."""
     static = len({t.message for t in seen.sent if t.topic == TF_STATIC})
     if static > tolerances["static_most"]:
-        return msg_many(
+        return msg(
             "{n} message came on /tf_static: a StaticTransformBroadcaster is for what never moves, "
             "and sends it once",
             "{n} messages came on /tf_static: a StaticTransformBroadcaster is for what never "
             "moves, and sends it once",
-            static,
+            n=static,
         )
     per_message = Counter((t.message, t.child) for t in seen.sent)
     repeated = [key for key, number in per_message.items() if number > 1]

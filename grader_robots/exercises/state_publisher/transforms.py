@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from grader import Checks, Expected, Finding, Tolerances
-from grader.recording import Floats
-from grader.text import Message, msg, msg_many
+from grader.scenes.view import Floats
+from grader.text import Message, msg
 from grader_robots.exercises.state_publisher.seen import RobotRun, listed, of_run, sentence
 from grader_robots.scene.motion import ODOM, Odometry, bare, below, fitted, hung, why_refused
 from grader_robots.scene.view import FROM_CENTRE
@@ -127,10 +127,10 @@ def _absent(seen: RobotRun) -> Finding:
             "The robot stands in the world by {odom!r} and the root link of its URDF.", odom=ODOM
         )
     elif ("/tf", ODOM, seen.root) in others:
-        rationale = msg_many(
+        rationale = msg(
             "Only {n} transform from {parent!r} to {child!r} came on /tf: too few to see a way.",
             "Only {n} transforms from {parent!r} to {child!r} came on /tf: too few to see a way.",
-            len(way),
+            n=len(way),
             **ends,
         )
         help = _EACH_TIME

@@ -12,7 +12,7 @@ import numpy as np
 
 from grader import Checks, Finding, Tolerances
 from grader.submission import shown
-from grader.text import NOTHING, Message, Text, msg
+from grader.text import NOTHING, Message, msg
 from grader_robots.exercises.description_package import checks as of_packages
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
@@ -133,7 +133,7 @@ def _sizes(model: Model) -> list[object]:
     ]
 
 
-def _staying(one: Model, other: Model) -> Iterator[Text]:
+def _staying(one: Model, other: Model) -> Iterator[str | Message]:
     """Links that should move along with a part that has changed its size, and do not.
 
     They hang on it away from its middle, along the side that has changed. Of a part that is no

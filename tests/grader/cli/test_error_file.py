@@ -110,20 +110,3 @@ def test_a_result_goes_to_a_descriptor_of_the_callers(tmp_path):
     with error.open("w") as file:
         assert main(["report", "x.json", "--error-json", f"/dev/fd/{file.fileno()}"]) == 2
     assert said(error)[0] == "call"
-
-
-def test_who_handed_in_what_cannot_be_used_has_a_row_in_the_table_of_a_class(tmp_path, capsys):
-    """As docs/reports.md has it: beside where the result would be, found with the results."""
-    for name in ("alice", "bob"):
-        (tmp_path / "in" / name).mkdir(parents=True)
-        words = ["--out", str(tmp_path / name), "--error-json", str(tmp_path / name / "error.json")]
-        assert main(["run", str(tmp_path / "in" / name), *words]) == 2
-    files = sorted(map(str, tmp_path.glob("*/*.json")))
-    table = tmp_path / "class.csv"
-    assert main(["report", *files, "--format", "csv", "--out", str(table)]) == 0
-    rows = table.read_text().splitlines()[1:]
-    assert [row.split(",")[:4] for row in rows] == [
-        ["alice", "", "0", "100"],
-        ["bob", "", "0", "100"],
-    ]
-    assert "alice is an empty folder" in rows[0]

@@ -10,7 +10,6 @@ from grader.cli import live, options, run
 from grader.grading import RUNNERS
 from grader.system import extensions
 from grader.system import versions as system
-from tests.grader.reports import samples
 from tests.programs import ROOT
 
 IMPORTED = """
@@ -52,14 +51,6 @@ def test_the_versions_are_told(capsys):
     assert said.startswith(
         f"grader {system.grader_version()} (Python {system.python_version()}, rclpy "
     )
-
-
-def test_a_table_of_results_needs_no_terminal_and_no_page(tmp_path):
-    result = tmp_path / "result.json"
-    result.write_text(json.dumps(samples.result()))
-    modules = imported("report", result, "--format", "csv", "--out", tmp_path / "results.csv")
-    assert (tmp_path / "results.csv").exists()
-    assert not {"rich", "jinja2", "backports"} & modules
 
 
 def test_help_shows_the_first_line_of_each_verbs_module(capsys):

@@ -15,7 +15,7 @@ from websockets.sync.client import connect
 from grader import grading
 from grader.cli import live, main
 from grader.exercise.loading import load_exercise
-from grader.scenes import load_scene
+from grader.scenes.scene import load_scene
 from grader.scenes.turtlesim.pages import TurtlesimPage
 from tests.programs import DEADLINE_S, ROOT
 

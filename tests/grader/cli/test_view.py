@@ -7,7 +7,7 @@ import pytest
 from grader.cli import main
 from grader.recording import saving
 from grader.recording.recording import Recordings
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from grader.system import extensions
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples

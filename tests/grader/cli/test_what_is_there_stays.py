@@ -36,9 +36,9 @@ def here(tmp_path, monkeypatch):
     [
         ("report rr.json --error-json rr.json", READ),
         ("report rr.json --error-json ../{here}/rr.json", READ),
-        ("report rr.json --format csv --out rr.json", READ),
-        ("report error.json --format csv --out error.json", READ),
-        ("report rr.json --format csv --out recording/run.json", READ),
+        ("report rr.json --format html --out rr.json", READ),
+        ("report error.json --format html --out error.json", READ),
+        ("report rr.json --format html --out recording/run.json", READ),
         ("report rr.json --error-json notes.txt", FOREIGN),
         ("report rr.json --nonsense --error-json notes.txt", FOREIGN),
         ("report error.json --nonsense --error-json error.json", READ),
@@ -66,7 +66,7 @@ def test_an_empty_file_and_one_of_ours_are_replaced(here):
     assert not (here / "error.json").exists()
     assert main(["check", "recording", "--json", "rr.json"]) == 0
     assert Result.read(here / "rr.json") == Result.read(here / "empty.json")
-    assert main(["report", "rr.json", "--format", "csv", "--out", "notes.txt"]) == 0
+    assert main(["report", "rr.json", "--format", "html", "--out", "notes.txt"]) == 0
 
 
 def test_a_folder_that_cannot_be_made_is_told_and_no_traceback(here, capsys):

@@ -8,7 +8,7 @@ import yaml
 from grader.exercise.loading import load_exercise
 from grader.exercise.policies import Late, LatePolicy
 from grader.exercise.sheet import Start, sheet
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import edited, refusal
 

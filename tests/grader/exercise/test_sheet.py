@@ -4,7 +4,7 @@ import pytest
 
 from grader.exercise.loading import load_exercise
 from grader.exercise.sheet import Start, in_force, sheet
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import edited, refusal
 

@@ -11,7 +11,7 @@ from grader.exercise.result import json_file
 from grader.exercise.sheet import Start, sheet
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recordings
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from grader.testing import drive
 from grader.text.translations import ENGLISH, translate, use
 from tests.grader.testing import exercises

@@ -5,7 +5,8 @@ import pytest
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
 from grader.recording.subject import Start
-from grader.testing import checking, drive, twist
+from grader.scenes.turtlesim.driving import twist
+from grader.testing import checking, drive
 from tests.grader.testing.exercises import edited
 from turtlesim_py.world.turtle import SIZE_M
 

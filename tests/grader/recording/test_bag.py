@@ -18,7 +18,7 @@ from grader.recording.recording import Recordings
 from grader.ros.bag_types import OF_ROS
 from grader.ros.definitions import Definitions
 from grader.ros.messages import serialise
-from grader.scenes import load_scene
+from grader.scenes.scene import load_scene
 from tests import archive
 from tests.grader.driving import drive, pen, twist
 from tests.grader.recording.slow_bag import Rosbag2Writer, types_of

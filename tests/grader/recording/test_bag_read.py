@@ -6,7 +6,7 @@ from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 
 from grader.recording import bag, mcap, zstd
-from grader.scenes import load_scene
+from grader.scenes.scene import load_scene
 from tests.grader.driving import Spiral, drive, twist
 
 SCENE = load_scene("turtlesim")

@@ -30,5 +30,5 @@ def test_it_is_judged_and_reported(tmp_path, capsys):
     assert cli.main(["check", str(folder), "--exercise", "talker", "--json", str(result)]) == 0
     assert json.loads(result.read_text(encoding="utf-8"))["score"] == 100
     capsys.readouterr()
-    assert cli.main(["report", str(result), "--format", "markdown"]) == 0
+    assert cli.main(["report", str(result), "--format", "terminal"]) == 0
     assert "100" in capsys.readouterr().out

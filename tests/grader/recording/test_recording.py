@@ -12,7 +12,7 @@ from grader.recording.subject import Start
 from grader.run.finish import Ending, record
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
-from grader.text.message import msg, plain_text
+from grader.text.message import Message, msg
 from tests.conftest import EXAMPLES
 from tests.grader.driving import Spiral, drive, twist
 from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_traces, texts
@@ -78,7 +78,7 @@ def test_every_kind_of_input_survives_in_its_order(tmp_path):
 def test_the_facts_about_a_run_survive(recorded, tmp_path):
     ticks, simulated_s = recorded.run.ticks, recorded.run.simulated_s
     programs = (ProgramRun("a-1", "b", "a", "killed", -9, "ü\n"),)
-    flags = (plain_text("odd"), msg("ü {at}", at=1.5))
+    flags = (Message.of("odd"), msg("ü {at}", at=1.5))
     told = ("ROS domain 77", flags, 42, "i", "late", programs)
     run = Run("virtual", "crashed", -11, ticks, simulated_s, 1.5, recorded.run.trace_sha256, *told)
     changed = replace(
@@ -109,9 +109,9 @@ def test_a_recording_without_a_single_tick_survives(recorded, tmp_path):
 def test_the_hash_depends_on_what_happened_only(recorded, folder):
     loaded = reading.load(folder)
     run = Run(
-        "virtual", "crashed", 1, wall_s=99.0, isolation="elsewhere", flags=(plain_text("odd"),)
+        "virtual", "crashed", 1, wall_s=99.0, isolation="elsewhere", flags=(Message.of("odd"),)
     )
-    plan = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), seed=7, flags=(plain_text("odder"),))
+    plan = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), seed=7, flags=(Message.of("odder"),))
     again = record(plan, loaded.trace, (), Ending(run, "more output"))
     assert again.run.trace_sha256 == recorded.run.trace_sha256
     other = drive(Spiral(), ticks=500)

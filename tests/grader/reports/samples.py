@@ -7,8 +7,8 @@ from pathlib import Path
 from grader.exercise.result.result import Result
 from grader.recording import saving
 from grader.recording.recording import Recordings
-from grader.reports import Report, names, render
-from grader.reports.report import Artifacts
+from grader.reports import Artifacts, Report, render
+from grader.reports.formats import names
 
 #: The formats that are installed.
 FORMATS = names()

@@ -32,8 +32,6 @@ def test_a_diagnosis_comes_first_and_leads_to_the_check_that_it_repeats():
     report = samples.report(diagnosis=samples.diagnosis(check="stops"))
     assert report.headline == "You crashed at 6.0 s (drive.py, line 39)."
     assert report.first_to_mend.check == "stops"
-    led = [report.led_lines(verdict)[0] for verdict in report.verdicts]
-    assert [line.startswith("Fix this first: ") for line in led] == [False, True, False, False]
 
 
 def test_evidence_is_numbered_over_all_verdicts_and_names_its_run():

@@ -87,7 +87,7 @@ def test_a_definition_with_a_mistake_leaves_the_others():
     interfaces = OwnInterfaces({**NUM.texts, "demo_interfaces/msg/Bad": "int count\n"}, faults)
     with run_context.open_context() as context:
         _, theirs = compiling.compile_all({}, interfaces, context)
-        (place,) = theirs.folders
+        place = theirs
         names = {each.name for each in (place / "demo_interfaces" / "msg").iterdir()}
         assert names == {"__init__.py", "_num.py"}
 
@@ -165,7 +165,7 @@ def test_texts_names_and_comments_reach_the_compiler_as_nothing_else(monkeypatch
         made = Definitions(texts)
         assert not made.errors
         _, theirs = compiling.compile_all({}, interfaces, context)
-    monkeypatch.syspath_prepend(str(theirs.folders[0]))
+    monkeypatch.syspath_prepend(str(theirs))
     name = "hostile_interfaces/msg/Text"
     real = installed(slot_of(name))
     found = list(differences(real, made.type(name), random.Random(1), set()))
@@ -177,7 +177,8 @@ def test_the_import_path_of_ros_stays(tmp_path):
     with run_context.open_context() as context:
         there = replace(context, env={**context.env, "PYTHONPATH": "/opt/ros/x"})
         _, theirs = compiling.compile_all({}, NUM, there)
-    assert theirs.env["PYTHONPATH"].split(os.pathsep)[1:] == ["/opt/ros/x"]
+    path = compiling.importing(theirs, there)["PYTHONPATH"]
+    assert path.split(os.pathsep)[1:] == ["/opt/ros/x"]
 
 
 def test_what_cannot_be_compiled_is_tried_once_for_all_runs_of_a_grading(sends, monkeypatch):

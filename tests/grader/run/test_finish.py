@@ -10,7 +10,7 @@ from grader.recording.subject import Start
 from grader.run.finish import Ending, outcome, record
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits, Reason
-from grader.text.message import msg, plain_text
+from grader.text.message import Message, msg
 from tests.grader.driving import Spiral, drive
 
 REASONS = get_args(Reason)
@@ -22,7 +22,7 @@ EXPECTED = {
     **{(reason, code): "crashed" for reason in REASONS for code in (1, 255)},
     **{(reason, code): "killed" for reason in REASONS for code in (-9, -11)},
 }
-A, B, C = msg("a"), plain_text("b"), msg("c {n}", n=1)
+A, B, C = msg("a"), Message.of("b"), msg("c {n}", n=1)
 RUN = Run("virtual", "crashed", -11, wall_s=1.23456, isolation="ROS domain 77", flags=(A, B))
 RUN = replace(RUN, programs=(ProgramRun("a-1", "b", "a", "crashed", -11),))
 ENDING = Ending(RUN, "printed\n")

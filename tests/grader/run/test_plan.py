@@ -8,7 +8,7 @@ import pytest
 from grader.recording.subject import Start
 from grader.run.handover import Plan
 from grader.scenes.scene import Limits
-from grader.text.message import msg, plain_text
+from grader.text.message import Message, msg
 
 
 def test_every_field_and_its_type_survive_the_way_to_another_process_as_one_line():
@@ -17,7 +17,7 @@ def test_every_field_and_its_type_survive_the_way_to_another_process_as_one_line
         Start(0.0, 1 / 3, 5e-324),
         "moon",
         42,
-        (msg("odd {n:.1f}", n=0.25), plain_text("ü\n")),
+        (msg("odd {n:.1f}", n=0.25), Message.of("ü\n")),
         "i",
         "s",
         True,

@@ -24,7 +24,8 @@ import time
 import numpy as np
 from grader.text.message import msg
 from grader.recording.subject import Endpoint, Start
-from grader.recording.view import Curve, Pictures, View
+from grader.scenes.view import Curve, View
+from grader.recording.subject import Pictures
 from lamp import BOOL, TOPIC, Lamp, LampSimulation, LampTrace
 
 

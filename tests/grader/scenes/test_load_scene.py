@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import grader.scenes
-from grader.recording.subject import load_subject
-from grader.scenes import load_scene
+from grader.scenes.scene import load_scene
+from grader.scenes.subject import load_subject
 from grader.system import extensions
 
 ROOT = Path(__file__).parents[3]
@@ -44,7 +44,7 @@ def test_judging_a_subject_s_recordings_needs_no_ros(name):
     code = f"""
 import sys
 sys.modules["rclpy"] = None
-from grader.recording.subject import load_subject
+from grader.scenes.subject import load_subject
 from grader.scenes.scene import Scene
 subject = load_subject({name!r})
 print(subject.untouched(None), subject.plane)

@@ -37,7 +37,7 @@ def test_the_run_of_a_file_that_python_refuses_ends_with_its_line(tmp_path, data
     file.write_bytes(data)
     assert byte_fault(data)
     with pytest.raises(SyntaxError, match="save the file as UTF-8") as error:
-        loading.run(str(tmp_path), str(file), None)
+        loading.run(loading.ProgramStart(str(tmp_path), str(file), None))
     assert (error.value.filename, error.value.lineno) == (str(file), line)
 
 

@@ -25,7 +25,7 @@ from grader.submission.trace import (
     decode,
     encode,
 )
-from grader.text.message import NOTHING, plain_text
+from grader.text.message import NOTHING, Message
 
 SETUP = Setup(
     "a", "a", "", "ament_python", NOTHING, ("b",), None, (), (), (), "", ("x",), ("y",), ()
@@ -34,7 +34,7 @@ NODE = LaunchedNode(
     "p", "e", "", "", ("-d",), (Parameter("robot_description", "", 0, True),), (), False
 )
 LACKING = Lacking("file", "/prefix/x", "", "launch/a.py")
-PROBLEM = Obstacle("error", plain_text("NameError"), "a.py", 3)
+PROBLEM = Obstacle("error", Message.of("NameError"), "a.py", 3)
 TRACE = PackageTrace(
     SETUP,
     ("other",),

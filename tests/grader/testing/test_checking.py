@@ -8,8 +8,9 @@ from grader.exercise import asking
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
 from grader.recording.recording import Recordings
+from grader.scenes.turtlesim.driving import twist
 from grader.system.limited import WorkLimits
-from grader.testing import check_exercise, checking, drive, twist
+from grader.testing import check_exercise, checking, drive
 from grader.testing.checking import examine, odd_recordings
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import CHECKS, MUTANTS

@@ -3,8 +3,9 @@
 import pytest
 
 from grader.recording.subject import Start
+from grader.scenes.turtlesim.driving import pen, twist
 from grader.scenes.turtlesim.trace import TurtleTrace
-from grader.testing import drive, pen, twist
+from grader.testing import drive
 from turtlesim_py.world.events import CmdVel, SetPen
 
 

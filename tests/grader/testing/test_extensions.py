@@ -5,8 +5,9 @@ from itertools import count
 
 import pytest
 
-from grader.recording.subject import load_subject
-from grader.reports import Format, load
+from grader.reports import Format
+from grader.reports.formats import load
+from grader.scenes.subject import load_subject
 from grader.scenes.turtlesim.scene import Turtlesim
 from grader.system import extensions
 from grader.testing import check_report, check_scene
@@ -70,7 +71,7 @@ def test_a_format_that_fails_or_changes_or_says_nothing_is_told(monkeypatch):
         "a failed result: writes something else the second time",
         "an aborted grading: writes nothing",
     ]
-    broken = replace(load("csv"), render=lambda report: 1 / 0)
+    broken = replace(load("terminal"), render=lambda report: 1 / 0)
     monkeypatch.setattr(checked, "load", lambda name: broken)
     problems = list(map(str, check_report("mine")))
     assert problems == [

@@ -14,16 +14,12 @@ from grader.exercise.result import json_file
 from grader.text.message import (
     NOTHING,
     Message,
-    as_message,
     authored,
     chained,
     fill,
     in_context,
     joined,
     msg,
-    msg_many,
-    plain_text,
-    reason,
     series,
 )
 from grader.text.strings import clip, one_line
@@ -52,7 +48,7 @@ def test_it_is_no_text_and_does_not_become_one_unseen(lost):
     ("n", "said"), [(0, "0 pins"), (1, "1 pin"), (2, "2 pins"), (4210, "4,210 pins")]
 )
 def test_one_and_many(n, said):
-    assert str(msg_many("{n:,} pin", "{n:,} pins", n)) == said
+    assert str(msg("{n:,} pin", "{n:,} pins", n=n)) == said
 
 
 def test_a_row_has_its_parts_and_those_of_rows_in_it():
@@ -62,7 +58,7 @@ def test_a_row_has_its_parts_and_those_of_rows_in_it():
     assert row.is_row
     assert not msg("{p0} of it", p0="x").is_row
     assert joined([msg("one")], ", ") == msg("one")
-    assert joined(["one"]) == plain_text("one")
+    assert joined(["one"]) == Message.of("one")
     assert joined([]) == NOTHING
     assert str(joined([msg("one"), NOTHING, ""])) == "one"
 
@@ -102,16 +98,16 @@ def test_a_value_may_be_quoted_or_begin_a_sentence_and_be_anything_that_has_a_te
 
 def test_nothing_is_said_by_none_and_a_plain_text_is_itself():
     empty = Message("{text}", {"text": ""})
-    for nothing in (NOTHING, plain_text(""), as_message(""), msg(""), joined([]), empty):
+    for nothing in (NOTHING, Message.of(""), Message.of(""), msg(""), joined([]), empty):
         assert not nothing
         assert str(nothing) == ""
-    assert plain_text("x")
+    assert Message.of("x")
     assert msg("{it}", it=NOTHING)  # it is a sentence
-    made = plain_text("{0} is 5 % of {")
+    made = Message.of("{0} is 5 % of {")
     assert (str(made), made.text) == ("{0} is 5 % of {", "{0} is 5 % of {")
     assert (msg("text").text, msg("{text}", text=1).text) == (None, None)
-    assert as_message(made) is made
-    assert as_message("x") == plain_text("x")
+    assert Message.of(made) is made
+    assert Message.of("x") == Message.of("x")
 
 
 def test_what_an_author_has_written_has_no_values_and_a_word_may_have_a_context():
@@ -123,7 +119,7 @@ def test_what_an_author_has_written_has_no_values_and_a_word_may_have_a_context(
 
 
 def test_it_lives_through_copies_and_processes_and_values_are_given_later():
-    made = msg("{where}: {note}", where="a", note=msg_many("{n} pin", "{n} pins", 2))
+    made = msg("{where}: {note}", where="a", note=msg("{n} pin", "{n} pins", n=2))
     for other in (deepcopy(made), pickle.loads(pickle.dumps(made))):
         assert other == made
         assert hash(other) == hash(made)
@@ -137,13 +133,13 @@ def test_it_lives_through_copies_and_processes_and_values_are_given_later():
 
 def test_an_exception_keeps_its_message_and_else_says_all():
     made = msg("is damaged")
-    assert reason(ValueError(made)) is made
-    assert (str(reason(ValueError())), str(reason(ValueError("a", 1)))) == ("", "('a', 1)")
+    assert Message.of(ValueError(made)) is made
+    assert (str(Message.of(ValueError())), str(Message.of(ValueError("a", 1)))) == ("", "('a', 1)")
     odd = UnicodeDecodeError("utf-8", b"\xff", 0, 1, "invalid start byte")
-    assert str(reason(odd)).endswith("invalid start byte")
+    assert str(Message.of(odd)).endswith("invalid start byte")
     made = msg("{where}: {note}", where="a", note="b")
     assert SubmissionError(made).message == made
-    assert UsageError("as it is").message == plain_text("as it is")
+    assert UsageError("as it is").message == Message.of("as it is")
     made = msg("{where}: {note}", where="a\x1b[2J", note=msg("says {it}", it="b\nc\x07"))
     assert str(SubmissionError(made)) == "a?[2J: says b\nc?"
 
@@ -159,13 +155,13 @@ def test_a_file_that_cannot_be_used_is_told_whatever_its_reader_raises(error):
 
 SAID = [
     NOTHING,
-    plain_text("plain {"),
+    Message.of("plain {"),
     msg("It made {turns:.1f} turns, {why}", turns=2.5, why=msg("of {asked}.", asked=msg("three"))),
     joined([msg("one"), " 2"]),
-    msg_many("{n} pin", "{n} pins", 3),
+    msg("{n} pin", "{n} pins", n=3),
     authored("Drive {on}").translated("zh", "前进"),
     in_context("left", "of a wall"),
-    msg("{is_so} at {where}", is_so=True, where=plain_text("{home}")),
+    msg("{is_so} at {where}", is_so=True, where=Message.of("{home}")),
 ]
 
 
@@ -177,9 +173,9 @@ def test_from_json_it_comes_back_as_it_was(said):
 
 
 def test_a_text_is_a_text_in_json_and_a_sentence_has_what_it_is_made_of():
-    assert plain_text("x").serialise() == "x"
+    assert Message.of("x").serialise() == "x"
     assert msg("x").serialise() == {"key": "x"}
-    assert msg_many("{n} pin", "{n} pins", 3).serialise() == {
+    assert msg("{n} pin", "{n} pins", n=3).serialise() == {
         "key": "{n} pin",
         "values": {"n": 3},
         "many": "{n} pins",

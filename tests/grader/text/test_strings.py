@@ -39,19 +39,17 @@ def test_control_characters_are_replaced_and_nothing_else(raw, clean):
 def test_every_text_of_a_result_is_made_plain_and_numbers_stay():
     raw = {"a\x00": ["\x1b[1mb", {"c": "\ud800"}], "n": 1.5, "t": True, "z": None}
     plain = {"a\ufffd": ["b", {"c": "\ufffd"}], "n": 1.5, "t": True, "z": None}
-    assert text.plain_all(raw) == plain
+    assert text.plain(raw) == plain
     found = Finding(1.0, "a\x00", evidence=(Evidence(1, 0.1, 2.0, 3.0, "\x1b[1mb"),))
-    assert text.plain_all(found) == Finding(
-        1.0, "a\ufffd", evidence=(Evidence(1, 0.1, 2.0, 3.0, "b"),)
-    )
+    assert text.plain(found) == Finding(1.0, "a\ufffd", evidence=(Evidence(1, 0.1, 2.0, 3.0, "b"),))
 
 
 def test_a_long_text_keeps_its_start_and_its_end():
-    clipped = text.clip_middle("a" * 500 + "b" * 500, 100)
+    clipped = text.clip("a" * 500 + "b" * 500, 100, keeps_end=True)
     assert clipped.startswith("a" * 50)
     assert clipped.endswith("b" * 50)
     assert "900 characters left out" in clipped
-    assert text.clip_middle("short", 100) == "short"
+    assert text.clip("short", 100, keeps_end=True) == "short"
 
 
 @pytest.mark.parametrize(

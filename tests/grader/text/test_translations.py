@@ -5,7 +5,7 @@ import json
 import pytest
 
 from grader.text import translations
-from grader.text.message import Message, authored, in_context, joined, msg, msg_many, plain_text
+from grader.text.message import Message, authored, in_context, joined, msg
 from grader.text.translations import (
     ENGLISH,
     LANGUAGES,
@@ -13,7 +13,6 @@ from grader.text.translations import (
     number,
     of_environment,
     tr,
-    tr_many,
     translate,
     use,
 )
@@ -68,8 +67,8 @@ def test_values_come_where_the_language_wants_them():
         (in_context("left", "over"), "left"),
         # what nobody translated is English with English numbers
         (msg("No such {x:.1f} sentence.", x=1.5), "No such 1.5 sentence."),
-        (msg_many("{n} hole", "{n} holes", 1.5), "1.5 holes"),
-        (msg_many("{n:,} such", "{n:,} of them", 4210), "4,210 of them"),
+        (msg("{n} hole", "{n} holes", n=1.5), "1.5 holes"),
+        (msg("{n:,} such", "{n:,} of them", n=4210), "4,210 of them"),
         (msg("No such {color}.", color=msg("red")), "No such red."),
         # a text in place of a number is shown as it is
         *(
@@ -77,7 +76,7 @@ def test_values_come_where_the_language_wants_them():
             for n in ("many", "4,210", "")
         ),
         # a text that is no sentence is not looked up
-        *((make(text), text) for text in ("red", "4,210.5", "{red}") for make in (str, plain_text)),
+        *((make(text), text) for text in ("red", "4,210.5", "{red}") for make in (str, Message.of)),
         (joined(["red", "red"]), "redred"),
     ],
 )
@@ -90,7 +89,7 @@ def test_a_language_has_its_own_row_and_plurals(monkeypatch):
     assert translate(joined([msg("a."), msg("b.")], " "), "zh") == "甲。乙。"
     monkeypatch.setattr(translations, "catalogue", lambda _: {"{n} pixel": ["{n}个像素"]})
     for n in (1, 2):
-        assert translate(msg_many("{n} pixel", "{n} pixels", n), "zh") == f"{n}个像素"
+        assert translate(msg("{n} pixel", "{n} pixels", n=n), "zh") == f"{n}个像素"
 
 
 @pytest.mark.parametrize(
@@ -98,7 +97,7 @@ def test_a_language_has_its_own_row_and_plurals(monkeypatch):
     [(0, "0 pixel"), (1.5, "1,5 pixel"), (2, "2 pixels"), (4210, f"4{NARROW}210 pixels")],
 )
 def test_plurals_are_those_of_the_language(n, said):
-    assert translate(msg_many("{n:,} pixel", "{n:,} pixels", n), "fr") == said
+    assert translate(msg("{n:,} pixel", "{n:,} pixels", n=n), "fr") == said
 
 
 def test_what_its_author_says_in_a_language_comes_before_the_catalogue():
@@ -117,7 +116,7 @@ def test_at_once_it_is_in_the_language_of_this_process():
     assert tr("red") == "red"
     use("fr")
     assert translations.current() == "fr"
-    assert (tr("red"), tr_many("{n:,} pixel", "{n:,} pixels", 2)) == ("rouge", "2 pixels")
+    assert (tr("red"), tr("{n:,} pixel", "{n:,} pixels", n=2)) == ("rouge", "2 pixels")
     assert translate(msg("red")) == "rouge"
     with pytest.raises(ValueError, match="expected one of en, fr, zh, found 'xx'"):
         use("xx")

@@ -6,7 +6,7 @@ from PIL import Image
 
 from grader.exercise.result.result import Result, SubmissionInfo
 from grader.system.strict_json import to_json
-from grader.text.message import plain_text
+from grader.text.message import Message
 from grader_class.entry import Entry, HandIn, Person
 from tests.grader.reports import samples
 
@@ -79,4 +79,4 @@ def judged(folder, *people, deducted=0.0, **more):
 
 
 def without_result(state, *people, message=""):
-    return Entry(HandIn(people[0].id, people), state, MAXIMUM, message=plain_text(message))
+    return Entry(HandIn(people[0].id, people), state, MAXIMUM, message=Message.of(message))

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 
 import pytest
 
-from grader.text.message import plain_text
+from grader.text.message import Message
 from grader_class.entry import Person
 from grader_class.gradebook import canvas
 from grader_class.gradebook.grade import grades
@@ -52,7 +52,7 @@ def test_an_assignment_is_known_by_title_or_number(wanted):
 
 
 def feedback(folder, entries, submissions):
-    write(folder, entries, plain_text("Spiral"))
+    write(folder, entries, Message.of("Spiral"))
     content = (folder / "export" / CANVAS_FEEDBACK).read_bytes()
     return canvas_reads.feedback_zip(content, submissions)
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from grader.text.message import plain_text
+from grader.text.message import Message
 from grader_class.entry import Person
 from grader_class.find.joining import UNCLEAR
 from grader_class.gradebook import moodle
@@ -58,7 +58,7 @@ def test_a_groups_number_is_not_taken_for_that_of_a_student_in_the_worksheet(tmp
     group = Person("1003", "Team 3", {"Identifier": "Participant 1003"})
     class_ = [judged(tmp_path, in_worksheet(1)), judged(tmp_path, group)]
     assert worksheet(class_).keys() == {1001}
-    told = write(tmp_path, class_, plain_text("Spiral"))
+    told = write(tmp_path, class_, Message.of("Spiral"))
     assert "Not in Moodle's grading worksheet and feedback: Team 3" in str(told[0])
     content = (tmp_path / "export" / MOODLE_FEEDBACK).read_bytes()
     assert moodle_reads.feedback_zip(content, PARTICIPANTS).keys() == {1001}
@@ -120,7 +120,7 @@ def test_an_id_that_would_be_a_formula_is_in_no_import(tmp_path, address, is_in)
 def test_moodle_gives_each_student_the_page_and_nobody_anothers(tmp_path):
     class_ = [judged(tmp_path, in_worksheet(number)) for number in CLASS[2:]]
     class_.append(judged(tmp_path, in_worksheet(0), in_worksheet(1)))
-    write(tmp_path, class_, plain_text("Spiral"))
+    write(tmp_path, class_, Message.of("Spiral"))
     content = (tmp_path / "export" / MOODLE_FEEDBACK).read_bytes()
     found = moodle_reads.feedback_zip(content, PARTICIPANTS)
     assert found.keys() == PARTICIPANTS

@@ -5,7 +5,7 @@ import zipfile
 
 import pytest
 
-from grader.text.message import plain_text
+from grader.text.message import Message
 from grader_class.entry import Person
 from grader_class.gradebook.feedback import Feedback
 from grader_class.gradebook.grade import grades
@@ -20,7 +20,7 @@ from tests.grader_class.gradebook.people import (
     without_result,
 )
 
-TITLE = plain_text("Spiral")
+TITLE = Message.of("Spiral")
 
 
 def written(out):

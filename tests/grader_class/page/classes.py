@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from grader.exercise.result.result import Result
-from grader.text.message import as_message, msg
+from grader.text.message import Message, msg
 from grader_class.entry import Entry, HandIn, Person
 from grader_class.page import html
 from grader_class.page.html import students
@@ -25,7 +25,7 @@ def result(points, rationale=OFF, **more):
         for check, earned in points.items()
     ]
     made = Result.from_json(samples.result(*listed, **more))
-    said = as_message(rationale)
+    said = Message.of(rationale)
     verdicts = (replace(v, rationale=said) if v.status == "failed" else v for v in made.verdicts)
     return replace(made, verdicts=tuple(verdicts))
 
@@ -35,7 +35,7 @@ def entry(
 ):
     """A hand-in; judged where there is a result."""
     hand_in = HandIn(id, (Person(id, name),), at=at)
-    return Entry(hand_in, state, 20.0, message=as_message(message), result=judged, folder=folder)
+    return Entry(hand_in, state, 20.0, message=Message.of(message), result=judged, folder=folder)
 
 
 def student(judged=None, **more):

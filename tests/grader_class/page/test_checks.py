@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import pytest
 
-from grader.text.message import joined, msg, plain_text, series
+from grader.text.message import Message, joined, msg, series
 from grader_class.page.html import check_rows
 from tests.grader.reports.samples import diagnosis
 from tests.grader_class.page.classes import OFF, result
@@ -58,7 +58,7 @@ def test_the_line_is_what_most_are_told_whatever_its_values():
 @pytest.mark.parametrize(
     ("pair", "alike"),
     [
-        ((plain_text("x 1"), plain_text("x 2")), 1),
+        ((Message.of("x 1"), Message.of("x 2")), 1),
         ((joined([OFF, msg("Gone.")], " "), joined([OFF.given(metres=2), msg("Gone.")], " ")), 2),
         ((joined([OFF, msg("Gone.")], " "), OFF), 1),
         ((msg("In {all}.", all=series(["I"])), msg("In {all}.", all=series(["II", "IV"]))), 2),

@@ -97,7 +97,7 @@ def test_reports_of_the_longest_texts_are_made_at_once_and_stay_short():
     code = """
 import os
 from tests.grader_class.reports.test_every_format import LONG, report_of, samples
-from grader.reports import load, names, render
+from grader.reports.formats import load, names, render
 os.environ.update(samples.CLASSROOM50)
 long_ones = []
 for long in LONG:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.cli import main
+from tests.grader.cli.test_lazy import imported
 from tests.grader.reports import samples
 
 ROOT = Path(__file__).parents[3]
@@ -69,3 +70,28 @@ def test_an_ascii_terminal_and_a_closed_pipe_are_no_failures(result):
     )
     assert done.stdout == "<!DOCTYPE "
     assert done.stderr == ""
+
+
+def test_who_handed_in_what_cannot_be_used_has_a_row_in_the_table_of_a_class(tmp_path, capsys):
+    """As docs/reports.md has it: beside where the result would be, found with the results."""
+    for name in ("alice", "bob"):
+        (tmp_path / "in" / name).mkdir(parents=True)
+        words = ["--out", str(tmp_path / name), "--error-json", str(tmp_path / name / "error.json")]
+        assert main(["run", str(tmp_path / "in" / name), *words]) == 2
+    files = sorted(map(str, tmp_path.glob("*/*.json")))
+    table = tmp_path / "class.csv"
+    assert main(["report", *files, "--format", "csv", "--out", str(table)]) == 0
+    rows = table.read_text().splitlines()[1:]
+    assert [row.split(",")[:4] for row in rows] == [
+        ["alice", "", "0", "100"],
+        ["bob", "", "0", "100"],
+    ]
+    assert "alice is an empty folder" in rows[0]
+
+
+def test_a_table_of_results_needs_no_terminal_and_no_page(tmp_path):
+    result = tmp_path / "result.json"
+    result.write_text(json.dumps(samples.result()))
+    modules = imported("report", result, "--format", "csv", "--out", tmp_path / "results.csv")
+    assert (tmp_path / "results.csv").exists()
+    assert not {"rich", "jinja2", "backports"} & modules

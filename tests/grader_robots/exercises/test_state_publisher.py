@@ -20,7 +20,7 @@ from grader.submission.trace import (
     Parameter,
     Setup,
 )
-from grader.text.message import NOTHING, plain_text
+from grader.text.message import NOTHING, Message
 from grader_robots.robot_py.robot_state import Placed
 from grader_robots.scene.driving import drive, joint_state, tf
 
@@ -157,15 +157,15 @@ def test_a_path_from_the_current_folder_is_called_one():
     assert "asks for urdf/walker.urdf, a path from the current folder" in rationale
 
 
-MISSING = plain_text("there is no module walker.x")
-NAME_ERROR = Obstacle("error", plain_text("NameError: x"))
+MISSING = Message.of("there is no module walker.x")
+NAME_ERROR = Obstacle("error", Message.of("NameError: x"))
 
 
 @pytest.mark.parametrize(
     ("setup", "losses"),
     [
         (None, {"package": 0, "launch": 0}),
-        (replace(SETUP, manifest=plain_text("there is none")), {"package": 0.5, "launch": 0}),
+        (replace(SETUP, manifest=Message.of("there is none")), {"package": 0.5, "launch": 0}),
         (replace(SETUP, absent=("urdf/a.urdf",)), {"package": 0.5, "launch": 0}),
         (replace(SETUP, folders=("meshes/a",)), {"package": 0.5, "launch": 0}),
         (replace(SETUP, problem=NAME_ERROR), {"package": 0.5, "launch": 0}),
@@ -189,8 +189,8 @@ WITH_RVIZ = replace(node("rviz2", "rviz2"), arguments=("-d", RVIZ))
 @pytest.mark.parametrize(
     ("changes", "losses"),
     [
-        ({"problem": Obstacle("error", plain_text("it does not parse"))}, {"launch": 0}),
-        ({"problem": Obstacle("argument", plain_text("it needs one"))}, {"launch": 0}),
+        ({"problem": Obstacle("error", Message.of("it does not parse"))}, {"launch": 0}),
+        ({"problem": Obstacle("argument", Message.of("it needs one"))}, {"launch": 0}),
         ({"nodes": (OWN,)}, {"launch": 0.6}),
         ({"nodes": (OWN,), "includes": (Include("a", "b.launch.py", ()),)}, {}),
         ({"nodes": (ROBOT,)}, {"launch": 0.6}),
@@ -212,12 +212,12 @@ def test_a_launch_file_starts_robot_and_node_and_finds_what_it_reads(changes, lo
 
 
 def test_of_several_launch_files_the_best_counts():
-    bad = replace(LAUNCH, problem=Obstacle("error", plain_text("it does not parse")))
+    bad = replace(LAUNCH, problem=Obstacle("error", Message.of("it does not parse")))
     assert lost(package=PackageTrace(SETUP, launches=(bad, LAUNCH), texts=(URDF,))) == {}
 
 
 def test_what_the_grader_does_not_know_is_not_judged():
-    unknown = replace(LAUNCH, problem=Obstacle("unknown", plain_text("it imports launch_x")))
+    unknown = replace(LAUNCH, problem=Obstacle("unknown", Message.of("it imports launch_x")))
     trace = PackageTrace(SETUP, launches=(unknown,), texts=(URDF,))
     found = judged(WALKS, trace)
     assert [verdict.check for verdict in found if verdict.status == "not_judged"] == ["launch"]

@@ -22,7 +22,7 @@ from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.observations import SourceLine
 from grader.recording.recording import Provenance, Recordings, Run, Start
 from grader.system.strict_json import to_json
-from grader.text.message import NOTHING, authored, joined, msg, msg_many, plain_text
+from grader.text.message import NOTHING, Message, authored, joined, msg
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.drawn import any_results
@@ -53,7 +53,7 @@ def test_what_may_be_left_out_has_its_usual_value_and_a_whole_number_may_be_a_fl
 
 def test_everything_comes_back_as_it_was(tmp_path):
     seen = (Evidence(0.016, msg("n {at}", at=2), 2.0, 3.0, 1, tick=1),)
-    words = (plain_text("seen {as} it is"), msg_many("{n} help", "{n} helps", 2))
+    words = (Message.of("seen {as} it is"), msg("{n} help", "{n} helps", n=2))
     title = authored("A").translated("fr", "Â")
     verdict = Verdict("a", title, "failed", 1.5, 4.0, *words, seen, ("b",))
     run = RunSummary(exit_code=-9, outcome="killed", ticks=3, flags=(msg("x"),), seed=5)

@@ -12,7 +12,8 @@ from grader.exercise.result.visible import student_view
 from grader.exercise.verdict import Verdict
 from grader.judging import judge
 from grader.recording.recording import Recordings
-from grader.testing import drive, twist
+from grader.scenes.turtlesim.driving import twist
+from grader.testing import drive
 from grader.text.message import NOTHING, msg
 from tests.grader.reports import samples
 from tests.grader.testing import exercises

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from grader.errors import CheckFailed
-from grader.exercise import driven_path
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.exercises.square.checks import Way
 from grader.recording.recording import Recordings
+from grader.scenes.turtlesim import driven_path
+from grader.scenes.turtlesim.driving import twist
 from grader.scenes.turtlesim.trace import TurtleTrace
-from grader.testing import drive, twist
+from grader.testing import drive
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import TICK_S
 

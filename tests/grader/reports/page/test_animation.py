@@ -40,7 +40,7 @@ def test_ink_has_the_pens_colour_and_gaps_where_it_was_off():
             pen(arena, GREEN)
 
     (track,) = animation_of(drive(controller, ticks=400)).tracks
-    found = [(s.first, s.last, s.color, s.width, s.drawn) for s in track.stretches]
+    found = [(*at, pen.color, pen.width, pen.drawn) for *at, pen in track.stretches]
     assert found == [
         (0, 98, "#b3b8ff", 3, True),
         (98, 198, "#ff0000", 5, True),

@@ -4,11 +4,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.recording.view import Curve, View
 from grader.reports.page.plots import HEIGHT, WIDTH, plots
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import view
-from grader.text.message import plain_text
+from grader.scenes.view import Curve, View
+from grader.text.message import Message
 from tests.grader.driving import Spiral, drive, pen
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.turtle import TICK_S
@@ -94,7 +94,7 @@ def test_values_without_end_do_not_break_a_plot():
 
 
 def test_nothing_recorded_has_no_plots_and_a_turtle_that_stands_still_flat_ones():
-    curve = Curve(plain_text("Speed"), "m/s", np.zeros(0, np.int64), np.zeros(0))
+    curve = Curve(Message.of("Speed"), "m/s", np.zeros(0, np.int64), np.zeros(0))
     assert plots(View(), TICK_NS) is None
     assert plots(View(curves=(curve,)), 0) is None
     still = plots_of(drive(lambda *_: None, ticks=900))

@@ -19,7 +19,7 @@ from grader.run.lockstep.protocol import (
     decode,
     encode,
 )
-from grader.text.message import msg, plain_text
+from grader.text.message import Message, msg
 from turtlesim_py.world import arena
 
 U32, U64 = st.integers(0, 2**32 - 1), st.integers(0, 2**64 - 1)
@@ -27,7 +27,7 @@ U32, U64 = st.integers(0, 2**32 - 1), st.integers(0, 2**64 - 1)
 TEXTS = st.text(st.characters(exclude_categories=("C", "Z")), max_size=100)
 NUMBERS = st.integers(-(2**60), 2**60) | st.floats(allow_nan=False, allow_infinity=False)
 CLAUSES = st.builds(msg, st.just("starts {what} {n:,} times"), what=TEXTS, n=NUMBERS)
-REMARKS = TEXTS.map(plain_text) | st.builds(
+REMARKS = TEXTS.map(Message.of) | st.builds(
     msg, st.just("the submission {does}"), does=TEXTS | CLAUSES
 )
 PARCELS = st.lists(st.builds(Parcel, U32, U32, U64, U64, st.binary(max_size=50)))

@@ -26,7 +26,7 @@ from grader.run.lockstep.protocol import (
 from grader.run.observe import account
 from grader.run.simulator import link
 from grader.run.simulator.link import Refused, StudentLink
-from grader.text.message import plain_text
+from grader.text.message import Message
 
 #: Where nobody asks how far a process has got.
 NO_PAGE = -1
@@ -131,7 +131,7 @@ def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing
 def test_what_is_not_supported_is_refused_and_what_fails_does_not_name_the_submission(
     listen, theirs, kind, remark, told
 ):
-    theirs.send(encode(Note(kind, plain_text(remark))))
+    theirs.send(encode(Note(kind, Message.of(remark))))
     with pytest.raises(Refused, match=told):
         listen().receive()
 

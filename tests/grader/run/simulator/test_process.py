@@ -33,7 +33,7 @@ def all_of(ours: socket.socket) -> bytes:
 
 @pytest.mark.parametrize(("speed", "lasts_s"), [(1.0, 16.0), (5.0, 3.2), (None, 0.0)])
 def test_ticks_come_at_the_speed_that_was_asked_for(ends, clock, speed, lasts_s):
-    feed = FeedWriter(ends[1], speed, TICK_NS)
+    feed = FeedWriter(ends[1], speed)
     began_s = clock.now_s
     for _ in range(1001):
         feed.pace()
@@ -42,7 +42,7 @@ def test_ticks_come_at_the_speed_that_was_asked_for(ends, clock, speed, lasts_s)
 
 
 def test_after_a_pause_nothing_is_hurried(ends, clock):
-    feed = FeedWriter(ends[1], 1.0, TICK_NS)
+    feed = FeedWriter(ends[1], 1.0)
     for _ in range(2):
         feed.pace()
     clock.now_s += 30.0  # the submission computes
@@ -55,7 +55,7 @@ def test_after_a_pause_nothing_is_hurried(ends, clock):
 
 def test_all_that_is_told_arrives_in_order_however_much_it_is(ends):
     ours, theirs = ends
-    feed = FeedWriter(theirs, None, TICK_NS)
+    feed = FeedWriter(theirs, None)
     news = [{"tick": tick, "drawn": ["x" * 10_000]} for tick in range(300)]
 
     def write() -> None:
@@ -74,7 +74,7 @@ def test_one_who_takes_nothing_is_waited_for_a_little_and_then_told_no_more(ends
     monkeypatch.setattr(process, "PATIENCE_S", 0.01)
     monkeypatch.setattr(process, "MOST_BYTES", 100_000)
     ours, theirs = ends
-    feed = FeedWriter(theirs, None, TICK_NS)
+    feed = FeedWriter(theirs, None)
     for tick in range(200):
         feed.write({"tick": tick, "drawn": ["x" * 10_000]})
     feed.close()
@@ -84,13 +84,8 @@ def test_one_who_takes_nothing_is_waited_for_a_little_and_then_told_no_more(ends
 
 def test_one_who_has_left_is_no_error(ends):
     ours, theirs = ends
-    feed = FeedWriter(theirs, 1.0, TICK_NS)
+    feed = FeedWriter(theirs, 1.0)
     ours.close()
     for tick in range(3):
         feed.write({"tick": tick})
     feed.close()
-
-
-def test_where_nobody_looks_on_there_is_nothing(ends):
-    assert FeedWriter.of("", TICK_NS) is None
-    socket.socket(fileno=ends[1]).close()

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.run.student import main
+from grader.run.student.loading import ProgramStart
 from tests.programs import ran
 
 MAIN = main.__file__
@@ -69,7 +70,8 @@ def start(
     folder: Path, name: str, *arguments: str, module: str = "programs"
 ) -> subprocess.CompletedProcess[str]:
     (folder / f"{module}.py").write_text(PROGRAMS)
-    words = [json.dumps([[], [], arguments, []]), "-1", str(folder), f"{module}:{name}"]
+    program = ProgramStart(str(folder), module, name, arguments)
+    words = ["-1", "[[], []]", json.dumps(program)]
     return ran([sys.executable, MAIN, *words])
 
 

@@ -13,13 +13,13 @@ from std_msgs.msg import Float64, String
 
 from grader.recording import bag
 from grader.recording.mcap import Channel
-from grader.recording.subject import load_subject
 from grader.ros.cdr import string
 from grader.ros.messages import plain, serialise
 from grader.run.lockstep.protocol import EndpointInfo
 from grader.scenes.cast import recorder
 from grader.scenes.cast.recorder import CastRecorder, Types
 from grader.scenes.cast.trace import EVENTS, CastTrace, from_channels
+from grader.scenes.subject import load_subject
 
 STRING = "std_msgs/msg/String"
 TALKS = EndpointInfo("/node", "topic /chatter", STRING, True)

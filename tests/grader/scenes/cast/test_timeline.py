@@ -2,9 +2,9 @@
 
 from grader.recording.recording import Recording, Recordings
 from grader.reports import playback
-from grader.scenes import load_scene
 from grader.scenes.cast import timeline
 from grader.scenes.cast.trace import CastTrace
+from grader.scenes.scene import load_scene
 from tests import archive
 from tests.grader.exercise.expect.traces import endpoint, event, line, text, trace
 

@@ -11,7 +11,7 @@ from grader.exercise.loading import load_exercise
 from grader.scenes.cast import timeline
 from grader.scenes.cast.timeline import TimelinePage, render
 from grader.scenes.live import Grading
-from grader.scenes.playback import JudgedCheck, Moment, Playback, PlayedRun
+from grader.scenes.playback import JudgedCheck, Playback, PlayedRun
 from tests import runs
 from tests.barriers import barriers
 from tests.browser import WIDTHS, clipped, cut_off, needs_browser
@@ -57,8 +57,8 @@ def folder(tmp_path_factory, everything):
     made = tmp_path_factory.mktemp("timeline")
     much = trace(*(text(n / 1000, "/chatter", str(n)) for n in range(10_000)))
     traces = (everything.nominal.trace, HOSTILE_RUN, much)
-    played = tuple(PlayedRun(n, f"Run {n}", "finished", each) for n, each in enumerate(traces))
-    moment = Moment(number=1, run=1, time_s=4.0, place=None, text=HOSTILE)
+    played = tuple(PlayedRun(f"Run {n}", "finished", each) for n, each in enumerate(traces))
+    moment = {"number": 1, "run": 1, "tick": 250, "x": None, "y": None, "text": HOSTILE}
     judged = (JudgedCheck("It says it", "failed", "failed", HOSTILE, "Say it.", (moment,)),)
     content = render(Playback(f"node.py {HOSTILE}", "", played, judged))
     (made / "replay.html").write_text(content, encoding="utf-8")

@@ -11,9 +11,9 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from grader.scenes import load_scene
 from grader.scenes.live import Grading
 from grader.scenes.playback import JudgedCheck
+from grader.scenes.scene import load_scene
 from grader.scenes.turtlesim.pages import TurtlesimPage
 from tests.programs import DEADLINE_S
 from turtlesim_py.live.feed import Feed

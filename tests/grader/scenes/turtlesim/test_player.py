@@ -15,10 +15,9 @@ from grader.recording.subject import Start
 from grader.scenes import playback
 from grader.scenes.playback import JudgedCheck, Playback, PlayedRun
 from grader.scenes.turtlesim import pages
-from grader.scenes.turtlesim.driving import drive
+from grader.scenes.turtlesim.driving import drive, pen, twist
 from grader.scenes.turtlesim.pages import first_difference
 from grader.scenes.turtlesim.replay import MOST_TICKS, WIPED, animate
-from grader.testing import pen, twist
 from tests.grader.driving import Spiral
 from tests.grader.scenes.turtlesim.traces import odd_traces
 from turtlesim_py.world.arena import TICK_NS
@@ -217,7 +216,7 @@ def test_what_stands_in_a_result_ends_no_element_of_the_page():
     evil = "</script><script>alert(1)</script><!-- $data & co"
     trace = drive(eventful, 3)[0]
     judged = JudgedCheck(evil, "failed", evil, evil, evil, ())
-    made = pages.render(Playback(evil, evil, (PlayedRun(0, evil, evil, trace),), (judged,)))
+    made = pages.render(Playback(evil, evil, (PlayedRun(evil, evil, trace),), (judged,)))
     assert made.count("<script") == 2
     assert made.count("</script>") == 2
     assert "alert(1)</" not in made

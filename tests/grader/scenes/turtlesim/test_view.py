@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.recording.view import PenChange
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import PLANE, view
+from grader.scenes.view import PenChange
 from grader.text.message import NOTHING
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
 from turtlesim_py.world.arena import TICK_NS, Arena

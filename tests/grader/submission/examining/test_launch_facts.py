@@ -16,9 +16,9 @@ import pytest
 import yaml
 
 from grader.submission.answer import LaunchOrder
-from grader.submission.examining.frontend_substitutions import has_later
 from grader.submission.program import NEVER, Program
 from grader.submission.trace import LaunchFile
+from ros_doubles.frontend_substitutions import has_later
 from tests.files import lay
 from tests.inspecting import inspected
 

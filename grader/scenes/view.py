@@ -10,7 +10,6 @@ turned and follows the time, a `Tree` is drawn from its top, a `Table` has rows.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
@@ -19,7 +18,6 @@ import numpy.typing as npt
 
 from grader.text.message import NOTHING, Message, Text
 
-Pixels = npt.NDArray[np.uint8]
 Floats = npt.NDArray[np.float64]
 #: Times from the start of a run [ns].
 Times = npt.NDArray[np.int64]
@@ -274,15 +272,3 @@ class Plane(NamedTuple):
     def holds(self, x: float, y: float, slack_m: float = 0.01) -> bool:
         first, last = self.origin_m - slack_m, self.end_m + slack_m
         return first <= x <= last and first <= y <= last
-
-
-@dataclass(frozen=True)
-class Pictures:
-    """The pictures of a recording by name.
-
-    Attributes:
-        window: the scene's plane at the end; None where there is nothing to see.
-    """
-
-    window: Pixels | None = None
-    others: Mapping[str, Pixels] = field(default_factory=dict)

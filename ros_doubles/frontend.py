@@ -14,8 +14,8 @@ from xml.etree import ElementTree
 
 import yaml
 
-from grader.submission.examining.frontend_substitutions import has_later, substitutions
-from grader.submission.examining.steps import not_known
+from ros_doubles import NotKnown
+from ros_doubles.frontend_substitutions import has_later, substitutions
 
 _OF_ROS_1 = ("param", "rosparam", "remap", "env", "machine", "test", "master")
 #: What releases after Jazzy have.
@@ -159,7 +159,7 @@ def description(path: str) -> Any:
 
 def _of_xml(text: str) -> Entity:
     if "<!DOCTYPE" in text:
-        raise not_known("a DOCTYPE")
+        raise NotKnown("a DOCTYPE")
     return Entity.of_xml(ElementTree.fromstring(text))
 
 
@@ -256,7 +256,7 @@ def action(entity: Entity) -> Any:
         case other if other in _OF_ROS_1:
             raise RuntimeError(f"Unrecognized entity of the type: {other} (it is one of ROS 1)")
         case other:
-            raise not_known(f"<{other}>")
+            raise NotKnown(f"<{other}>")
     entity.must_be_through()
     return made
 

@@ -3,7 +3,7 @@ from itertools import pairwise
 import pytest
 from markdown_it import MarkdownIt
 
-from grader.reports import markdown
+from grader_class.reports import markdown
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 

@@ -9,7 +9,7 @@ import os
 import re
 from typing import Any
 
-from grader.submission.examining.steps import not_known
+from ros_doubles import NotKnown
 
 _SUBSTITUTION = re.compile(r"\$\(([A-Za-z][\w-]*)")
 _OF_ROS_1 = ("find", "arg", "optenv")
@@ -123,5 +123,5 @@ def _substitution(name: str, arguments: list[list[Any]]) -> Any:
     if name in _OF_ROS_1:
         raise RuntimeError(f"Unknown substitution: {name}")
     if name not in kinds:
-        raise not_known(f"$({name})")
+        raise NotKnown(f"$({name})")
     return kinds[name](*arguments)

@@ -22,8 +22,7 @@ from launch._core import (
 from launch.events import Shutdown as ShutdownEvent
 from launch.utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
 
-from grader.submission.examining.steps import not_known
-from grader.text.message import msg
+from ros_doubles import NotKnown
 
 #: Nothing starts later [s].
 _LONGEST_S = 1e6
@@ -62,14 +61,7 @@ class DeclareLaunchArgument(Action):
                 known[self.name] = text_of(context, self.default_value)
             elif self.choices is not None:
                 known[self.name] = str(self.choices[0])
-                context.record.remark(
-                    msg(
-                        "its argument {name} has no default: looked at with {value}, the first of "
-                        "its choices",
-                        name=self.name,
-                        value=str(self.choices[0]),
-                    )
-                )
+                context.record.chose(self.name, known[self.name])
             else:
                 raise NeedsArgument(f'Required launch argument "{self.name}" was not provided.')
         if self.choices is not None and known[self.name] not in self.choices:
@@ -421,7 +413,7 @@ class ResetLaunchConfigurations(Action):
 
 class OpaqueCoroutine(Action):
     def __init__(self, *, coroutine: Any, **kwargs: Any) -> None:
-        raise not_known("OpaqueCoroutine")
+        raise NotKnown("OpaqueCoroutine")
 
 
 __all__ = exported(__name__)

@@ -6,28 +6,26 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from grader.exercise.verdict import Verdict
-from grader.reports.formats import ErrorReport, Format
-from grader.reports.report import Report
+from grader import Verdict
+from grader.reports import ErrorReport, Format, Report
 from grader.reports.wording import score_text, word
-from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import tr, translate
+from grader.text import msg, number, one_line, plain, tr, translate
+from grader_class.reports.lines import led_lines
 
 
 def render(report: Report) -> str:
     """Return the XML document, with points in the suite's properties and each system-out."""
     properties = {
         "submission": report.submission,
-        "score": text.points(report.score),
-        "max_score": text.points(report.max_score),
+        "score": str(number(report.score)),
+        "max_score": str(number(report.max_score)),
         "outcome": report.run.outcome,
     }
     if report.diagnosis is not None:
         properties["diagnosis"] = report.headline
     cases = [_case(report, verdict) for verdict in report.verdicts]
     if report.deducted:
-        properties["deducted"] = text.points(report.deducted)
+        properties["deducted"] = str(number(report.deducted))
     if report.not_shown:
         properties["not_shown"] = report.not_shown
         # a skipped case of all hidden checks: else all would seem to pass
@@ -42,9 +40,9 @@ def render_error(report: ErrorReport) -> str:
     if report.is_judged:
         properties["score"] = "0"
     if report.max_score is not None:
-        properties["max_score"] = text.points(report.max_score)
+        properties["max_score"] = str(number(report.max_score))
     case = _testcase("grader", report.title)
-    attributes = {"message": text.one_line(report.message), "type": report.whose}
+    attributes = {"message": one_line(report.message), "type": report.whose}
     kind = "failure" if report.is_judged else "error"
     ElementTree.SubElement(case, kind, attributes).text = "\n\n".join(report.paragraphs)
     return _document("grader", 0, properties, [case])
@@ -79,8 +77,8 @@ def _testcase(suite: str, name: str) -> ElementTree.Element:
 
 def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
     case = _testcase(report.exercise, f"{verdict.check}: {translate(verdict.title)}")
-    lines = report.led_lines(verdict)
-    message = {"message": text.one_line(lines[0] if lines else "")}
+    lines = led_lines(report, verdict)
+    message = {"message": one_line(lines[0] if lines else "")}
     if verdict.status == "failed":
         failure = ElementTree.SubElement(case, "failure", {**message, "type": "failed"})
         failure.text = "\n".join(lines)
@@ -101,7 +99,7 @@ def _canvas_here(report: Report) -> str:
     if path is None or not path.is_relative_to(Path.cwd()):
         return ""
     name = path.relative_to(Path.cwd()).as_posix()
-    return name if name == text.plain(name) and "]]" not in name else ""
+    return name if name == plain(name) and "]]" not in name else ""
 
 
 FORMAT: Final = Format(

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from grader.exercise.driven_path import DrivenPath
 from grader.recording.subject import Start
+from grader.scenes.turtlesim.driven_path import DrivenPath
 from grader.testing import drive
 from turtlesim_py.world.trajectory import Trajectory
 

@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from grader.exercise.verdict import Evidence
+from grader.recording.evidence import Evidence
 from grader.recording.recording import Recording
 from grader.recording.subject import Start
 from grader.text.message import Message, msg

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from grader.submission.examining.steps import not_known
+from ros_doubles import NotKnown
 
 _MOST_ENTITIES = 10_000
 
@@ -40,7 +40,7 @@ def unknown(module: str) -> Any:
             raise AttributeError(name)
         found = submodule(f"{module}.{name}")
         if found is None:
-            raise not_known(f"{module}.{name}")
+            raise NotKnown(f"{module}.{name}")
         return found
 
     return missing
@@ -87,7 +87,7 @@ class Record:
         return path
 
     def command(self, words: list[str], on_stderr: str) -> str:
-        raise not_known("a command")
+        raise NotKnown("a command")
 
     @property
     def time(self) -> Any:
@@ -124,7 +124,7 @@ class LaunchContext:
         return str(substitution.perform(self))
 
     def __getattr__(self, name: str) -> Any:
-        raise not_known(f"LaunchContext.{name}")
+        raise NotKnown(f"LaunchContext.{name}")
 
 
 class Substitution:
@@ -378,7 +378,7 @@ class LaunchService:
     """Launches without `ros2 launch`, behind `if __name__ == "__main__"`: that is not done here."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        raise not_known(type(self).__name__)
+        raise NotKnown(type(self).__name__)
 
 
 class LaunchIntrospector(LaunchService):

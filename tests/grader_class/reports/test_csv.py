@@ -4,7 +4,8 @@ import io
 import pytest
 
 from grader.exercise.result.json_file import ErrorResult
-from grader.reports import csv, read
+from grader.reports import read
+from grader_class.reports import csv
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 

@@ -8,11 +8,8 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
-from grader.reports.formats import ErrorReport, Format
-from grader.reports.report import Report
-from grader.reports.wording import WORDS
-from grader.text import strings as text
-from grader.text.message import msg
+from grader.reports import ErrorReport, Format, Report, wording
+from grader.text import clip, msg, number, one_line, plain
 
 _BEFORE = ("submission", "exercise", "score", "max_score")
 #: Also the full-width characters of Chinese, Japanese and Korean.
@@ -56,17 +53,18 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
     row: list[Any] = [
         cell(report.submission),
         cell(report.exercise),
-        text.number(report.score),
-        text.number(report.max_score),
+        number(report.score),
+        number(report.max_score),
     ]
     for name in checks:
         verdict = verdicts.get(name)
-        row += [text.number(verdict.score), str(WORDS[verdict.status])] if verdict else ["", ""]
-    first = report.first_key
+        row += [number(verdict.score), str(wording.WORDS[verdict.status])] if verdict else ["", ""]
+    found, lost = report.diagnosis, report.first_to_mend
+    first = (found.check or found.key) if found else lost.check if lost else ""
     return [
         *row,
         report.run.outcome,
-        cell(text.clip(f"{first}: {report.headline}", 300) if first else ""),
+        cell(clip(f"{first}: {report.headline}", 300) if first else ""),
         cell("; ".join(report.flags)),
         cell(report.run.trace_sha256),
         cell(str(report.folder)),
@@ -75,8 +73,8 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
 
 def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
     score = 0 if report.is_judged else ""
-    max_score = "" if report.max_score is None else text.number(report.max_score)
-    message = cell(text.clip(report.message, 300))
+    max_score = "" if report.max_score is None else number(report.max_score)
+    message = cell(clip(report.message, 300))
     return [
         *(cell(report.name), "", score, max_score),
         *[""] * (2 * len(checks)),
@@ -93,7 +91,7 @@ def table(rows: Iterable[Sequence[object]]) -> str:
 
 def cell(value: str) -> str:
     """Return a text in one line that no spreadsheet reads as a formula, wherever it is cut."""
-    value = text.one_line(text.plain(value))
+    value = one_line(plain(value))
     value = _CUT_BEFORE_FORMULA.sub(r"\1'", value)
     return f"'{value}" if value.startswith(_BEGIN_FORMULAS) else value
 

@@ -1,7 +1,7 @@
 from xml.etree import ElementTree
 
-from grader.reports import junit
 from grader.reports import read as read_report
+from grader_class.reports import junit
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import verdict

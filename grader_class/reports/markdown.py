@@ -5,14 +5,10 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from grader.exercise.verdict import Verdict
-from grader.reports import wording
-from grader.reports.formats import ErrorReport, Format
-from grader.reports.report import Report
+from grader import Verdict
+from grader.reports import ErrorReport, Format, Report, wording
 from grader.reports.wording import score_text, title_of, word
-from grader.text import strings as text
-from grader.text.message import msg
-from grader.text.translations import tr, translate
+from grader.text import clip, msg, one_line, tr, translate
 
 _SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
 #: Characters with a meaning in Markdown, anywhere or at the start of a line; a backslash escapes.
@@ -47,7 +43,7 @@ def render_error(report: ErrorReport) -> str:
 
 def _quote(value: str) -> str:
     """Quote a text, in one line, that Markdown shows as it is."""
-    quoted = _SPECIAL_AT_START.sub(r"\1\\\2", _SPECIAL.sub(r"\\\1", text.one_line(value)))
+    quoted = _SPECIAL_AT_START.sub(r"\1\\\2", _SPECIAL.sub(r"\\\1", one_line(value)))
     # an entity and an invisible joiner: no address becomes a link, no name notifies anybody
     return quoted.replace("://", "&#58;//").replace("www.", "www&#46;").replace("@", "@\u2060")
 
@@ -108,7 +104,7 @@ def _run(report: Report) -> str:
 
 def _output(report: Report) -> str:
     """Return the node's output in a fence that is longer than any in it."""
-    output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    output = clip(report.output.strip("\n"), _OUTPUT_LIMIT, keeps_end=True)
     if not output.strip():
         return ""
     longest = max((len(run) for run in re.findall(r"`+", output)), default=0)
