@@ -52,7 +52,7 @@ class Draw:
     """How a value is drawn: by one of four keys.
 
     Attributes:
-        example: what the sheet shows; no run has it where another value can be drawn.
+        example: what the sheet shows; no run has it, unless it is one of few.
         integer, number: from which on and to which; numbers have two digits behind the point.
         word: of so many letters.
         one_of: these.
@@ -86,12 +86,15 @@ class Draw:
 
     def value(self, chance: random.Random) -> Value:
         """Draw one."""
-        drawn: Value = self.example
-        for _ in range(100):
+        drawn = self._any(chance)
+        while drawn == self.example and not self.one_of and not self._is_single:
             drawn = self._any(chance)
-            if drawn != self.example:
-                break
         return drawn
+
+    @property
+    def _is_single(self) -> bool:
+        low, high = self.integer or self.number or (0, 1)
+        return low == high
 
     def _any(self, chance: random.Random) -> Value:
         if self.integer is not None:

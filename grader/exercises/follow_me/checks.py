@@ -38,7 +38,7 @@ class Following(NamedTuple):
     is_behind: NDArray[np.bool_]
 
 
-@checks()
+@checks(parrot="it follows nobody yet")
 def spawned(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """turtle2 is there.
 

@@ -15,7 +15,7 @@ checks = Checks()
 NAME, PLACE = "turtle2", (4.0, 2.0)
 
 
-@checks()
+@checks(parrot="the task names the place")
 def spawns(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """It spawns turtle2 at (4, 2).
 

@@ -24,7 +24,7 @@ STILL_M = 0.01
 LATE_S = 0.5
 
 
-@checks()
+@checks(parrot="what it has drawn is judged")
 def serves(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """It serves draw_polygon.
 
@@ -64,7 +64,7 @@ def done(recordings: Recordings, tolerances: Tolerances) -> Finding:
     return _mean(_done(recordings, run) for run in range(3))
 
 
-@checks(after=("serves",))
+@checks(after=("serves",), parrot="a run of its own has two sides")
 def still(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """Of 2 sides it draws nothing."""
     path = _path(recordings, 3)
@@ -138,8 +138,10 @@ def _polygon(recordings: Recordings, run: int, tolerances: Tolerances) -> Findin
     wrong_turns = [side for side, found in turns if abs(found - turn) > slack]
     gap = float(path.distance_from(path.x[0], path.y[0])[-1])
     is_closed = len(sides) > 2 and gap <= tolerances["closed_m"]
-    right = len(sides) - len(wrong) + len(turns) - len(wrong_turns)
-    share = (min(right, 2 * count - 1) + is_closed) / (2 * max(count, len(sides)))
+    # corners between sides of another length are those of a polygon that nobody asked for
+    are_asked = len(sides) > len(wrong)
+    right = len(sides) - len(wrong) + (len(turns) - len(wrong_turns)) * are_asked
+    share = (min(right, 2 * count - 1) + is_closed * are_asked) / (2 * max(count, len(sides)))
     text = msg(
         "Asked for {n} sides of {length} m, turtle1 drove sides of {sides} m with corners of "
         "{corners} degrees.",
