@@ -1,6 +1,5 @@
 from grader.submission import safe_files as safe_files
 from grader.submission import trace as trace
-from grader.submission.archive import unpack as unpack
 from grader.submission.error_texts import advice as advice
 from grader.submission.error_texts import described as described
 from grader.submission.error_texts import how_it_ends as how_it_ends
@@ -23,6 +22,7 @@ from grader.submission.folder import is_generated as is_generated
 from grader.submission.folder import is_junk as is_junk
 from grader.submission.folder import read_bounded as read_bounded
 from grader.submission.inspector import Inspector as Inspector
+from grader.submission.opened import is_archive as is_archive
 from grader.submission.python_source import Function as Function
 from grader.submission.python_source import last as last
 from grader.submission.python_source import parse as parse
@@ -49,4 +49,4 @@ from grader.submission.trace import PackageTrace as PackageTrace
 from grader.submission.trace import Parameter as Parameter
 from grader.submission.trace import Setup as Setup
 from grader.submission.trace import Varied as Varied
-from grader.submission.unpacking import is_archive as is_archive
+from grader.submission.unpacking import unpack as unpack

@@ -9,8 +9,8 @@ import zipfile
 import pytest
 
 from grader.errors import SubmissionError
-from grader.submission.archive import unpack
 from grader.submission.safe_members import ArchiveLimits, Budget
+from grader.submission.unpacking import unpack
 
 LIMITS = ArchiveLimits()
 
