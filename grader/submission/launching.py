@@ -10,11 +10,12 @@ from grader.errors import SubmissionError
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import CMAKE, SubmissionFolder
-from grader.submission.program import WITH_THE_LAUNCH, Program, Script
+from grader.submission.program import Program, Script
 from grader.submission.program_source import is_among
 from grader.submission.request import LaunchAsked
 from grader.text.message import Message, joined, msg
 from grader.text.strings import listed, shown
+from ros_doubles.launch_time import WITH_THE_LAUNCH
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection, LaunchOrder

@@ -15,9 +15,8 @@ from typing import Annotated, Any, Final
 from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder
 from grader.submission.examining import commands
-from grader.submission.examining.launch_time import LaunchTime
 from grader.submission.examining.layout import Workspace
-from grader.submission.examining.steps import LIMITS, NotKnownHere, end_of, it
+from grader.submission.examining.steps import LIMITS, end_of, it
 from grader.submission.program import (
     BASE,
     LONGEST_ARGUMENTS,
@@ -37,7 +36,8 @@ from grader.submission.trace import (
 )
 from grader.system.strict_json import STRANGERS
 from grader.text.message import Message, msg
-from ros_doubles import known
+from ros_doubles import NotKnown, known
+from ros_doubles.launch_time import LaunchTime
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
@@ -302,7 +302,7 @@ class LaunchRecord:
         self._add("declared", name)
 
     def chose(self, name: str, value: str) -> None:
-        """An argument without a default has choices, of which this was taken."""
+        """An argument without a default gets the first of its choices."""
         self.remark(
             msg(
                 "its argument {name} has no default: looked at with {value}, the first of its "
@@ -340,7 +340,7 @@ class LaunchRecord:
         """Where a file is, or the one that was meant.
 
         Raises:
-            NotKnownHere: it is of another package, of which nobody knows the files here.
+            NotKnown: it is of another package, of which nobody knows the files here.
         """
         if os.path.exists(wanted):
             return wanted
@@ -350,7 +350,7 @@ class LaunchRecord:
             return self.path(own)
         if wanted.startswith(f"{self._place.stubs}/"):
             name = self._place.shown(wanted)
-            raise NotKnownHere(it(msg("needs {name}, a file of another package", name=name)))
+            raise NotKnown(it(msg("needs {name}, a file of another package", name=name)))
         meant = self._place.meant(wanted)
         self.lack("file", wanted, meant)
         return meant or wanted

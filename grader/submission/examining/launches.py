@@ -17,10 +17,10 @@ from typing import Any, Final
 from grader.submission.examining.launch_record import SUFFIXES, LaunchRecord
 from grader.submission.examining.layout import DOUBLES, Installed, Workspace
 from grader.submission.examining.packages import is_description
-from grader.submission.examining.steps import NotKnownHere, in_folder, it, problem_of
+from grader.submission.examining.steps import in_folder, it, problem_of
 from grader.system import strict_json
 from grader.text.message import msg
-from ros_doubles import known
+from ros_doubles import NotKnown, known
 
 #: Packages of ROS that have doubles.
 DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
@@ -123,5 +123,5 @@ class _Unknown:
             if (made := _core.submodule(name)) is not None:
                 return known.spec_of(made)
             what = msg("imports {name}, which the grader does not have", name=name)
-            raise NotKnownHere(it(what))
+            raise NotKnown(it(what))
         return known.module(name)

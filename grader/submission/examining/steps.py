@@ -20,7 +20,7 @@ from grader.submission.examining import leftovers
 from grader.submission.trace import Obstacle
 from grader.system import limited, strict_json
 from grader.text.message import NOTHING, Message, msg
-from ros_doubles import NotKnown
+from ros_doubles import NotKnown, OfAnother
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
 LIMITS: Final = limited.WorkLimits(
@@ -35,19 +35,15 @@ _NO_END: Final = msg(
     wall=f"{LIMITS.wall_s:.0f}",
 )
 _LONGEST: Final = 400
+_NOT_KNOWN: Final = msg("uses {name}, which the grader does not know")
+#: ... of something that belongs to another package
+_NOT_HERE: Final = msg("uses {name}, which the grader does not have")
 NONSENSE: Final = msg("spoils what is taken down of it")
 #: Where an object lies in memory, which is another place each time.
 _ADDRESS: Final = re.compile(r"\bat 0x[0-9a-fA-F]+")
 #: Names a file of the package's own by its path; '' for others.
 Own = Callable[[str], str]
 Made = TypeVar("Made")
-
-
-class NotKnownHere(NotKnown):
-    """A package needs what nobody has here, which a message says: no fault of it."""
-
-    def __init__(self, message: Message) -> None:
-        Exception.__init__(self, message)
 
 
 class Ended(Exception):
@@ -233,13 +229,11 @@ def problem_of(error: BaseException, own: Own) -> Obstacle:
     file, line = next((each for each in reversed(frames) if each[0]), ("", 0))
     if isinstance(error, SyntaxError) and error.filename and own(error.filename):
         file, line = own(error.filename), error.lineno or 0
-    if isinstance(error, NotKnownHere):
-        return Obstacle(kind, Message.of(error), file, line)
     if isinstance(error, NotKnown):
-        what = msg("uses {name}, which the grader does not know", name=str(error))
-        if error.is_of_others:
-            what = msg("uses {name}, which the grader does not have", name=str(error))
-        return Obstacle(kind, it(what), file, line)
+        what = error.args[0]
+        if not isinstance(what, Message):
+            what = it((_NOT_HERE if isinstance(error, OfAnother) else _NOT_KNOWN).given(name=what))
+        return Obstacle(kind, what, file, line)
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     raised = f"{type(error).__name__}: {' '.join(words.split())}"
     text = start_of(_ADDRESS.sub("at 0x...", raised), _LONGEST)
