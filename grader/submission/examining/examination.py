@@ -11,14 +11,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from grader.submission import safe_files, trace
+from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder
 from grader.submission.examining import launches
 from grader.submission.examining.launch_record import Evaluated
 from grader.submission.examining.layout import Installed, Workspace
 from grader.submission.examining.steps import Ended, attempt, it, step
-from grader.submission.request import LaunchAsked
-from grader.submission.trace import (
+from grader.submission.package_trace import (
+    LONGEST_TEXT,
+    PREFIX,
+    ROS,
     Lacking,
     LaunchedNode,
     LaunchFile,
@@ -26,6 +28,7 @@ from grader.submission.trace import (
     PackageTrace,
     Setup,
 )
+from grader.submission.request import LaunchAsked
 from grader.system import strict_json
 from grader.system.strict_json import Made
 from grader.text.message import NOTHING, Message, msg
@@ -116,8 +119,8 @@ class Examination:
     def number(self, text: str, *, is_file: bool = False) -> int:
         """Return the number of a text; Ended: it is more than is taken."""
         limit = FROM_A_FILE if is_file else FROM_A_LAUNCH_FILE
-        if len(text) > trace.LONGEST_TEXT:
-            values = {"length": f"{len(text):,}", "most": f"{trace.LONGEST_TEXT:,}"}
+        if len(text) > LONGEST_TEXT:
+            values = {"length": f"{len(text):,}", "most": f"{LONGEST_TEXT:,}"}
             raise Ended.by_limit(limit[0].given(**values))
         if text in self.texts:
             return self.texts.index(text)
@@ -130,7 +133,10 @@ class Examination:
         """Return a text with the places as they are here, not as a trace shows them."""
         for each in self.workspace.all:
             text = text.replace(f"/source/{each.name}", str(each.package.folder))
-        places = {trace.PREFIX: self.workspace.prefix, trace.ROS: self.workspace.stubs}
+        places = {
+            PREFIX: self.workspace.prefix,
+            ROS: self.workspace.stubs,
+        }
         for shown, path in places.items():
             text = text.replace(f"{shown}/", f"{path}/")
         return text

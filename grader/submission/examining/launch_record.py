@@ -17,15 +17,7 @@ from grader.submission.answer import LaunchOrder
 from grader.submission.examining import commands
 from grader.submission.examining.layout import Workspace
 from grader.submission.examining.steps import LIMITS, end_of, it
-from grader.submission.program import (
-    BASE,
-    LONGEST_ARGUMENTS,
-    OF_THE_RUN,
-    PREFIX,
-    Program,
-    Script,
-)
-from grader.submission.trace import (
+from grader.submission.package_trace import (
     Include,
     Lacking,
     LaunchedNode,
@@ -33,6 +25,14 @@ from grader.submission.trace import (
     Obstacle,
     Parameter,
     Skipped,
+)
+from grader.submission.program import (
+    BASE,
+    LONGEST_ARGUMENTS,
+    OF_THE_RUN,
+    PREFIX,
+    Program,
+    Script,
 )
 from grader.system.strict_json import STRANGERS
 from grader.text.message import Message, msg

@@ -28,15 +28,15 @@ ROOT = Path(__file__).resolve().parents[3]
 if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
-from grader.submission import safe_files, trace  # noqa: E402
+from grader.submission import package_trace, safe_files  # noqa: E402
 from grader.submission.answer import Inspection, SetUp, SetUpFacts  # noqa: E402
 from grader.submission.examining import layout, leftovers, packages, setup_call  # noqa: E402
 from grader.submission.examining.examination import Examination  # noqa: E402
 from grader.submission.examining.layout import Installed, Workspace  # noqa: E402
 from grader.submission.examining.steps import Ended, attempt, open_account  # noqa: E402
 from grader.submission.folder import SETUP_FILES  # noqa: E402
+from grader.submission.package_trace import FAILED, PackageTrace  # noqa: E402
 from grader.submission.request import LaunchAsked  # noqa: E402
-from grader.submission.trace import FAILED, PackageTrace  # noqa: E402
 from grader.system import linux  # noqa: E402
 
 
@@ -57,7 +57,7 @@ def _main() -> None:
         root, leaves = Path(order.pop("root")), order.pop("leaves")
         for each in order.pop("added", ()):
             (root / each).unlink()
-        data = trace.encode(inspect(root, Path(scratch).resolve(), **order))
+        data = package_trace.encode(inspect(root, Path(scratch).resolve(), **order))
     with open(leaves, "wb") as left:
         left.write(data)
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeVar
 
 from grader.submission.examining import leftovers
-from grader.submission.trace import Obstacle
+from grader.submission.package_trace import Obstacle
 from grader.system import limited, strict_json
 from grader.text.message import NOTHING, Message, msg
 from ros_doubles import NotKnown, OfAnother

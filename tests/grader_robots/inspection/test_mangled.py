@@ -12,7 +12,7 @@ from grader.errors import SubmissionError
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.submission.examining.steps import Ended, attempt
-from grader.submission.trace import decode, encode
+from grader.submission.package_trace import decode, encode
 from tests.conftest import CASES
 from tests.grader_robots.mangled import OUTSIDE, SAYS, Change, Mangled, packages
 from tests.grader_robots.packages import looked_at, recorded
