@@ -2,8 +2,8 @@
 
 `launch`, `launch_ros` and `ament_index_python` have the names, arguments and refusals of ROS's
 packages; whoever evaluates a launch file puts this folder first on `sys.path`. `frontend` reads
-XML and YAML, `launch_time` says what happens when, `known` has what launch files use of other
-packages. What would be started is taken down in `LaunchContext.record`, which the caller gives.
+launch files, `launch_time` says what happens when, `known` has what they use of other packages.
+What would be started is taken down in `LaunchContext.record`, which the caller gives.
 """
 
 from __future__ import annotations

@@ -36,7 +36,8 @@ from grader.submission.program import (
 )
 from grader.system.strict_json import STRANGERS
 from grader.text.message import Message, msg
-from ros_doubles import NotKnown, known
+from ros_doubles import NotKnown, frontend, known
+from ros_doubles.frontend_substitutions import substitutions
 from ros_doubles.launch_time import LaunchTime
 
 #: A text that is longer is no name or number, but a description.
@@ -442,12 +443,7 @@ class LaunchRecord:
         from launch._core import walk
 
         read, before = self.path(path), self.context.locals_.get(_FILE, "")
-        if path.endswith(".py"):
-            description = _python(path, read)
-        else:
-            from ros_doubles import frontend
-
-            description = frontend.description(read)
+        description = frontend.description(path, read)
         self.context.locals_ |= {_FILE: path, "current_launch_file_path": path}
         walk(entities(description), self.context)
         self.context.locals_[_FILE] = before  # `ThisLaunchFile` stays, as in the original
@@ -455,8 +451,6 @@ class LaunchRecord:
     def filled(self, text: str) -> str:
         """A text with its substitutions, as in a launch file of XML."""
         from launch._core import perform_substitutions
-
-        from ros_doubles.frontend_substitutions import substitutions
 
         return str(perform_substitutions(self.context, substitutions(text)))
 
@@ -512,31 +506,6 @@ class LaunchRecord:
         """Something is named that is not there; `source` is where the file lies that was meant."""
         own = self._place.own(source) if source else ""
         self._add("lacking", Lacking(kind, name, own, ""))
-
-
-def _python(path: str, read: str) -> Any:
-    """The launch description of a launch file in Python."""
-    from launch.launch_description_sources import InvalidPythonLaunchFileError
-
-    with open(read, "rb") as file:  # as bytes: a byte order mark is no fault
-        code = compile(file.read(), read, "exec")
-    names: dict[str, Any] = {"__name__": "python_launch_file", "__file__": path}
-    exec(code, names)
-    function = names.get("generate_launch_description")
-    if function is None:
-        raise InvalidPythonLaunchFileError(
-            f"launch file at '{os.path.basename(path)}' does not contain the required function "
-            "'generate_launch_description()'"
-        )
-    made = function()
-    from launch import LaunchDescription
-
-    if not isinstance(made, LaunchDescription):
-        raise TypeError(
-            f"generate_launch_description() returned {type(made).__name__}; expected a "
-            "LaunchDescription"
-        )
-    return made
 
 
 def _end(text: str) -> str:
