@@ -179,12 +179,15 @@ class Examination:
         if self.obstacle:
             raise Ended.by_limit(msg("cannot be evaluated: {why}", why=self.obstacle))
         try:
-            asked = (self.workspace, *self._files[file], self._asked.given)
-            answer = self.step(partial(launches.evaluate, *asked))
+            answer = self._answer(file)
         finally:
             if gone := self._miss(file):
                 raise Ended.by_limit(msg("takes away {file}", file=gone))
         return attempt(lambda: self._decoded(file, answer), file)
+
+    def _answer(self, file: str) -> Any:
+        asked = (self.workspace, *self._files[file], self._asked.given)
+        return self.step(partial(launches.evaluate, *asked))
 
     def _miss(self, by: str) -> str:
         """What is not there any more, after a file was evaluated; '' for nothing."""
@@ -245,15 +248,11 @@ class Examination:
         for number, launch in enumerate(found):
             if launch.problem is not None:
                 continue
-            again: list[str] = []
             with suppress(Ended):
-                files = self._files[launch.file]
-                evaluate = partial(launches.evaluate, self.workspace, *files, self._asked.given)
-                again = attempt(partial(_lacking_files, self.step(evaluate)))
-            known = {each.name for each in launch.lacking}
-            other = next((name for name in again if name not in known), "")
-            if other:
-                found[number] = replace(launch, moved=other[:1000])
+                again = attempt(partial(_lacking_files, self._answer(launch.file)))
+                known = {each.name for each in launch.lacking}
+                if other := next((name for name in again if name not in known), ""):
+                    found[number] = replace(launch, moved=other[:1000])
 
 
 def _launch_files(workspace: Workspace, *, with_beside: bool) -> dict[str, tuple[Installed, str]]:
