@@ -27,7 +27,7 @@ from grader.system.scratch import make_folder
 from grader.text.message import NOTHING, Message
 
 if TYPE_CHECKING:
-    from grader.submission.trace import PackageTrace
+    from grader.submission.package_trace import PackageTrace
 
 
 @contextmanager

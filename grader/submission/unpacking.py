@@ -13,6 +13,7 @@ import tarfile
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import IO, Final
@@ -24,7 +25,6 @@ from grader.submission.safe_members import (
     LOCKED,
     PACK_AGAIN,
     SPECIAL,
-    ArchiveLimits,
     Bounded,
     Budget,
     ListTooLong,
@@ -70,14 +70,14 @@ def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -
         raise SubmissionError(
             "{name} is empty (0 bytes). {pack_again}", name=name, pack_again=PACK_AGAIN
         )
-    if size > budget.limits.most_bytes:
+    if size > budget.most_bytes:
         raise budget.too_large(name)
     is_zip = archive.suffix.lower() == ".zip"
     try:
         with (
-            _opened_zip(archive, budget.limits)
+            _opened_zip(archive, budget)
             if is_zip
-            else _opened_tar(archive, into.with_suffix(".tar"), budget.limits)
+            else _opened_tar(archive, into.with_suffix(".tar"), budget)
         ) as members:
             write(name, members, into, budget, report)
     except (ListTooLong, NotImplementedError, *DAMAGED, OSError) as error:
@@ -97,8 +97,8 @@ def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -
 
 
 @contextmanager
-def _opened_zip(archive: Path, limits: ArchiveLimits) -> Iterator[list[Member]]:
-    most = limits.list_bytes
+def _opened_zip(archive: Path, budget: Budget) -> Iterator[list[Member]]:
+    most = budget.list_bytes
     why = msg("its list has more than {most:g} MB", most=most / 1e6)
     with Bounded(archive, most, why) as file, zipfile.ZipFile(file) as packed:
         yield [
@@ -132,7 +132,7 @@ def _fault_of_zip(info: zipfile.ZipInfo) -> Message:
 
 
 @contextmanager
-def _opened_tar(archive: Path, plain: Path, limits: ArchiveLimits) -> Iterator[list[Member]]:
+def _opened_tar(archive: Path, plain: Path, budget: Budget) -> Iterator[list[Member]]:
     """Open a tar: its members.
 
     Args:
@@ -142,12 +142,12 @@ def _opened_tar(archive: Path, plain: Path, limits: ArchiveLimits) -> Iterator[l
         is_compressed = file.read(len(_GZIP)) == _GZIP
     try:
         if is_compressed:
-            _decompress(archive, plain, Budget(limits))
+            _decompress(archive, plain, replace(budget))
         with (
             Bounded(plain if is_compressed else archive, MAX_HEADER_BYTES, _LONG) as file,
             tarfile.TarFile(fileobj=file, errorlevel=0) as packed,
         ):
-            yield list(_members(packed, limits.headers))
+            yield list(_members(packed, budget.headers))
     finally:
         plain.unlink(missing_ok=True)
 
