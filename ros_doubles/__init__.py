@@ -2,8 +2,8 @@
 
 `launch`, `launch_ros` and `ament_index_python` have the names, arguments and refusals of ROS's
 packages; whoever evaluates a launch file puts this folder first on `sys.path`. `frontend` reads
-XML and YAML, `known` what launch files use of other packages. What would be started is taken down
-in `LaunchContext.record`, which the caller gives.
+launch files, `launch_time` says what happens when, `known` has what they use of other packages.
+What would be started is taken down in `LaunchContext.record`, which the caller gives.
 """
 
 from __future__ import annotations
@@ -12,10 +12,9 @@ from __future__ import annotations
 class NotKnown(Exception):
     """A launch file uses what ROS may have, and these doubles have not: no fault of the file.
 
-    Attributes:
-        is_of_others: whether it belongs to a package that nobody has here.
+    Its argument names that, or is what the caller says of it.
     """
 
-    def __init__(self, name: str, *, is_of_others: bool = False) -> None:
-        super().__init__(name)
-        self.is_of_others = is_of_others
+
+class OfAnother(NotKnown):
+    """It belongs to another package, of which nobody has anything here."""

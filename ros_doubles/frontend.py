@@ -1,11 +1,12 @@
-"""Launch files in XML and YAML, as ROS's frontend reads them: each entity becomes an action.
+"""Launch files as ROS reads them: in Python, and in XML and YAML, whose entities become actions.
 
-The two have the same entities. Of XML all attributes are texts, which are converted to what they
+Those two have the same entities. Of XML all attributes are texts, which are converted to what they
 are read as; of YAML they have types, and ROS refuses a truth value where it reads a text.
 """
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -133,17 +134,22 @@ class Entity:
         return found
 
 
-def description(path: str) -> Any:
+def description(path: str, read: str) -> Any:
     """The description in a launch file; the reader that its name does not call for comes second.
 
+    Args:
+        read: where the file is that stands for it.
+
     Raises:
-        Exception: it is not what ROS reads.
+        Exception: it is not what ROS reads, or whatever its own code raises.
     """
     from launch import LaunchDescription
 
-    text = Path(path).read_text(encoding="utf-8")
+    if path.endswith(".py"):
+        return _of_python(path, read)
+    text = Path(read).read_text(encoding="utf-8")
     readers: list[Callable[[str], Entity]] = [_of_xml, _of_yaml]
-    if path.endswith((".yaml", ".yml")):
+    if read.endswith((".yaml", ".yml")):
         readers.reverse()
     try:
         root = readers[0](text)
@@ -155,6 +161,31 @@ def description(path: str) -> Any:
     if root.tag != "launch":
         raise RuntimeError(f"expected 'launch' as root element, found '{root.tag}'")
     return LaunchDescription([action(each) for each in root.children()])
+
+
+def _of_python(path: str, read: str) -> Any:
+    """The launch description of a launch file in Python."""
+    from launch.launch_description_sources import InvalidPythonLaunchFileError
+
+    with open(read, "rb") as file:  # as bytes: a byte order mark is no fault
+        code = compile(file.read(), read, "exec")
+    names: dict[str, Any] = {"__name__": "python_launch_file", "__file__": path}
+    exec(code, names)
+    function = names.get("generate_launch_description")
+    if function is None:
+        raise InvalidPythonLaunchFileError(
+            f"launch file at '{os.path.basename(path)}' does not contain the required function "
+            "'generate_launch_description()'"
+        )
+    made = function()
+    from launch import LaunchDescription
+
+    if not isinstance(made, LaunchDescription):
+        raise TypeError(
+            f"generate_launch_description() returned {type(made).__name__}; expected a "
+            "LaunchDescription"
+        )
+    return made
 
 
 def _of_xml(text: str) -> Entity:

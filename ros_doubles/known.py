@@ -18,7 +18,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any, Final
 
-from ros_doubles import NotKnown
+from ros_doubles import OfAnother
 
 PROGRAMS: Final[dict[str, tuple[str, ...]]] = {
     "robot_state_publisher": ("robot_state_publisher",),
@@ -167,7 +167,7 @@ class _Name:
         return _action(self._name, kwargs.get("condition"))
 
     def __getattr__(self, name: str) -> Any:
-        raise NotKnown(self._name, is_of_others=True)
+        raise OfAnother(self._name)
 
 
 def _action(of: str, condition: Any) -> Any:
@@ -179,6 +179,6 @@ def _action(of: str, condition: Any) -> Any:
             context.record.add_external(package, name)
 
         def __getattr__(self, name: str) -> Any:
-            raise NotKnown(of, is_of_others=True)
+            raise OfAnother(of)
 
     return Foreign(condition=condition)

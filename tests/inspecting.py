@@ -12,7 +12,7 @@ from unittest.mock import patch
 from grader.submission.answer import Inspection, decode
 from grader.submission.examining import steps
 from grader.submission.examining.main import inspect
-from grader.submission.trace import encode
+from grader.submission.package_trace import encode
 from tests import apart, once
 
 

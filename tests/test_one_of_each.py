@@ -22,7 +22,7 @@ ONE = {
     "a page between processes is sealed": (r"F_ADD_SEALS", "run/observe/account.py"),
     "a simulator and the grader speak": (r"\{\"say\": what", "run/simulator/process.py"),
     "frames of ours are hidden": (r"TracebackType\(", "run/lockstep/faults.py"),
-    "endpoints are paired": (r"def compatible\(", "run/lockstep/registry.py"),
+    "endpoints are paired": (r"def compatible\(", "run/lockstep/matching.py"),
     "a page's templates are found": (r"jinja2\.Environment\(", "reports/page/templating.py"),
     "a zip is written": (r"ZipFile\([^)]*\"w\"", ""),
     "a run's limits are set": (r"class (RunLimits|Patience|CpuBudget)\b", "run/limits.py"),

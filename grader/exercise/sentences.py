@@ -14,8 +14,7 @@ from grader.exercise.verdict import Finding
 from grader.recording.observations import Raised, last_exception
 from grader.recording.recording import Provenance, Recording, Recordings
 from grader.scenes.subject import load_subject
-from grader.submission.error_texts import described
-from grader.submission.trace import Obstacle, PackageTrace
+from grader.submission.package_trace import Obstacle, PackageTrace
 from grader.text.message import NOTHING, Message, joined, msg
 from grader.text.strings import shown
 
@@ -164,4 +163,4 @@ def not_judged(file: str, problem: Obstacle, what: Message = NOTHING) -> Finding
         help = msg(
             "Give the argument a default_value: then `ros2 launch` needs no more than the file."
         )
-    return Finding(0, text.given(file=file, why=described(problem)), help, judged=False)
+    return Finding(0, text.given(file=file, why=problem.described), help, judged=False)

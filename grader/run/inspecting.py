@@ -32,9 +32,9 @@ from grader.run.processes.started_process import SubmissionProcess
 from grader.submission import answer, inspector
 from grader.submission.answer import Inspection, SetUp
 from grader.submission.launched import unlike_launched
+from grader.submission.package_trace import FAILED, PackageTrace
 from grader.submission.request import Request
 from grader.submission.start import Submission
-from grader.submission.trace import FAILED, PackageTrace
 from grader.system import linux
 from grader.text.message import Message, msg
 

@@ -1,9 +1,10 @@
 """`open_submission`: find what to start in a file, a folder, a package or an archive.
 
 Nothing of it is parsed in this process: a file can be made so that its parser takes all memory, or
-crashes. `grader.submission.finding` has the rules, and applies them in a process with limits. A
-single file is found without running anything. What a package has to start stands in its set-up and
-launch files, so an inspection evaluates them first, in a process confined like the submission's.
+crashes. `grader.submission.program_choice` has the rules, and applies them in a process with
+limits. A single file is found without running anything. What a package has to start stands in its
+set-up and launch files, so an inspection evaluates them first, in a process confined like the
+submission's.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from grader.system.scratch import make_folder
 from grader.text.message import NOTHING, Message
 
 if TYPE_CHECKING:
-    from grader.submission.trace import PackageTrace
+    from grader.submission.package_trace import PackageTrace
 
 
 @contextmanager

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from grader.submission import trace
+from grader.submission import package_trace
+from grader.submission.package_trace import LaunchFile, Obstacle, PackageTrace
 from grader.submission.program import Program
-from grader.submission.trace import LaunchFile, Obstacle, PackageTrace
 
 
 @dataclass(frozen=True)
@@ -102,6 +102,6 @@ class Inspection:
 
 def decode(data: bytes) -> Inspection:
     """The inspection that bytes mean."""
-    made = trace.read(Inspection, data)
-    trace.must_agree(made.trace)
+    made = package_trace.read(Inspection, data)
+    package_trace.must_agree(made.trace)
     return made

@@ -26,14 +26,6 @@ Choice = tuple[PackageFolder, Executable]
 
 
 @dataclass(frozen=True)
-class Module:
-    """The place of a console script's module."""
-
-    root: Path  # the folder to import it from
-    bare: tuple[Path, ...]  # package folders on the way, relative to root, without __init__.py
-
-
-@dataclass(frozen=True)
 class Packages:
     """The folders of a submission that have set-up files, from the top down."""
 
@@ -99,8 +91,8 @@ class Packages:
             return replace(program, root=program.entry.path.parent), ()
         assert package is not None
         executable = package.executable(program.executable)
-        module = find_module(self.submitted, package, executable)
-        return replace(program, root=module.root), module.bare
+        root, bare = _find_module(self.submitted, package, executable)
+        return replace(program, root=root), bare
 
     @property
     def roots(self) -> list[Path]:
@@ -185,8 +177,14 @@ def find_packages(submitted: SubmissionFolder, set_ups: Sequence[SetUp]) -> Pack
     return Packages(submitted, tuple(readable), tuple(faults))
 
 
-def find_module(submitted: SubmissionFolder, package: PackageFolder, script: Executable) -> Module:
-    """Find the script's module in its package, and nowhere else."""
+def _find_module(
+    submitted: SubmissionFolder, package: PackageFolder, script: Executable
+) -> tuple[Path, tuple[Path, ...]]:
+    """Find the script's module in its package, and nowhere else; see `Packages.found`.
+
+    Returns:
+        The folder to import it from, and package folders on the way without an __init__.py.
+    """
     inside = Path(*script.module.split("."))
     roots = package.roots(script.module)
     for root in roots:
@@ -196,7 +194,7 @@ def find_module(submitted: SubmissionFolder, package: PackageFolder, script: Exe
                 _must_define(submitted, script, file)
                 folders = list(inside.parents)[:-1]  # the last is root itself
                 bare = [f for f in folders if not (root / f / "__init__.py").exists()]
-                return Module(root, tuple(bare))
+                return root, tuple(bare)
     raise _no_module(submitted, package, script, roots[0] / f"{inside}.py")
 
 

@@ -1,45 +1,10 @@
-"""What ended an evaluation, in sentences of others, and what to do about the usual errors."""
+"""What to do about the usual errors that a launch file ends with."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from grader.submission.trace import Obstacle
-from grader.text import strings as text
 from grader.text.message import Message, msg
-
-
-def how_it_ends(file: str, problem: Obstacle) -> Message:
-    """'setup.py ends with NameError: ... (setup.py, line 3)', '... did not come to an end ...'."""
-    what = problem.text.values.get("what")
-    if problem.kind == "limit" and isinstance(what, Message):
-        return msg("{file} {what}", file=file, what=what.map_texts(shown))
-    return msg(
-        "{file} ends with {error}{place}",
-        file=file,
-        error=described(problem),
-        place=placed(problem),
-    )
-
-
-def shown(content: str) -> str:
-    """A text of the submission's as it may stand in a sentence."""
-    return text.shown(content).rstrip(".")
-
-
-def described(problem: Obstacle) -> Message:
-    """What a problem says, in a sentence."""
-    return problem.text.map_texts(shown)
-
-
-def placed(problem: Obstacle) -> str | Message:
-    """' (launch/display.launch.py, line 9)', with a blank before it; '' for no place."""
-    if not problem.file:
-        return ""
-    if not problem.line:
-        return f" ({problem.file})"
-    return msg(" ({file}, line {line})", file=problem.file, line=problem.line)
-
 
 _NAMES: Final = msg(
     "Compare the names of the arguments with those of your ROS release: "

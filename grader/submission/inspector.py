@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from grader.submission.trace import PackageTrace
+from grader.submission.package_trace import PackageTrace
 from grader.text.message import Message
 
 if TYPE_CHECKING:  # a confined process has none of the recording

@@ -6,9 +6,15 @@ from collections.abc import Sequence
 
 from grader.recording.recording import NOT_THERE
 from grader.scenes.view import Cell, Table
-from grader.submission.error_texts import described, placed
+from grader.submission.package_trace import (
+    PREFIX,
+    Lacking,
+    LaunchedNode,
+    LaunchFile,
+    PackageTrace,
+    Skipped,
+)
 from grader.submission.program import EntryPoint, Script
-from grader.submission.trace import PREFIX, Lacking, LaunchedNode, LaunchFile, PackageTrace, Skipped
 from grader.text import strings as text
 from grader.text.message import NOTHING, Message, Text, joined, msg
 
@@ -57,7 +63,7 @@ def _is_named(launch: LaunchFile, lacking: Lacking) -> bool:
 def _note(launch: LaunchFile, rows: int) -> Message:
     notes = []
     if launch.problem is not None:
-        where = _clipped(placed(launch.problem)) if launch.problem.line else ""
+        where = _clipped(launch.problem.place) if launch.problem.line else ""
         error = launch.problem.text.map_texts(_clip)
         notes.append(msg("It ends with {error}{place}.", error=error, place=where))
     elif not rows:
@@ -161,7 +167,7 @@ def not_read(trace: PackageTrace, entry: EntryPoint | Script | None) -> list[Mes
             "{file} was not run, and what it starts cannot be read ({unread}): "
             "judged is {program} alone",
             file=launch.file,
-            unread=described(launch.problem),
+            unread=launch.problem.described,
             program=name,
         )
         for launch in trace.launches

@@ -10,15 +10,16 @@ from grader.errors import SubmissionError
 from grader.recording.recording import MOST_PROGRAMS
 from grader.submission.entry_points import Packages
 from grader.submission.folder import CMAKE, SubmissionFolder
-from grader.submission.program import WITH_THE_LAUNCH, Program, Script
+from grader.submission.program import Program, Script
 from grader.submission.program_source import is_among
 from grader.submission.request import LaunchAsked
 from grader.text.message import Message, joined, msg
 from grader.text.strings import listed, shown
+from ros_doubles.launch_time import WITH_THE_LAUNCH
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.submission.answer import Inspection, LaunchOrder
-    from grader.submission.trace import LaunchFile
+    from grader.submission.package_trace import LaunchFile
 
 #: What the simulator stands in for.
 _SIMULATOR: Final = ("turtlesim", "turtlesim_node")
@@ -177,10 +178,8 @@ def _asked(submitted: SubmissionFolder, inspection: Inspection, asked: LaunchAsk
 
 
 def _faulty(launch: LaunchFile) -> Message:
-    from grader.submission.error_texts import described, placed
-
     assert launch.problem is not None
-    why = joined([described(launch.problem), placed(launch.problem)])
+    why = joined([launch.problem.described, launch.problem.place])
     return FAULTY.given(file=shown(launch.file), why=why)
 
 

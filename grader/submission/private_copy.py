@@ -47,6 +47,8 @@ _SHARE_OF: Final = re.compile(r"^share/(?!ament_index/)(\w+)/", re.MULTILINE)
 MAX_LEVELS: Final = 32  # of folders; what lies deeper is left out
 _CHUNK_BYTES: Final = 1 << 20
 
+_OUTSIDE: Final = msg("not handed in, but links to somewhere else: {names}")
+_FAILED: Final = msg("left out, since they cannot be copied: {names}")
 #: Folders that are not searched for what to start: they are copied last, if there is room.
 _LAST: Final = {"venv", "env", "test", "tests", "build", "install", "log"}
 _BINARY: Final = getattr(os, "O_BINARY", 0)
@@ -267,19 +269,8 @@ class _Copying:
 
     def remarks(self) -> tuple[Message, ...]:
         """Return the remarks on what was left out."""
-        found = []
-        if self.outside:
-            found.append(
-                msg(
-                    "not handed in, but links to somewhere else: {names}",
-                    names=listed(self.outside),
-                )
-            )
-        if self.failed:
-            found.append(
-                msg("left out, since they cannot be copied: {names}", names=listed(self.failed))
-            )
-        return tuple(found)
+        left_out = {_OUTSIDE: self.outside, _FAILED: self.failed}
+        return tuple(why.given(names=listed(names)) for why, names in left_out.items() if names)
 
     def copy_alone(self, file: Path, into: Path) -> None:
         real = file.resolve()

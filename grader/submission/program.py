@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Annotated, Final
 
 from grader.system.strict_json import STRANGERS
+from ros_doubles.launch_time import WITH_THE_LAUNCH
 
-#: In place of the number of a program that is waited for: with the launch; nobody knows when.
-WITH_THE_LAUNCH: Final = -1
-NEVER: Final = -2
 #: In an argument: the folder of all that was handed in, and the prefix of what it installs, which
 #: lie elsewhere in each run. No argument of a process has such a character of its own.
 BASE: Final = "\0base"

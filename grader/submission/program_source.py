@@ -94,12 +94,7 @@ def read_imports(
 
 def _statements(file: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:
     """Yield the imports in a file, in order, and whether each is run whenever the file is."""
-    try:
-        data = read_bounded(file)
-        tree = parse(data or b"")
-    except (OSError, SyntaxError):
-        return
-    pending: list[tuple[ast.AST, bool]] = [(tree, True)]
+    pending: list[tuple[ast.AST, bool]] = [(_tree(file), True)]
     while pending:
         node, always = pending.pop()
         if isinstance(node, (ast.Import, ast.ImportFrom)):
@@ -107,6 +102,14 @@ def _statements(file: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]
         inside = always and isinstance(node, _ALWAYS)
         children = [child for child in ast.iter_child_nodes(node) if isinstance(child, _BODIES)]
         pending += [(child, inside) for child in reversed(children)]
+
+
+def _tree(file: Path) -> ast.Module:
+    """The syntax tree of a file; an empty one where it cannot be read or parsed."""
+    try:
+        return parse(read_bounded(file) or b"")
+    except (OSError, SyntaxError):
+        return parse(b"")
 
 
 def _modules(node: ast.Import | ast.ImportFrom, package: str) -> list[str]:
@@ -144,10 +147,7 @@ def roles_in(files: Iterable[Path]) -> set[Role]:
     """Return what some files have; `*` in a name stands for what a run alone shows."""
     found = set[Role]()
     for file in files:
-        try:
-            tree = parse(read_bounded(file) or b"")
-        except (OSError, SyntaxError):
-            continue
+        tree = _tree(file)
         texts = _texts(tree)
         for node in ast.walk(tree):
             if isinstance(node, ast.Call):

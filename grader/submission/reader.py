@@ -22,15 +22,15 @@ from grader.errors import GraderError, GraderFailure, SubmissionError, UsageErro
 from grader.recording.recording import OwnInterfaces
 from grader.recording.subject import Role
 from grader.submission import folder, python_source
-from grader.submission.finding import find, find_evaluated, find_whole, may_be_node
 from grader.submission.interfaces import completed, undeclared
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import exercises_named
+from grader.submission.opened import opened
+from grader.submission.program_choice import find, find_evaluated, find_whole, may_be_node
 from grader.submission.program_source import read_imports, roles_in
 from grader.submission.request import Request
 from grader.submission.set_ups import Unevaluated
 from grader.submission.start import Imports, Submission
-from grader.submission.unpacking import opened
 from grader.system import extensions, limited, strict_json
 from grader.text.message import NOTHING, Message, msg
 from grader.text.strings import clip, shown

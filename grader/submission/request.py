@@ -65,7 +65,7 @@ class Request:
         """The name, or its pattern, of what is started where there are several; '' for none."""
         return self.programs[0] if self.programs else self.name
 
-    def advice(self, ending: str = "") -> Message:
+    def advice(self, ending: str) -> Message:
         """Say which of several is expected; `ending`: of a file's name."""
         if not self.usual:
             return msg("Choose one with --executable NAME.")

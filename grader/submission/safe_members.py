@@ -70,11 +70,12 @@ class Member:
     open: Callable[[], IO[bytes]]
 
 
-#: Called with a member that cannot be written, and why; what it raises refuses the archive.
-Report = Callable[[Member, Exception], None]
+#: Called with the name of a member that cannot be written, and why; what it raises refuses the
+#: archive.
+Report = Callable[[str, Exception], None]
 
 
-def refuse(_: Member, error: Exception) -> None:
+def refuse(_: str, error: Exception) -> None:
     """Refuse an archive for one of its members: what a student hands in is whole."""
     raise error
 
@@ -113,12 +114,12 @@ class TooMuch(SubmissionError):
     """An archive holds more than it may."""
 
 
-@dataclass(frozen=True)
-class ArchiveLimits:
-    """How much an archive may hold: those of a submission.
+@dataclass
+class Budget:
+    """How much may still come out of an archive, and of those inside of it, together.
 
     Attributes:
-        most_bytes: of the file, and of all that comes out of it.
+        most_bytes: of the file, and of all that comes out of it: those of a submission.
         most_files: but for caches, venvs and colcon's output.
         list_bytes: of the list of a zip's members.
         headers: of a tar.
@@ -129,13 +130,8 @@ class ArchiveLimits:
     list_bytes: int = MAX_LIST_BYTES
     headers: int = MAX_HEADERS
 
-
-class Budget:
-    """How much may still come out of an archive, and of those inside of it, together."""
-
-    def __init__(self, limits: ArchiveLimits | None = None) -> None:
-        self.limits = limits or ArchiveLimits()
-        self._bytes_left, self._files_left = self.limits.most_bytes, self.limits.most_files
+    def __post_init__(self) -> None:
+        self._bytes_left, self._files_left = self.most_bytes, self.most_files
 
     def count_bytes(self, name: str, count: int) -> None:
         """Count bytes that came out of the archive of this name.
@@ -153,7 +149,7 @@ class Budget:
             "{name} holds more than {all_bytes:g} MB, the limit for a submission. Leave out "
             "recordings, videos and virtual environments, and pack it again.",
             name=name,
-            all_bytes=self.limits.most_bytes / 1e6,
+            all_bytes=self.most_bytes / 1e6,
         )
 
     def count_files(self, name: str, count: int) -> None:
@@ -169,7 +165,7 @@ class Budget:
                 "{all_files:,}. {pack_again}",
                 name=name,
                 count=count,
-                all_files=self.limits.most_files,
+                all_files=self.most_files,
                 pack_again=PACK_AGAIN,
             )
 
@@ -192,7 +188,7 @@ def write(
                     budget.count_bytes(name, len(chunk))
                     file.write(chunk)
         except (*DAMAGED, NotImplementedError, OSError) as error:
-            report(member, error)
+            report(member.name, error)
 
 
 def _chosen(
@@ -204,7 +200,7 @@ def _chosen(
         try:
             everything.append((_inside(name, member.name), member))
         except SubmissionError as error:
-            report(member, error)
+            report(member.name, error)
     # .parent.name is "" at the top: a submission is never left out as a whole
     marks = [path for path, _ in everything if marks_generated(path) and path.parent.name]
     results = {path.parent for path, member in everything if _is_result(path, member)}
@@ -227,7 +223,7 @@ def _chosen(
     for path, member in chosen:
         if member.fault:
             words = {"name": name, "path": shown(path), "pack_again": PACK_AGAIN}
-            report(member, SubmissionError(member.fault.given(**words)))
+            report(member.name, SubmissionError(member.fault.given(**words)))
     return [(path, member) for path, member in chosen if not member.fault]
 
 

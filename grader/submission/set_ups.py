@@ -95,12 +95,10 @@ class PackageFolder:
     @property
     def problem(self) -> Message:
         """A sentence on the error that ended its set-up; '' where there was none."""
-        from grader.submission.error_texts import how_it_ends
-
         if self.set_up is None or self.set_up.problem is None:
             return NOTHING
         file = self.set_up.problem.file
-        return how_it_ends(file if file in SETUP_FILES else "setup.py", self.set_up.problem)
+        return self.set_up.problem.ends(file if file in SETUP_FILES else "setup.py")
 
     @property
     def is_module(self) -> bool:

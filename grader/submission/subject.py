@@ -14,7 +14,7 @@ from grader.ros.cdr import string, string_of
 from grader.scenes.subject import Subject
 from grader.scenes.view import Part, View
 from grader.submission import inspector, launched
-from grader.submission.trace import PackageTrace, decode, encode
+from grader.submission.package_trace import PackageTrace, decode, encode
 from grader.text.message import Message, msg
 from grader.text.translations import tr
 

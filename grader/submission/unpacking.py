@@ -1,159 +1,180 @@
-"""Opens a folder or an archive that was handed in, and an archive that lies in it alone.
+"""Unpacks an archive without trusting it: nothing outside its folder, no links, no bomb.
 
-The archives of one submission lie one inside another, up to MAX_LEVELS; together they have one
-limit.
+It is a submission's, or that of a whole class. A zip in a zip of a submission is unpacked as well
+(`opened.py`); all levels share one `Budget`.
 """
 
 from __future__ import annotations
 
+import errno
+import gzip
+import stat
+import tarfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
-from itertools import islice
+from functools import partial
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import IO, Final
 
-from grader.errors import SubmissionError, UsageError
-from grader.submission.folder import (
-    CMAKE,
-    HAND_IN,
-    MAX_ENTRIES,
-    SubmissionFolder,
-    entries_of,
-    files_below,
-    is_junk,
-    is_source,
-    top_of,
+from grader.errors import SubmissionError
+from grader.submission.safe_members import (
+    DAMAGED,
+    LINK,
+    LOCKED,
+    PACK_AGAIN,
+    SPECIAL,
+    Bounded,
+    Budget,
+    ListTooLong,
+    Member,
+    Report,
+    refuse,
+    write,
 )
-from grader.submission.request import Request
-from grader.submission.safe_members import Budget
-from grader.text.message import Message, msg
-from grader.text.strings import listed, nearest, shown
+from grader.text.message import NOTHING, Message, msg
+from grader.text.strings import shown
 
-#: A zip of a course's server, in it the student's own, in that a zip once more by mistake.
-MAX_LEVELS: Final = 3
+# damage as an OSError: bz2's and gzip's have no number, EINVAL is a position before the file's
+# start; the others are members in each other's way
+_DAMAGED_ERRNOS: Final = (
+    *(None, errno.EINVAL, errno.ENOTDIR),
+    *(errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG),
+)
 
-_ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
-_OTHER_ARCHIVES: Final = {".gz", ".bz2", ".tbz2", ".xz", ".txz", ".zst", ".rar", ".7z"}
-CPP: Final = {".cpp", ".cc", ".cxx", ".c", ".hpp", ".h"}
-ONLY_PYTHON: Final = msg("Only Python can be graded. {hand_in}", hand_in=HAND_IN)
-PACKAGE: Final = msg("Hand in the folder of your ROS 2 package, or a .zip of it.")
+# bits of the general purpose flags (APPNOTE.TXT 4.4.4)
+_ENCRYPTED: Final = 0x1
+_UTF_8: Final = 0x800
 
+MAX_HEADER_BYTES: Final = 100_000  # of one header, with the long names that come before it
 
-class Opened(NamedTuple):
-    """A submission that is a folder, or was unpacked into one.
-
-    Attributes:
-        files: those that may belong to it.
-        inside: the archives in it that were unpacked, the innermost first.
-    """
-
-    submitted: SubmissionFolder
-    files: list[Path]
-    inside: tuple[str, ...]
+_LONG: Final = msg(
+    "one of its headers has more than {max_header_bytes:g} kB",
+    max_header_bytes=MAX_HEADER_BYTES / 1e3,
+)
+_GZIP: Final = b"\x1f\x8b"
+_CHUNK_BYTES: Final = 1 << 16
 
 
-def is_archive(path: Path) -> bool:
-    """Whether a file can be unpacked, by its name."""
-    return path.name.lower().endswith(_ENDINGS)
-
-
-def opened(path: Path, request: Request, scratch: Path) -> Opened:
-    """Open a submission that is no single file.
+def unpack(archive: Path, into: Path, budget: Budget, report: Report = refuse) -> None:
+    """Write the files of an archive below `into`; caches, venvs and colcon's output stay out.
 
     Args:
-        scratch: an empty folder, for what has to be unpacked.
-
-    Raises:
-        SubmissionError: it is neither a folder nor an archive, is empty, or cannot be unpacked.
-        UsageError: there is no such path.
+        into: an empty folder.
+        report: see `safe_members.write`.
     """
-    name = shown(path.name or path.resolve().name)
-    if not path.exists():
-        raise _missing(path)
-    if not path.is_dir() and not is_archive(path):
+    name = shown(archive.name)
+    size = archive.stat().st_size
+    if size == 0:
         raise SubmissionError(
-            "{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice}",
+            "{name} is empty (0 bytes). {pack_again}", name=name, pack_again=PACK_AGAIN
+        )
+    if size > budget.most_bytes:
+        raise budget.too_large(name)
+    is_zip = archive.suffix.lower() == ".zip"
+    try:
+        with (
+            _opened_zip(archive, budget)
+            if is_zip
+            else _opened_tar(archive, into.with_suffix(".tar"), budget)
+        ) as members:
+            write(name, members, into, budget, report)
+    except (ListTooLong, NotImplementedError, *DAMAGED, OSError) as error:
+        if isinstance(error, OSError) and error.errno not in _DAMAGED_ERRNOS:
+            raise
+        text = getattr(error, "strerror", None) or Message.of(error)
+        raise SubmissionError(
+            "{name} cannot be unpacked as a {kind} file: {why}. {pack_again}",
             name=name,
-            advice=_advice(path) if request.is_started else PACKAGE,
-        )
-    budget, inside = Budget(), tuple[str, ...]()
-    base = path.resolve() if path.is_dir() else _unpacked(path, scratch, budget)
-    submitted = SubmissionFolder(name, base, request)
-    while True:
-        top = top_of(submitted.base)
-        if all(is_junk(entry.name) for entry in entries_of(top)):
-            raise SubmissionError(
-                "{name} is an empty folder. {hand_in}", name=name, hand_in=HAND_IN
+            kind="zip" if is_zip else "tar",
+            why=Message.of(text).map_texts(shown) or msg("it ends too early"),
+            pack_again=PACK_AGAIN,
+        ) from error
+
+
+# Its members, read without trusting its headers ------------------------------------------------
+
+
+@contextmanager
+def _opened_zip(archive: Path, budget: Budget) -> Iterator[list[Member]]:
+    most = budget.list_bytes
+    why = msg("its list has more than {most:g} MB", most=most / 1e6)
+    with Bounded(archive, most, why) as file, zipfile.ZipFile(file) as packed:
+        yield [
+            Member(
+                _name(info),
+                info.filename.endswith(("/", "\\")),
+                _fault_of_zip(info),
+                partial(packed.open, info),
             )
-        files = files_below(top)
-        archives = [file for file in files if is_archive(file)]
-        if not archives or any(map(_is_part, files)):
-            return Opened(submitted, files, inside)
-        if len(archives) > 1:
-            raise SubmissionError(
-                "{name} holds several archives, and no Python file beside them: "
-                "{names}. Hand in only one of them.",
-                name=name,
-                names=listed(map(submitted.called, archives)),
-            )
-        submitted.must_hold(archives[0])
-        inside = (submitted.called(archives[0]), *inside)
-        submitted = replace(submitted, base=_unpacked(archives[0], scratch, budget))
+            for info in packed.infolist()
+        ]
 
 
-def _is_part(file: Path) -> bool:
-    """Whether a file shows that its folder is what was handed in, rather than an archive in it."""
-    return is_source(file.name) or file.name == CMAKE or file.suffix.lower() in CPP
+def _name(info: zipfile.ZipInfo) -> str:
+    """A member's name, also where a program writes UTF-8 without its flag, as that of macOS."""
+    if info.flag_bits & _UTF_8 or info.filename.isascii():
+        return info.filename
+    try:
+        return info.filename.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return info.filename
 
 
-def _unpacked(archive: Path, scratch: Path, budget: Budget) -> Path:
-    """Unpack an archive; return the folder of its content."""
-    from grader.submission.archive import unpack  # here: most submissions are none
-
-    places = (scratch / f"unpacked{level or ''}" for level in range(MAX_LEVELS))
-    place = next((each for each in places if not each.exists()), None)
-    if place is None:
-        raise SubmissionError(
-            "{name} lies in an archive in an archive in an archive, which is too "
-            "deep. Hand in the innermost.",
-            name=shown(archive.name),
-        )
-    if not archive.is_file():
-        raise SubmissionError("{name} is not an ordinary file.", name=shown(archive.name))
-    place.mkdir()
-    unpack(archive, place, budget)
-    return place
+def _fault_of_zip(info: zipfile.ZipInfo) -> Message:
+    if info.flag_bits & _ENCRYPTED:
+        return LOCKED
+    kind = stat.S_IFMT(info.external_attr >> 16)
+    if kind == stat.S_IFLNK:
+        return LINK
+    return NOTHING if kind in (0, stat.S_IFREG) else SPECIAL
 
 
-def _advice(path: Path) -> Message:
-    """Say what to hand in instead of a file of this kind."""
-    kind = path.suffix.lower()
-    if kind == ".py":
-        return msg(
-            "Python imports no {suffix}: call it {name}.py.",
-            suffix=shown(path.suffix),
-            name=shown(path.stem),
-        )
-    if kind in _OTHER_ARCHIVES:
-        return msg("Unpack it, and pack the same as a .zip.")
-    if kind == ".ipynb":
-        return msg("Save the notebook as a Python file (.py), and hand in that.")
-    return ONLY_PYTHON if kind in CPP else HAND_IN
+@contextmanager
+def _opened_tar(archive: Path, plain: Path, budget: Budget) -> Iterator[list[Member]]:
+    """Open a tar: its members.
+
+    Args:
+        plain: where the tar may lie without its compression; gone afterwards.
+    """
+    with archive.open("rb") as file:
+        is_compressed = file.read(len(_GZIP)) == _GZIP
+    try:
+        if is_compressed:
+            _decompress(archive, plain, replace(budget))
+        with (
+            Bounded(plain if is_compressed else archive, MAX_HEADER_BYTES, _LONG) as file,
+            tarfile.TarFile(fileobj=file, errorlevel=0) as packed,
+        ):
+            yield list(_members(packed, budget.headers))
+    finally:
+        plain.unlink(missing_ok=True)
 
 
-def _missing(path: Path) -> UsageError:
-    """The error that there is no such path."""
-    folder = path.parent
-    if not folder.is_dir():
-        return UsageError(
-            "{path} does not exist: there is no folder {folder}.",
-            path=shown(path),
-            folder=shown(folder),
-        )
-    there = islice((entry.name for entry in folder.iterdir()), MAX_ENTRIES)
-    meant = nearest(path.name, sorted(there))
-    advice = (
-        msg("Did you mean {names}?", names=listed(meant))
-        if meant
-        else msg("Check the name and the folder.")
-    )
-    return UsageError("{path} does not exist. {advice}", path=shown(path), advice=advice)
+def _decompress(archive: Path, plain: Path, budget: Budget) -> None:
+    name = shown(archive.name)
+    with gzip.open(archive) as source, plain.open("xb") as target:
+        while chunk := source.read(_CHUNK_BYTES):
+            budget.count_bytes(name, len(chunk))
+            target.write(chunk)
+
+
+def _members(packed: tarfile.TarFile, most: int) -> Iterator[Member]:
+    for number, info in enumerate(packed):
+        if number >= most:
+            raise ListTooLong(msg("it has more than {most:,} entries", most=most))
+        yield Member(info.name, info.isdir(), _fault_of_tar(info), partial(_file, packed, info))
+
+
+def _file(packed: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
+    file = packed.extractfile(info)
+    if file is None:
+        raise tarfile.ReadError("a member has no content")
+    return file
+
+
+def _fault_of_tar(info: tarfile.TarInfo) -> Message:
+    if info.issym() or info.islnk():
+        return LINK
+    return NOTHING if info.isreg() and not info.issparse() else SPECIAL

@@ -6,12 +6,12 @@ import errno
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
 from grader import SubmissionError, UsageError
-from grader.submission import ArchiveLimits, Budget, Member, TooMuch, is_archive, unpack
+from grader.submission import Budget, TooMuch, is_archive, unpack
 from grader.system import make_folder
 from grader.text import Message, listed, msg, shown
 from grader.text import joined as joined_texts
@@ -30,7 +30,7 @@ ROSTER: Final = "roster.csv"
 SCORES: Final = "scores.csv"
 _TABLES: Final = (ROSTER, SCORES)
 _MAX_WRAPPERS: Final = 3  # folders in a folder that an archive was packed from
-LIMITS: Final = ArchiveLimits(
+LIMITS: Final = Budget(
     most_bytes=50_000_000_000, most_files=500_000, list_bytes=20_000_000, headers=500_000
 )
 _INSTEAD: Final = msg("Unpack it yourself, and give the folder.")
@@ -152,19 +152,19 @@ def _unpack(archive: Path, into: Path) -> list[Message]:
     """
     odd: dict[Message, list[str]] = defaultdict(list)
 
-    def report(member: Member, error: Exception) -> None:
+    def report(name: str, error: Exception) -> None:
         if isinstance(error, SubmissionError):
-            odd[_REFUSED].append(member.name)
+            odd[_REFUSED].append(name)
         elif isinstance(error, OSError) and error.errno in _UNWRITABLE:
-            odd[_CANNOT_BE_WRITTEN].append(member.name)
+            odd[_CANNOT_BE_WRITTEN].append(name)
         elif isinstance(error, OSError) and error.errno is not None:
             raise error
         else:
-            odd[_DAMAGED].append(member.name)
+            odd[_DAMAGED].append(name)
 
     into.mkdir()
     try:
-        unpack(archive, into, Budget(LIMITS), report)
+        unpack(archive, into, replace(LIMITS), report)
     except TooMuch:
         raise UsageError(
             "{name} unpacks to more than {size:g} GB, or {files:,} files, the limit for a class. "

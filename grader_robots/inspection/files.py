@@ -8,16 +8,7 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from grader.submission import (
-    LaunchRecord,
-    NamedMesh,
-    Workspace,
-    end_of,
-    is_description,
-    prepare,
-    safe_files,
-    watch_files,
-)
+from grader.submission import Workspace, begin, package_trace, safe_files, steps
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].
@@ -34,7 +25,7 @@ _PROPERTY: Final = re.compile(_GIVEN.replace("{}", "property", 1).replace("{}", 
 _ARGUMENT: Final = re.compile(_GIVEN.replace("{}", "arg", 1).replace("{}", "default", 1))
 
 
-def named_meshes(text: str, place: Workspace) -> tuple[NamedMesh, ...] | None:
+def named_meshes(text: str, place: Workspace) -> tuple[package_trace.NamedMesh, ...] | None:
     """The files that a description names; None where it is no XML."""
     try:
         if "<!DOCTYPE" in text:
@@ -42,14 +33,14 @@ def named_meshes(text: str, place: Workspace) -> tuple[NamedMesh, ...] | None:
         root = ElementTree.fromstring(text)
     except (ElementTree.ParseError, ValueError):
         return None
-    found: dict[tuple[str, bool], NamedMesh] = {}
+    found: dict[tuple[str, bool], package_trace.NamedMesh] = {}
     for element in root.iter():
         if element.tag in ("mesh", "texture") and (uri := element.get("filename")):
             key = uri, element.tag == "mesh"
             if key not in found and len(found) < _MOST_FILES:
                 state, path = _resolved(uri.strip(), place)
                 named, at = place.shown(uri)[:1000], place.shown(path)[:1000]
-                found[key] = NamedMesh(named, state, at, key[1])
+                found[key] = package_trace.NamedMesh(named, state, at, key[1])
     return tuple(found.values())
 
 
@@ -92,14 +83,12 @@ def expanded(place: Workspace) -> list[dict[str, str]]:
 
     For packages whose launch files hand none to a robot_state_publisher.
     """
-    prepare(place)
-    record = LaunchRecord(place)
-    watch_files(record, place)
+    record = begin(place)
     made: list[dict[str, str]] = []
     sources = {source: path for path, source in place.judged.files.items()}
-    for file in place.judged.package.files:
-        if not is_description(file) or len(made) >= 5:
-            continue
+    for file in place.judged.package.descriptions:
+        if len(made) >= 5:
+            break
         path = place.prefix / sources[file] if file in sources else None
         path = path or place.judged.package.folder / file
         text = path.read_text(encoding="utf-8", errors="replace")
@@ -108,7 +97,9 @@ def expanded(place: Workspace) -> list[dict[str, str]]:
         code, errors = 0, ""
         if "xacro" in text:
             code, text, errors = record.xacro([str(path)])
-        made.append({"file": file, "text": "" if code else text, "errors": end_of(errors, 1000)})
+        made.append(
+            {"file": file, "text": "" if code else text, "errors": steps.end_of(errors, 1000)}
+        )
     return made
 
 
@@ -118,9 +109,7 @@ def varied(place: Workspace, source: str) -> list[dict[str, str]]:
     Args:
         source: the xacro file, where it is laid out.
     """
-    prepare(place)
-    record = LaunchRecord(place)
-    watch_files(record, place)
+    record = begin(place)
     found: list[dict[str, str]] = []
     size = 0
     share = place.prefix / "share"

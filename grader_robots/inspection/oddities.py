@@ -7,36 +7,23 @@ from dataclasses import replace
 from typing import Final
 
 from grader.recording import Trace
-from grader.submission import (
-    Description,
-    Include,
-    InstalledScript,
-    Lacking,
-    LaunchedNode,
-    LaunchFile,
-    NamedMesh,
-    Obstacle,
-    PackageTrace,
-    Parameter,
-    Setup,
-    Varied,
-)
+from grader.submission import package_trace
 from grader.text import NOTHING, Message
 
-_SETUP: Final = Setup("", "", "", "", NOTHING, (), None, (), (), (), "", (), (), ())
-_LAUNCH: Final = LaunchFile("", None, (), (), (), (), (), (), (), "")
-_NODE: Final = LaunchedNode("", "", "", "", (), (), (), False)
-_ROBOT: Final = Description(0, "", True, "", None, (), True)
+_SETUP: Final = package_trace.Setup("", "", "", "", NOTHING, (), None, (), (), (), "", (), (), ())
+_LAUNCH: Final = package_trace.LaunchFile("", None, (), (), (), (), (), (), (), "")
+_NODE: Final = package_trace.LaunchedNode("", "", "", "", (), (), (), False)
+_ROBOT: Final = package_trace.Description(0, "", True, "", None, (), True)
 _ODD: Final = "\x1b[31m\u202e\ud800 \n"
 
 
-def _described(text: str, varied: str = "") -> PackageTrace:
+def _described(text: str, varied: str = "") -> package_trace.PackageTrace:
     """A package that hands on a description."""
-    parameter = Parameter("robot_description", "", 0, False)
+    parameter = package_trace.Parameter("robot_description", "", 0, False)
     publisher = replace(_NODE, executable="robot_state_publisher", parameters=(parameter,))
     launch = replace(_LAUNCH, nodes=(publisher,))
-    more = (Varied(0, "base_length", 1), Varied(0, "base_width", -1))
-    return PackageTrace(_SETUP, (), (launch,), (_ROBOT,), more, (text, varied))
+    more = (package_trace.Varied(0, "base_length", 1), package_trace.Varied(0, "base_width", -1))
+    return package_trace.PackageTrace(_SETUP, (), (launch,), (_ROBOT,), more, (text, varied))
 
 
 def _with_joint(inner: str, kind: str = "revolute") -> str:
@@ -45,33 +32,40 @@ def _with_joint(inner: str, kind: str = "revolute") -> str:
     return f"<robot name='r'>{links}<joint name='j' type='{kind}'>{ends}{inner}</joint></robot>"
 
 
-def _spawned(*arguments: str) -> PackageTrace:
+def _spawned(*arguments: str) -> package_trace.PackageTrace:
     """A package that puts something into Gazebo."""
     node = replace(_NODE, package="ros_gz_sim", executable="create", arguments=arguments)
-    return PackageTrace(_SETUP, launches=(replace(_LAUNCH, nodes=(node,)),))
+    return package_trace.PackageTrace(_SETUP, launches=(replace(_LAUNCH, nodes=(node,)),))
 
 
 _LIMIT: Final = "<limit lower='nan' upper='inf' effort='1' velocity='1'/>"
-TRACES: Final[Mapping[str, PackageTrace]] = {
-    "nobody could look at": PackageTrace(),
-    "has nothing": PackageTrace(_SETUP),
-    "has an odd name": PackageTrace(replace(_SETUP, name=_ODD, absent=(_ODD,))),
-    "ends its set-up with nothing to say": PackageTrace(
-        replace(_SETUP, problem=Obstacle("", NOTHING))
+TRACES: Final[Mapping[str, package_trace.PackageTrace]] = {
+    "nobody could look at": package_trace.PackageTrace(),
+    "has nothing": package_trace.PackageTrace(_SETUP),
+    "has an odd name": package_trace.PackageTrace(replace(_SETUP, name=_ODD, absent=(_ODD,))),
+    "ends its set-up with nothing to say": package_trace.PackageTrace(
+        replace(_SETUP, problem=package_trace.Obstacle("", NOTHING))
     ),
-    "has an odd manifest": PackageTrace(replace(_SETUP, manifest=Message.of(_ODD))),
-    "has an odd script": PackageTrace(
-        replace(_SETUP, scripts=(InstalledScript(_ODD, "", "", Message.of(_ODD), "", False),))
+    "has an odd manifest": package_trace.PackageTrace(replace(_SETUP, manifest=Message.of(_ODD))),
+    "has an odd script": package_trace.PackageTrace(
+        replace(
+            _SETUP,
+            scripts=(package_trace.InstalledScript(_ODD, "", "", Message.of(_ODD), "", False),),
+        )
     ),
-    "starts what has no name": PackageTrace(_SETUP, launches=(replace(_LAUNCH, nodes=(_NODE,)),)),
-    "lacks what has no name": PackageTrace(
+    "starts what has no name": package_trace.PackageTrace(
+        _SETUP, launches=(replace(_LAUNCH, nodes=(_NODE,)),)
+    ),
+    "lacks what has no name": package_trace.PackageTrace(
         _SETUP,
         launches=(
             replace(
                 _LAUNCH,
-                problem=Obstacle("what", Message.of(_ODD), _ODD, -1),
-                includes=(Include("", "", ()),),
-                lacking=tuple(Lacking(kind, "", "", "") for kind in ("file", "package", "?")),
+                problem=package_trace.Obstacle("what", Message.of(_ODD), _ODD, -1),
+                includes=(package_trace.Include("", "", ()),),
+                lacking=tuple(
+                    package_trace.Lacking(kind, "", "", "") for kind in ("file", "package", "?")
+                ),
                 moved=_ODD,
             ),
         ),
@@ -90,9 +84,12 @@ TRACES: Final[Mapping[str, PackageTrace]] = {
         descriptions=(
             replace(
                 _ROBOT,
-                meshes=(NamedMesh(_ODD, "scheme", "", True), NamedMesh("", "left", "", False)),
+                meshes=(
+                    package_trace.NamedMesh(_ODD, "scheme", "", True),
+                    package_trace.NamedMesh("", "left", "", False),
+                ),
             ),
-            replace(_ROBOT, text=-1, problem=Obstacle("error", NOTHING)),
+            replace(_ROBOT, text=-1, problem=package_trace.Obstacle("error", NOTHING)),
         ),
     ),
     "spawns without arguments": _spawned(),

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from grader.scenes.view import Floats, Placing, Solid, SolidFrame, Tree, TreeNode
-from grader.submission import Description, PackageTrace
+from grader.submission import package_trace
 from grader.text import NOTHING, Message, joined, msg
 from grader_robots.robot_py.kinematics import forward, joint_transform, tree
 from grader_robots.robot_py.model import Model
@@ -23,13 +23,13 @@ _LARGEST = 1e9
 _LONGEST = 500_000
 
 
-def model(trace: PackageTrace) -> Model | None:
+def model(trace: package_trace.PackageTrace) -> Model | None:
     """The robot that is drawn; None where there is none that urdfdom takes."""
     found = _described(trace)
     return None if found is None else _model(trace.texts[found.text])
 
 
-def solid(trace: PackageTrace) -> Solid | None:
+def solid(trace: package_trace.PackageTrace) -> Solid | None:
     """The robot with all joints at 0; None where there is none."""
     robot = model(trace)
     if robot is None:
@@ -62,7 +62,7 @@ def solid(trace: PackageTrace) -> Solid | None:
     return shapes.solid(robot, frames, numbers, lost, notes, meshes(trace), ground_m=None)
 
 
-def links(trace: PackageTrace) -> Tree | None:
+def links(trace: package_trace.PackageTrace) -> Tree | None:
     """Which link hangs on which, by which joint; None where there is no robot."""
     robot = model(trace)
     if robot is None:
@@ -92,7 +92,7 @@ def links(trace: PackageTrace) -> Tree | None:
     return Tree(msg("Links and the joints that hold them"), tuple(nodes[:MOST_NODES]), note)
 
 
-def meshes(trace: PackageTrace) -> dict[str, Floats]:
+def meshes(trace: package_trace.PackageTrace) -> dict[str, Floats]:
     """By the name that the URDF gives: triangles, float64 (n, 3, 3), as far as they were read."""
     found = _described(trace)
     return {
@@ -112,7 +112,7 @@ def _surface(encoded: str) -> Floats | None:
     return numbers.reshape(-1, 3, 3) if whole else None
 
 
-def _described(trace: PackageTrace) -> Description | None:
+def _described(trace: package_trace.PackageTrace) -> package_trace.Description | None:
     """The first description that a launch file hands on; else that of a file."""
     every = [each for each in trace.descriptions if each.text >= 0]
     return next((each for each in every if each.is_launched), next(iter(every), None))
@@ -129,13 +129,13 @@ def _model(description: str) -> Model | None:
     return robot
 
 
-def _why_not(trace: PackageTrace) -> Message:
+def _why_not(trace: package_trace.PackageTrace) -> Message:
     if _described(trace) is None:
         return msg("no robot description was found")
     return msg("the robot description cannot be drawn")
 
 
-def words(trace: PackageTrace) -> Message:
+def words(trace: package_trace.PackageTrace) -> Message:
     """What there is to see, for who cannot."""
     found = solid(trace)
     return _why_not(trace) if found is None else found.text

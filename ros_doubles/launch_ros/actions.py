@@ -31,8 +31,8 @@ from launch_ros.parameter_descriptions import (
     normalize_parameter_dict,
 )
 
-#: What evaluates launch files.
-_OURS = str(Path(__file__).resolve().parents[2])
+#: The doubles.
+_OURS = str(Path(__file__).resolve().parents[1])
 _NAMESPACE, _PARAMETERS, _REMAPPINGS = "ros_namespace", "global_params", "ros_remaps"
 
 

@@ -12,7 +12,7 @@ from tests import archive
 PROGRAM = """
 import re, sys
 
-ROS = re.compile(r"(ament|launch|rcl|rmw|ros|tf2)\\w*|\\w+_(msgs|interfaces)|turtlesim")
+ROS = re.compile(r"(ament|launch|rcl|rmw|ros(?!_doubles)|tf2)\\w*|\\w+_(msgs|interfaces)|turtlesim")
 
 class Hidden:
     def find_spec(self, name, path=None, target=None):

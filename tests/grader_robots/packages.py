@@ -10,7 +10,7 @@ from grader.exercise.result.result import Result
 from grader.judging import judge
 from grader.recording.recording import Recording, Recordings, Run
 from grader.submission import inspector
-from grader.submission.trace import PackageTrace
+from grader.submission.package_trace import PackageTrace
 from grader.testing.solutions import read_solutions
 from tests.hand_ins import SUBMISSIONS
 from tests.inspecting import inspected

@@ -28,8 +28,8 @@ KEYS = {
     "xacro": "xacro",
 }
 
-#: Folders of files that students write, or that ROS has itself.
-STUDENTS = {"starter", "reference", "right", "doubles"}
+#: Folders of files that students write.
+STUDENTS = {"starter", "reference", "right"}
 #: Hides packages from every Python that finds it on its path.
 SITECUSTOMIZE = """
 import sys
@@ -95,7 +95,7 @@ def imported(package: str) -> set[str]:
     """The packages of ROS that the modules of one of our packages import."""
     names: set[str] = set()
     for path in (ROOT / package).rglob("*.py"):
-        # students' files; what stands for ROS's own
+        # students' files
         if STUDENTS.isdisjoint(path.relative_to(ROOT / package).parts):
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
                 if isinstance(node, ast.Import):

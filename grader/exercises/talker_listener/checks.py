@@ -8,8 +8,8 @@ from grader.exercise.sentences import unless_unknown
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recordings
 from grader.scenes.cast.trace import CastTrace
-from grader.submission.error_texts import advice, described, placed
-from grader.submission.trace import PackageTrace
+from grader.submission.error_texts import advice
+from grader.submission.package_trace import PackageTrace
 from grader.text.message import joined, msg
 
 checks = Checks()
@@ -42,7 +42,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
         programs = {(it.package, it.executable) for it in started}
         lacking = [f"{it.kind} {it.name}" for it in each.lacking if it.kind != "file"]
         if each.problem is not None:
-            why = joined([described(each.problem), placed(each.problem)])
+            why = joined([each.problem.described, each.problem.place])
             text = msg("{file} cannot be launched: {why}", file=each.file, why=why)
             worst = Finding(0, text, advice(str(each.problem.text)))
         elif lacking:

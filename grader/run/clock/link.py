@@ -16,6 +16,7 @@ from collections.abc import Callable
 from grader.run.clock.scheduler import Scheduler
 from grader.run.lockstep import real
 from grader.run.lockstep.faults import guarded
+from grader.run.lockstep.matching import Arrived, EndpointRegistry, Reader, Writer
 from grader.run.lockstep.protocol import (
     EPOCH_NS,
     MOST_SENT,
@@ -40,7 +41,6 @@ from grader.run.lockstep.protocol import (
     encode,
     pieces,
 )
-from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer
 from grader.text.message import NOTHING, Message, msg
 
 #: The costs of sending a message, 20 us, and of counting the endpoints of a channel.

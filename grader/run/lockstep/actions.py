@@ -20,8 +20,8 @@ from grader.run.lockstep.endpoints import (
     serialized,
 )
 from grader.run.lockstep.faults import pass_on
+from grader.run.lockstep.matching import Reader, Writer
 from grader.run.lockstep.protocol import NEVER
-from grader.run.lockstep.registry import Reader, Writer
 
 _ActionClient, _ActionServer = _rclpy.ActionClient, _rclpy.ActionServer
 _GoalHandle = _rclpy.ActionGoalHandle

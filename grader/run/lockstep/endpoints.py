@@ -23,7 +23,7 @@ from grader.ros.definitions import Definitions, UncompiledPackages
 from grader.ros.messages import deserialise, is_made, serialise
 from grader.ros.uncompiled import KINDS
 from grader.run.lockstep.faults import as_python_does, pass_on
-from grader.run.lockstep.registry import (
+from grader.run.lockstep.matching import (
     Arrived,
     Endpoint,
     EndpointRegistry,

@@ -20,7 +20,7 @@ from rclpy.topic_endpoint_info import TopicEndpointTypeEnum
 
 from grader.run.lockstep import endpoints
 from grader.run.lockstep.faults import as_python_does
-from grader.run.lockstep.registry import Endpoint, NodeEntry, Reader, Writer
+from grader.run.lockstep.matching import Endpoint, NodeEntry, Reader, Writer
 
 #: A service that rclpy's C++ makes for a node by itself.
 DESCRIPTION = ("get_type_description", "type_description_interfaces/srv/GetTypeDescription")

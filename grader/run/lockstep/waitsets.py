@@ -12,8 +12,8 @@ from typing import Any
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep.faults import pass_on
+from grader.run.lockstep.matching import Endpoint, Reader
 from grader.run.lockstep.protocol import BOOT_NS, EPOCH_NS, NEVER
-from grader.run.lockstep.registry import Endpoint, Reader
 
 _Timer, _EventHandle, _Clock = _rclpy.Timer, _rclpy.EventHandle, _rclpy.Clock
 

@@ -8,19 +8,19 @@ from typing import Any, Final
 from rclpy.qos import QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
 from grader.run.lockstep.endpoints import deserialized
+from grader.run.lockstep.matching import (
+    Arrived,
+    EndpointRegistry,
+    NodeEntry,
+    Reader,
+    Writer,
+)
 from grader.run.lockstep.protocol import (
     SHIFT,
     EndpointInfo,
     Parcel,
     Parcels,
     Table,
-)
-from grader.run.lockstep.registry import (
-    Arrived,
-    EndpointRegistry,
-    NodeEntry,
-    Reader,
-    Writer,
 )
 from grader.text.message import Message, msg
 

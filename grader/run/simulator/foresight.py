@@ -6,8 +6,8 @@ has used them, and must then publish, byte for byte, what the forecast holds.
 
 from __future__ import annotations
 
+from grader.run.lockstep.matching import Writer
 from grader.run.lockstep.protocol import TICK_NS, Advance, Parcel, Parcels
-from grader.run.lockstep.registry import Writer
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.scenes.scene import Forecast, Reason, Simulation
 

@@ -34,6 +34,7 @@ from grader.errors import SceneFailure
 from grader.run.handover import Plan
 from grader.run.limits import Patience
 from grader.run.lockstep import actions, endpoints, waitsets
+from grader.run.lockstep.matching import Writer
 from grader.run.lockstep.protocol import (
     EPOCH_NS,
     NEVER,
@@ -44,7 +45,6 @@ from grader.run.lockstep.protocol import (
     Reply,
     Table,
 )
-from grader.run.lockstep.registry import Writer
 from grader.run.processes import cores
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import MOST_TICKS, Foresight

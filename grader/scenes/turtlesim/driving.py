@@ -6,7 +6,6 @@ Some controllers are odd, and checks have to survive them.
 from __future__ import annotations
 
 import math
-from collections import defaultdict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -14,13 +13,11 @@ from typing import Final
 
 from grader.recording.subject import Start, Trace
 from grader.scenes.scene import Reason
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, Log, TurtleTrace
+from grader.scenes.turtlesim.recorder import Recorder, place
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace
 from turtlesim_py.scenario import apply
-from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.events import Event, LogLine, Notice, from_json, to_json
-from turtlesim_py.world.trajectory import Trajectory
-from turtlesim_py.world.turtle import Pose, Reading
+from turtlesim_py.world.turtle import Pose
 
 #: (tick, latest pose or None, arena) -> nothing; called before each tick, as callbacks would be.
 Controller = Callable[[int, Pose | None, Arena], None]
@@ -68,12 +65,6 @@ def as_commanded(trace: TurtleTrace, start: Start | None) -> TurtleTrace:
     return drive(repeat, trace.ticks, plain)[0]
 
 
-def place(arena: Arena, start: Start | None) -> None:
-    """Prepare an arena for a run, without a stroke; None leaves turtle1 in the centre."""
-    if start is not None:
-        arena.begin_at(start.x, start.y, start.theta, start.speed, start.turn)
-
-
 def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:
     """Publish a velocity command to turtle1: ahead [m/s], to the left [rad/s]."""
     arena.command(FIRST_TURTLE, (speed, 0.0, 0.0), (0.0, 0.0, turn))
@@ -82,46 +73,6 @@ def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:
 def pen(arena: Arena, color: tuple[int, int, int], width: int = 3) -> None:
     """Call turtle1's set_pen: the colour (r, g, b), each 0-255, and the width [px]."""
     arena.set_pen(FIRST_TURTLE, *color, width, 0)
-
-
-class Recorder:
-    """Records an arena: its events, and its readings by `record` after each tick."""
-
-    def __init__(self, arena: Arena, most_logs: float = math.inf) -> None:
-        """Keep at most `most_logs` lines of the log."""
-        self.ticks = 0
-        self._most_logs = most_logs
-        self._arena = arena
-        self._events: list[Event] = []
-        self._logs: list[Log] = []
-        self._readings: dict[str, list[tuple[int, Reading]]] = defaultdict(list)
-        arena.listeners.append(self._listen)
-
-    def record(self, readings: dict[str, Reading]) -> None:
-        self.ticks += 1
-        for name, reading in readings.items():
-            self._readings[name].append((self.ticks, reading))
-
-    def trace(self) -> TurtleTrace:
-        arena = self._arena
-        return TurtleTrace(
-            ticks=self.ticks,
-            # through JSON: a recorded event equals one that is read from a bag
-            events=tuple(from_json(to_json(event)) for event in self._events),
-            trajectories={
-                name: Trajectory.of_readings(readings) for name, readings in self._readings.items()
-            },
-            logs=tuple(self._logs),
-            canvas=arena.canvas.rgba(),
-            window=picture.render(arena.canvas, arena.background, arena.sprites()),
-        )
-
-    def _listen(self, notice: Notice) -> None:
-        tick = self.ticks + 1
-        if isinstance(notice, Event):
-            self._events.append(replace(notice, tick=tick))
-        elif isinstance(notice, LogLine) and len(self._logs) < self._most_logs:
-            self._logs.append(Log(tick, notice.severity, "turtlesim", notice.text))
 
 
 # Odd controllers ---------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from grader.errors import RecordingError
 from grader.recording.subject import Start
-from grader.scenes.turtlesim.driving import place
+from grader.scenes.turtlesim.recorder import place
 from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
 from turtlesim_py.scenario import apply
 from turtlesim_py.world.arena import Arena

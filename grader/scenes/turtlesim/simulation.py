@@ -9,8 +9,8 @@ from typing import Any
 
 from grader.recording.subject import Start
 from grader.scenes.scene import GRACE_TICKS, Forecast, Hooks, Limits, Reason, Simulation
-from grader.scenes.turtlesim.driving import Recorder, place
 from grader.scenes.turtlesim.graded_node import MOST_LOGS, GradedNode
+from grader.scenes.turtlesim.recorder import Recorder, place
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.text.message import Message
 from turtlesim_py.live.feed import Feed, News

@@ -2,5 +2,5 @@
 
 `main` does all of it in order. What runs a stranger's code does so in a copy of the process, which
 ends with it (`steps`). Nothing of what is done here is believed outside: see
-`grader.submission.trace`.
+`grader.submission.package_trace`.
 """

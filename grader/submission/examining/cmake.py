@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from grader.submission import safe_files
 from grader.submission.examining.steps import Ended, attempt, it
-from grader.submission.trace import Obstacle
+from grader.submission.package_trace import Obstacle
 from grader.text.message import msg
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)

@@ -13,8 +13,9 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Final
 
-from grader.submission.examining.steps import NotKnownHere, it
+from grader.submission.examining.steps import it
 from grader.text.message import msg
+from ros_doubles import NotKnown
 
 #: Exit code, and what is printed to either side.
 Ended = tuple[int, str, str]
@@ -28,12 +29,12 @@ def xacro(words: list[str]) -> Ended:
     """What xacro does with these arguments.
 
     Raises:
-        NotKnownHere: it is not installed here.
+        NotKnown: it is not installed here.
     """
     try:
         import xacro as program
     except ImportError:
-        raise NotKnownHere(
+        raise NotKnown(
             msg("xacro is not installed where this was graded (pip install xacro)")
         ) from None
     out, errors, before = io.StringIO(), io.StringIO(), sys.argv
@@ -56,7 +57,7 @@ def other(words: list[str], path: Callable[[str], str]) -> Ended:
         path: where a file is that is named.
 
     Raises:
-        NotKnownHere: there is none here, and there may be one elsewhere.
+        NotKnown: there is none here, and there may be one elsewhere.
         SubstitutionFailure: there is none anywhere, or it does not end, or prints without end.
     """
     from launch.substitutions import SubstitutionFailure
@@ -70,7 +71,7 @@ def other(words: list[str], path: Callable[[str], str]) -> Ended:
     except (OSError, IndexError) as error:
         is_slip = difflib.get_close_matches(program, _USUAL, 1, 0.7)
         if program and "/" not in program and not is_slip:
-            raise NotKnownHere(it(msg("runs {name}, which is not here", name=program))) from None
+            raise NotKnown(it(msg("runs {name}, which is not here", name=program))) from None
         raise SubstitutionFailure(f"file not found: {error}") from error
     except subprocess.TimeoutExpired:
         raise SubstitutionFailure(f"{program} did not come to an end") from None

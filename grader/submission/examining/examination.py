@@ -11,14 +11,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from grader.submission import safe_files, trace
+from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder
 from grader.submission.examining import launches
 from grader.submission.examining.launch_record import Evaluated
 from grader.submission.examining.layout import Installed, Workspace
 from grader.submission.examining.steps import Ended, attempt, it, step
-from grader.submission.request import LaunchAsked
-from grader.submission.trace import (
+from grader.submission.package_trace import (
+    LONGEST_TEXT,
+    PREFIX,
+    ROS,
     Lacking,
     LaunchedNode,
     LaunchFile,
@@ -26,6 +28,7 @@ from grader.submission.trace import (
     PackageTrace,
     Setup,
 )
+from grader.submission.request import LaunchAsked
 from grader.system import strict_json
 from grader.system.strict_json import Made
 from grader.text.message import NOTHING, Message, msg
@@ -116,8 +119,8 @@ class Examination:
     def number(self, text: str, *, is_file: bool = False) -> int:
         """Return the number of a text; Ended: it is more than is taken."""
         limit = FROM_A_FILE if is_file else FROM_A_LAUNCH_FILE
-        if len(text) > trace.LONGEST_TEXT:
-            values = {"length": f"{len(text):,}", "most": f"{trace.LONGEST_TEXT:,}"}
+        if len(text) > LONGEST_TEXT:
+            values = {"length": f"{len(text):,}", "most": f"{LONGEST_TEXT:,}"}
             raise Ended.by_limit(limit[0].given(**values))
         if text in self.texts:
             return self.texts.index(text)
@@ -130,7 +133,10 @@ class Examination:
         """Return a text with the places as they are here, not as a trace shows them."""
         for each in self.workspace.all:
             text = text.replace(f"/source/{each.name}", str(each.package.folder))
-        places = {trace.PREFIX: self.workspace.prefix, trace.ROS: self.workspace.stubs}
+        places = {
+            PREFIX: self.workspace.prefix,
+            ROS: self.workspace.stubs,
+        }
         for shown, path in places.items():
             text = text.replace(f"{shown}/", f"{path}/")
         return text
@@ -173,12 +179,15 @@ class Examination:
         if self.obstacle:
             raise Ended.by_limit(msg("cannot be evaluated: {why}", why=self.obstacle))
         try:
-            asked = (self.workspace, *self._files[file], self._asked.given)
-            answer = self.step(partial(launches.evaluate, *asked))
+            answer = self._answer(file)
         finally:
             if gone := self._miss(file):
                 raise Ended.by_limit(msg("takes away {file}", file=gone))
         return attempt(lambda: self._decoded(file, answer), file)
+
+    def _answer(self, file: str) -> Any:
+        asked = (self.workspace, *self._files[file], self._asked.given)
+        return self.step(partial(launches.evaluate, *asked))
 
     def _miss(self, by: str) -> str:
         """What is not there any more, after a file was evaluated; '' for nothing."""
@@ -239,15 +248,11 @@ class Examination:
         for number, launch in enumerate(found):
             if launch.problem is not None:
                 continue
-            again: list[str] = []
             with suppress(Ended):
-                files = self._files[launch.file]
-                evaluate = partial(launches.evaluate, self.workspace, *files, self._asked.given)
-                again = attempt(partial(_lacking_files, self.step(evaluate)))
-            known = {each.name for each in launch.lacking}
-            other = next((name for name in again if name not in known), "")
-            if other:
-                found[number] = replace(launch, moved=other[:1000])
+                again = attempt(partial(_lacking_files, self._answer(launch.file)))
+                known = {each.name for each in launch.lacking}
+                if other := next((name for name in again if name not in known), ""):
+                    found[number] = replace(launch, moved=other[:1000])
 
 
 def _launch_files(workspace: Workspace, *, with_beside: bool) -> dict[str, tuple[Installed, str]]:

@@ -15,18 +15,9 @@ from typing import Annotated, Any, Final
 from grader.submission import safe_files
 from grader.submission.answer import LaunchOrder
 from grader.submission.examining import commands
-from grader.submission.examining.launch_time import LaunchTime
 from grader.submission.examining.layout import Workspace
-from grader.submission.examining.steps import LIMITS, NotKnownHere, end_of, it
-from grader.submission.program import (
-    BASE,
-    LONGEST_ARGUMENTS,
-    OF_THE_RUN,
-    PREFIX,
-    Program,
-    Script,
-)
-from grader.submission.trace import (
+from grader.submission.examining.steps import LIMITS, end_of, it
+from grader.submission.package_trace import (
     Include,
     Lacking,
     LaunchedNode,
@@ -35,9 +26,19 @@ from grader.submission.trace import (
     Parameter,
     Skipped,
 )
+from grader.submission.program import (
+    BASE,
+    LONGEST_ARGUMENTS,
+    OF_THE_RUN,
+    PREFIX,
+    Program,
+    Script,
+)
 from grader.system.strict_json import STRANGERS
 from grader.text.message import Message, msg
-from ros_doubles import known
+from ros_doubles import NotKnown, frontend, known
+from ros_doubles.frontend_substitutions import substitutions
+from ros_doubles.launch_time import LaunchTime
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
@@ -302,7 +303,7 @@ class LaunchRecord:
         self._add("declared", name)
 
     def chose(self, name: str, value: str) -> None:
-        """An argument without a default has choices, of which this was taken."""
+        """An argument without a default gets the first of its choices."""
         self.remark(
             msg(
                 "its argument {name} has no default: looked at with {value}, the first of its "
@@ -340,7 +341,7 @@ class LaunchRecord:
         """Where a file is, or the one that was meant.
 
         Raises:
-            NotKnownHere: it is of another package, of which nobody knows the files here.
+            NotKnown: it is of another package, of which nobody knows the files here.
         """
         if os.path.exists(wanted):
             return wanted
@@ -350,7 +351,7 @@ class LaunchRecord:
             return self.path(own)
         if wanted.startswith(f"{self._place.stubs}/"):
             name = self._place.shown(wanted)
-            raise NotKnownHere(it(msg("needs {name}, a file of another package", name=name)))
+            raise NotKnown(it(msg("needs {name}, a file of another package", name=name)))
         meant = self._place.meant(wanted)
         self.lack("file", wanted, meant)
         return meant or wanted
@@ -442,12 +443,7 @@ class LaunchRecord:
         from launch._core import walk
 
         read, before = self.path(path), self.context.locals_.get(_FILE, "")
-        if path.endswith(".py"):
-            description = _python(path, read)
-        else:
-            from ros_doubles import frontend
-
-            description = frontend.description(read)
+        description = frontend.description(path, read)
         self.context.locals_ |= {_FILE: path, "current_launch_file_path": path}
         walk(entities(description), self.context)
         self.context.locals_[_FILE] = before  # `ThisLaunchFile` stays, as in the original
@@ -455,8 +451,6 @@ class LaunchRecord:
     def filled(self, text: str) -> str:
         """A text with its substitutions, as in a launch file of XML."""
         from launch._core import perform_substitutions
-
-        from ros_doubles.frontend_substitutions import substitutions
 
         return str(perform_substitutions(self.context, substitutions(text)))
 
@@ -512,31 +506,6 @@ class LaunchRecord:
         """Something is named that is not there; `source` is where the file lies that was meant."""
         own = self._place.own(source) if source else ""
         self._add("lacking", Lacking(kind, name, own, ""))
-
-
-def _python(path: str, read: str) -> Any:
-    """The launch description of a launch file in Python."""
-    from launch.launch_description_sources import InvalidPythonLaunchFileError
-
-    with open(read, "rb") as file:  # as bytes: a byte order mark is no fault
-        code = compile(file.read(), read, "exec")
-    names: dict[str, Any] = {"__name__": "python_launch_file", "__file__": path}
-    exec(code, names)
-    function = names.get("generate_launch_description")
-    if function is None:
-        raise InvalidPythonLaunchFileError(
-            f"launch file at '{os.path.basename(path)}' does not contain the required function "
-            "'generate_launch_description()'"
-        )
-    made = function()
-    from launch import LaunchDescription
-
-    if not isinstance(made, LaunchDescription):
-        raise TypeError(
-            f"generate_launch_description() returned {type(made).__name__}; expected a "
-            "LaunchDescription"
-        )
-    return made
 
 
 def _end(text: str) -> str:

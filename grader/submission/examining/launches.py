@@ -17,10 +17,10 @@ from typing import Any, Final
 from grader.submission.examining.launch_record import SUFFIXES, LaunchRecord
 from grader.submission.examining.layout import DOUBLES, Installed, Workspace
 from grader.submission.examining.packages import is_description
-from grader.submission.examining.steps import NotKnownHere, in_folder, it, problem_of
+from grader.submission.examining.steps import in_folder, it, problem_of
 from grader.system import strict_json
 from grader.text.message import msg
-from ros_doubles import known
+from ros_doubles import NotKnown, known
 
 #: Packages of ROS that have doubles.
 DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
@@ -33,14 +33,12 @@ def evaluate(place: Workspace, of: Installed, file: str, given: Mapping[str, str
     Args:
         given: values of its arguments.
     """
-    prepare(place)
+    record = begin(place)
     from launch import LaunchContext
 
-    record = LaunchRecord(place)
     record.context = LaunchContext()
     record.context.record = record
     record.context.launch_configurations.update(given)
-    watch_files(record, place)
     installed = {source: path for path, source in of.files.items()}
     if file in installed:
         path = str(place.prefix / installed[file])
@@ -58,14 +56,21 @@ def evaluate(place: Workspace, of: Installed, file: str, given: Mapping[str, str
     return strict_json.to_json(record.evaluated(file, problem, *_asked(place)), strict_json.OURS)
 
 
-def prepare(place: Workspace) -> None:
-    """In the copy: stand where nobody's files are, and find the doubles first."""
+def begin(place: Workspace) -> LaunchRecord:
+    """In the copy: stand where nobody's files are, and find the doubles first.
+
+    Returns:
+        The record of what is evaluated from here on: it knows each file that is read.
+    """
     source = str(place.judged.package.folder)
     in_folder(str(place.empty), [str(DOUBLES), source], place.environment())
     place.asked.write_text("")
     for name in [name for name in sys.modules if name.partition(".")[0] in DOUBLED]:
         del sys.modules[name]  # ROS's own, that somebody has imported before
     sys.meta_path.insert(0, _Unknown(place))
+    record = LaunchRecord(place)
+    _watch_files(record, place)
+    return record
 
 
 def _asked(place: Workspace) -> tuple[list[str], list[str]]:
@@ -77,7 +82,7 @@ def _asked(place: Workspace) -> tuple[list[str], list[str]]:
     return [each for each in there if each not in ours][:_MOST], list(missing)[:_MOST]
 
 
-def watch_files(record: LaunchRecord, place: Workspace) -> None:
+def _watch_files(record: LaunchRecord, place: Workspace) -> None:
     """A file of the submission's that is read and is not there is the one that was meant."""
     real = io.open
 
@@ -123,5 +128,5 @@ class _Unknown:
             if (made := _core.submodule(name)) is not None:
                 return known.spec_of(made)
             what = msg("imports {name}, which the grader does not have", name=name)
-            raise NotKnownHere(it(what))
+            raise NotKnown(it(what))
         return known.module(name)

@@ -21,8 +21,8 @@ from grader.submission.examining.packages import SourcePackage
 from grader.submission.examining.setup_call import evaluate
 from grader.submission.examining.steps import Ended, attempt, it
 from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.package_trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
 from grader.submission.python_source import read_source
-from grader.submission.trace import EMPTY, PREFIX, ROS, InstalledScript, Obstacle, Setup
 from grader.text.message import NOTHING, Message, msg
 from ros_doubles import known
 

@@ -28,15 +28,15 @@ ROOT = Path(__file__).resolve().parents[3]
 if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
-from grader.submission import safe_files, trace  # noqa: E402
+from grader.submission import package_trace, safe_files  # noqa: E402
 from grader.submission.answer import Inspection, SetUp, SetUpFacts  # noqa: E402
 from grader.submission.examining import layout, leftovers, packages, setup_call  # noqa: E402
 from grader.submission.examining.examination import Examination  # noqa: E402
 from grader.submission.examining.layout import Installed, Workspace  # noqa: E402
 from grader.submission.examining.steps import Ended, attempt, open_account  # noqa: E402
 from grader.submission.folder import SETUP_FILES  # noqa: E402
+from grader.submission.package_trace import FAILED, PackageTrace  # noqa: E402
 from grader.submission.request import LaunchAsked  # noqa: E402
-from grader.submission.trace import FAILED, PackageTrace  # noqa: E402
 from grader.system import linux  # noqa: E402
 
 
@@ -57,7 +57,7 @@ def _main() -> None:
         root, leaves = Path(order.pop("root")), order.pop("leaves")
         for each in order.pop("added", ()):
             (root / each).unlink()
-        data = trace.encode(inspect(root, Path(scratch).resolve(), **order))
+        data = package_trace.encode(inspect(root, Path(scratch).resolve(), **order))
     with open(leaves, "wb") as left:
         left.write(data)
 
@@ -87,8 +87,34 @@ def inspect(
     """
     root = root.resolve()
     evaluated = tuple(_set_up(root, each) for each in set_ups)
-    asked = LaunchAsked(**launch)
-    look = partial(_look, root, scratch, evaluated, program, package, folder, inspectors, asked)
+
+    def look() -> Inspection:
+        """Lay out all packages, and examine the one that counts."""
+        open_account()
+        found = packages.find(root)
+        with suppress(ImportError):  # once, and not by each copy that runs it
+            import xacro  # noqa: F401
+        prefix = scratch / "prefix"
+        stubs, empty = scratch / "stubs", scratch / "empty"
+        declared = {name for each in found for name in each.depends}
+        layout.make_stubs(stubs, declared, {each.name for each in found})
+        (empty / "home").mkdir(parents=True)
+        known = {root / each.folder: (each.told, each.problem) for each in evaluated}
+        laid = {each.folder: layout.lay_out(each, root, prefix, known) for each in found}
+        set_ups = tuple(_with_installed(each, laid.get(root / each.folder)) for each in evaluated)
+        likely = max(set_ups, key=partial(_worth, program)).folder if set_ups else folder
+        one = packages.judged(found, package, (root / likely).resolve() if likely else None)
+        best = likely if set_ups else ""
+        if one is None:
+            return Inspection(set_ups, best)
+        judged, everything = laid[one.folder], tuple(laid.values())
+        place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
+        examination = Examination(place, scratch, LaunchAsked(**launch))
+        examine = [resolve_name(each).examine for each in inspectors or ()]
+        is_whole, chooses = inspectors is not None, bool(set_ups)
+        of_package = examination.trace(examine, is_whole=is_whole, chooses=chooses)
+        return Inspection(set_ups, best, of_package, examination.launches, examination.orders)
+
     try:
         return attempt(look)
     except Ended as ended:  # nothing that a step was made of: so much can be said
@@ -100,43 +126,6 @@ def _set_up(root: Path, folder: str) -> SetUp:
     if any(safe_files.is_file(root / folder / each) for each in SETUP_FILES):
         return SetUp(folder, *setup_call.evaluate(root / folder))
     return SetUp(folder)
-
-
-def _look(
-    root: Path,
-    scratch: Path,
-    set_ups: Sequence[SetUp],
-    program: str,
-    package: str,
-    folder: str,
-    inspectors: Sequence[str] | None,
-    launch: LaunchAsked,
-) -> Inspection:
-    """Lay out all packages, and examine the one that counts; see `inspect`."""
-    open_account()
-    found = packages.find(root)
-    with suppress(ImportError):  # once, and not by each copy that runs it
-        import xacro  # noqa: F401
-    prefix = scratch / "prefix"
-    stubs, empty = scratch / "stubs", scratch / "empty"
-    declared = {name for each in found for name in each.depends}
-    layout.make_stubs(stubs, declared, {each.name for each in found})
-    (empty / "home").mkdir(parents=True)
-    known = {root / each.folder: (each.told, each.problem) for each in set_ups}
-    laid = {each.folder: layout.lay_out(each, root, prefix, known) for each in found}
-    set_ups = tuple(_with_installed(each, laid.get(root / each.folder)) for each in set_ups)
-    likely = max(set_ups, key=partial(_worth, program)).folder if set_ups else folder
-    one = packages.judged(found, package, (root / likely).resolve() if likely else None)
-    best = likely if set_ups else ""
-    if one is None:
-        return Inspection(set_ups, best)
-    judged, everything = laid[one.folder], tuple(laid.values())
-    place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
-    examination = Examination(place, scratch, launch)
-    examine = [resolve_name(place).examine for place in inspectors or ()]
-    is_whole, chooses = inspectors is not None, bool(set_ups)
-    of_package = examination.trace(examine, is_whole=is_whole, chooses=chooses)
-    return Inspection(set_ups, best, of_package, examination.launches, examination.orders)
 
 
 def _with_installed(set_up: SetUp, laid: Installed | None) -> SetUp:

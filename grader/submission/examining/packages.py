@@ -38,7 +38,7 @@ class SourcePackage:
     Attributes:
         folder: where it lies.
         name: by its package.xml; '' where that tells none.
-        build_type, manifest, depends: see `grader.submission.trace.Setup`.
+        build_type, manifest, depends: see `grader.submission.package_trace.Setup`.
         files: all of it, relative to its folder, in their order.
     """
 

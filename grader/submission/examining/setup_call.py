@@ -20,7 +20,7 @@ from typing import Any, Final
 from grader.submission import safe_files
 from grader.submission.answer import DataFiles, SetUpFacts
 from grader.submission.examining.steps import NONSENSE, Ended, in_folder, it, step
-from grader.submission.trace import Obstacle
+from grader.submission.package_trace import Obstacle
 from grader.system import strict_json
 
 #: What a package may set for setuptools, which learns of these by entry points.

@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeVar
 
 from grader.submission.examining import leftovers
-from grader.submission.trace import Obstacle
+from grader.submission.package_trace import Obstacle
 from grader.system import limited, strict_json
 from grader.text.message import NOTHING, Message, msg
-from ros_doubles import NotKnown
+from ros_doubles import NotKnown, OfAnother
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
 LIMITS: Final = limited.WorkLimits(
@@ -35,19 +35,15 @@ _NO_END: Final = msg(
     wall=f"{LIMITS.wall_s:.0f}",
 )
 _LONGEST: Final = 400
+_NOT_KNOWN: Final = msg("uses {name}, which the grader does not know")
+#: ... of something that belongs to another package
+_NOT_HERE: Final = msg("uses {name}, which the grader does not have")
 NONSENSE: Final = msg("spoils what is taken down of it")
 #: Where an object lies in memory, which is another place each time.
 _ADDRESS: Final = re.compile(r"\bat 0x[0-9a-fA-F]+")
 #: Names a file of the package's own by its path; '' for others.
 Own = Callable[[str], str]
 Made = TypeVar("Made")
-
-
-class NotKnownHere(NotKnown):
-    """A package needs what nobody has here, which a message says: no fault of it."""
-
-    def __init__(self, message: Message) -> None:
-        Exception.__init__(self, message)
 
 
 class Ended(Exception):
@@ -87,36 +83,30 @@ class Account:
     def __init__(self, cpu_s: float = CPU_S) -> None:
         self._cpu_s = cpu_s
         self._before_s = _children_cpu_s()
-        self.idle_s = 0.0
+        self._idle_s = 0.0
 
     @property
     def why_closed(self) -> Message:
         """Why there is to be no further step; nothing where there may be one."""
         used_s = _children_cpu_s() - self._before_s
-        is_spent = used_s > self._cpu_s or self.idle_s > IDLE_S
-        if not is_spent:
+        if used_s <= self._cpu_s and self._idle_s <= IDLE_S:
             return NOTHING
         return _SPENT.given(cpu=f"{self._cpu_s:.0f}", idle=f"{IDLE_S:.0f}")
 
+    def watch(self) -> Callable[[], bool]:
+        """Return whether the step that begins now waits in vain; ask about twice a second."""
+        before_s, before_used_s, before_idle_s = time.monotonic(), 0.0, self._idle_s
 
-class Watch:
-    """Looks at a step now and then, and tells whether it waits in vain."""
+        def is_stalled() -> bool:
+            nonlocal before_s, before_used_s
+            ticks, wants_more = leftovers.used()
+            used_s, now_s = ticks / os.sysconf("SC_CLK_TCK"), time.monotonic()
+            if not wants_more:
+                self._idle_s += max(0.0, now_s - before_s - max(0.0, used_s - before_used_s))
+            before_used_s, before_s = used_s, now_s
+            return self._idle_s - before_idle_s > STEP_IDLE_S
 
-    def __init__(self, account: Account) -> None:
-        self._account = account
-        self._idle_s = self._used_s = 0.0
-        self._looked_s = time.monotonic()
-
-    def is_stalled(self) -> bool:
-        """Whether the step has been idle for too long; ask about twice a second."""
-        ticks, wants_more = leftovers.used()
-        used_s, now_s = ticks / os.sysconf("SC_CLK_TCK"), time.monotonic()
-        if not wants_more:
-            idle_s = max(0.0, now_s - self._looked_s - max(0.0, used_s - self._used_s))
-            self._idle_s += idle_s
-            self._account.idle_s += idle_s
-        self._used_s, self._looked_s = used_s, now_s
-        return self._idle_s > STEP_IDLE_S
+        return is_stalled
 
 
 def _children_cpu_s() -> float:
@@ -158,7 +148,7 @@ def step(work: Callable[[], Any], own: Own) -> Any:
     if _account.why_closed:
         raise Ended.by_limit(_account.why_closed)
     try:
-        answered = _read(limited.call(answer, LIMITS, Watch(_account).is_stalled))
+        answered = _read(limited.call(answer, LIMITS, _account.watch()))
     except limited.NoEnd as hit:
         raise Ended.by_limit(hit.why if isinstance(hit, limited.Stalled) else _NO_END) from None
     except limited.LimitHit as hit:
@@ -175,7 +165,7 @@ def step(work: Callable[[], Any], own: Own) -> Any:
     return answered[0]
 
 
-def attempt(work: Callable[[], Made], file: str = "", line: int = 0) -> Made:
+def attempt(work: Callable[[], Made], file: str = "") -> Made:
     """What a function of ours returns that reads what was handed in.
 
     Its failure is a finding of the file, and nobody's exit: other steps go on.
@@ -194,7 +184,7 @@ def attempt(work: Callable[[], Made], file: str = "", line: int = 0) -> Made:
         if isinstance(error, OSError):
             why = str(error.strerror)
         what = msg("cannot be read ({error})", error=why)
-        raise Ended(Obstacle("unknown", it(what), file, line)) from error
+        raise Ended(Obstacle("unknown", it(what), file)) from error
 
 
 def _read(answer: bytes) -> Obstacle | tuple[Any]:
@@ -233,13 +223,11 @@ def problem_of(error: BaseException, own: Own) -> Obstacle:
     file, line = next((each for each in reversed(frames) if each[0]), ("", 0))
     if isinstance(error, SyntaxError) and error.filename and own(error.filename):
         file, line = own(error.filename), error.lineno or 0
-    if isinstance(error, NotKnownHere):
-        return Obstacle(kind, Message.of(error), file, line)
     if isinstance(error, NotKnown):
-        what = msg("uses {name}, which the grader does not know", name=str(error))
-        if error.is_of_others:
-            what = msg("uses {name}, which the grader does not have", name=str(error))
-        return Obstacle(kind, it(what), file, line)
+        what = error.args[0]
+        if not isinstance(what, Message):
+            what = it((_NOT_HERE if isinstance(error, OfAnother) else _NOT_KNOWN).given(name=what))
+        return Obstacle(kind, what, file, line)
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     raised = f"{type(error).__name__}: {' '.join(words.split())}"
     text = start_of(_ADDRESS.sub("at 0x...", raised), _LONGEST)

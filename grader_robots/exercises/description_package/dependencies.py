@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from grader import Checks, Finding, Tolerances
-from grader.submission import NamedMesh, shown
+from grader.submission import package_trace, shown
 from grader.text import Message, joined, msg
 from grader_robots.exercises.description_package import robots
 from grader_robots.exercises.description_package.facts import (
@@ -82,7 +82,7 @@ def meshes(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     return Finding(1 - len(wrong) / len(meshes), text, help)
 
 
-def _instead(facts: PackageFacts, mesh: NamedMesh) -> Message:
+def _instead(facts: PackageFacts, mesh: package_trace.NamedMesh) -> Message:
     """Of a mesh that is not there: and where a file of the same name is installed."""
     name = mesh.path.rsplit("/", 1)[-1]
     share = f"share/{facts.name}/"

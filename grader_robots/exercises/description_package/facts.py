@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from grader import Finding, Recordings, Tolerances
 from grader.exercise import UNKNOWN, not_judged
-from grader.submission import Description, LaunchedNode, LaunchFile, PackageTrace, Setup
+from grader.submission import package_trace
 from grader.text import Message, msg
 from ros_doubles.known import SIMULATORS
 
@@ -34,13 +34,13 @@ class PackageFault(NamedTuple):
 class PackageFacts:
     """A package that was inspected."""
 
-    trace: PackageTrace
-    setup: Setup
+    trace: package_trace.PackageTrace
+    setup: package_trace.Setup
 
     @classmethod
     def of(cls, trace: object) -> PackageFacts | None:
         """The facts in the trace of an inspection; None where it found no package."""
-        found = PackageTrace.of(trace)
+        found = package_trace.PackageTrace.of(trace)
         return None if found.setup is None else cls(found, found.setup)
 
     @property
@@ -49,17 +49,17 @@ class PackageFacts:
         return self.setup.name
 
     @property
-    def launches(self) -> Sequence[LaunchFile]:
+    def launches(self) -> Sequence[package_trace.LaunchFile]:
         return self.trace.launches
 
     @property
-    def descriptions(self) -> list[Description]:
+    def descriptions(self) -> list[package_trace.Description]:
         """Those that a launch file hands on; where none does, those of the package's files."""
         every = self.trace.descriptions
         return [each for each in every if each.is_launched] or list(every)
 
     @property
-    def for_rviz(self) -> list[LaunchFile]:
+    def for_rviz(self) -> list[package_trace.LaunchFile]:
         """The launch files that do more than put the robot into Gazebo."""
         return [
             each
@@ -82,11 +82,11 @@ class PackageFacts:
         return not any(e.problem or e.nodes or e.includes or e.processes for e in self.launches)
 
 
-def is_rviz(node: LaunchedNode) -> bool:
+def is_rviz(node: package_trace.LaunchedNode) -> bool:
     return "rviz2" in (node.package, node.executable)
 
 
-def includes_simulator(launch: LaunchFile) -> bool:
+def includes_simulator(launch: package_trace.LaunchFile) -> bool:
     """A simulator publishes the joints of what it simulates."""
     included = any(each.package in SIMULATORS for each in launch.includes)
     return included or any(each.startswith(_SIMULATORS) for each in launch.processes)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from posixpath import dirname
 
 from grader import Checks, Finding, Tolerances
-from grader.submission import EMPTY, Lacking, LaunchFile, Obstacle, how_it_ends, shown
+from grader.submission import package_trace, shown
 from grader.text import Message, joined, msg
 from grader_robots.exercises.description_package.facts import (
     PackageFacts,
@@ -19,7 +19,7 @@ checks = Checks()
 #: One thing missing leaves so much; two leave nothing.
 ONE_MISSING = 0.5
 #: The current folder of who launches, in the paths of a trace.
-_EMPTY = f"{EMPTY}/"
+_EMPTY = f"{package_trace.EMPTY}/"
 #: Where no launch file shows the robot.
 WRITE = msg(
     "Write launch/display.launch.py: it starts robot_state_publisher with the description, "
@@ -122,7 +122,7 @@ def stops(facts: PackageFacts) -> PackageFault | None:
     return None
 
 
-def _ended(facts: PackageFacts, problem: Obstacle) -> PackageFault:
+def _ended(facts: PackageFacts, problem: package_trace.Obstacle) -> PackageFault:
     """Of a set-up that comes to no end, or is not there."""
     if problem.text.key == "there is no {file}":
         return PackageFault(
@@ -138,7 +138,7 @@ def _ended(facts: PackageFacts, problem: Obstacle) -> PackageFault:
         "set-up",
         msg(
             "{what_happens}: {build}.",
-            what_happens=how_it_ends("setup.py", problem),
+            what_happens=problem.ends("setup.py"),
             build=_BUILD,
         ),
         msg("Run `python3 setup.py --name` in the package's folder: it shows the same."),
@@ -160,11 +160,11 @@ def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
                 yield _left(facts, msg("The description"), shown(mesh.uri), mesh.path)
 
 
-def _is_installed(launch: LaunchFile) -> bool:
+def _is_installed(launch: package_trace.LaunchFile) -> bool:
     return not any(each.kind == "file" and each.source == launch.file for each in launch.lacking)
 
 
-def moved(launch: LaunchFile) -> PackageFault:
+def moved(launch: package_trace.LaunchFile) -> PackageFault:
     """Of a path that is another where the package is installed in another place."""
     rationale = msg(
         "{file} asks for {path}, which is there only as long as the package "
@@ -175,7 +175,7 @@ def moved(launch: LaunchFile) -> PackageFault:
     return PackageFault(launch.moved, rationale, _SHARE)
 
 
-def lacking(facts: PackageFacts, lacks: Lacking) -> PackageFault:
+def lacking(facts: PackageFacts, lacks: package_trace.Lacking) -> PackageFault:
     """Of what a launch file names, and is not there."""
     of_kind = {"file": _file, "package": _package}.get(lacks.kind, _program)
     by: str | Message = lacks.by
@@ -184,7 +184,7 @@ def lacking(facts: PackageFacts, lacks: Lacking) -> PackageFault:
     return of_kind(facts, lacks, by)
 
 
-def _file(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageFault:
+def _file(facts: PackageFacts, lacks: package_trace.Lacking, by: str | Message) -> PackageFault:
     name, source = lacks.name, lacks.source
     if source == lacks.by:
         rationale = msg(
@@ -213,7 +213,7 @@ def _file(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageFaul
     return PackageFault(name, rationale, _COMPARE)
 
 
-def _package(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageFault:
+def _package(facts: PackageFacts, lacks: package_trace.Lacking, by: str | Message) -> PackageFault:
     return PackageFault(
         f"package {lacks.name}",
         msg(
@@ -229,7 +229,7 @@ def _package(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageF
     )
 
 
-def _program(facts: PackageFacts, lacks: Lacking, by: str | Message) -> PackageFault:
+def _program(facts: PackageFacts, lacks: package_trace.Lacking, by: str | Message) -> PackageFault:
     package, _, program = lacks.name.partition(" ")
     values = {"by": by, "program": shown(program), "package": package}
     if package != facts.name:

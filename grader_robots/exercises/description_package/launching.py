@@ -8,16 +8,7 @@ from dataclasses import replace
 
 from grader import Checks, Finding, Tolerances
 from grader.exercise import unless_unknown
-from grader.submission import (
-    EMPTY,
-    Lacking,
-    LaunchedNode,
-    LaunchFile,
-    Obstacle,
-    advice,
-    how_it_ends,
-    shown,
-)
+from grader.submission import advice, package_trace, shown
 from grader.text import joined, msg
 from grader_robots.exercises.description_package import installing
 from grader_robots.exercises.description_package.facts import (
@@ -87,7 +78,7 @@ def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     return finding
 
 
-def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
+def _judge(facts: PackageFacts, launch: package_trace.LaunchFile) -> Finding:
     if (stopped := starts_nothing(facts, launch)) is not None:
         return stopped
     for text in filter(str.strip, handed_on(facts, launch)):
@@ -100,7 +91,7 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
     return Finding(1, said.given(best=launch.file, publisher=PUBLISHER))
 
 
-def starts_nothing(facts: PackageFacts, launch: LaunchFile) -> Finding | None:
+def starts_nothing(facts: PackageFacts, launch: package_trace.LaunchFile) -> Finding | None:
     """Of a launch file with which `ros2 launch` ends with an error; None where it does not."""
     if _ends_early(launch):
         assert launch.problem is not None
@@ -111,12 +102,12 @@ def starts_nothing(facts: PackageFacts, launch: LaunchFile) -> Finding | None:
     return Finding(0, joined([fault.rationale, consequence], " "), fault.help)
 
 
-def _ends_early(launch: LaunchFile) -> bool:
+def _ends_early(launch: package_trace.LaunchFile) -> bool:
     """Whether it ends with an error of its own."""
     return launch.problem is not None and launch.problem.kind in ("error", "limit")
 
 
-def not_started(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
+def not_started(facts: PackageFacts, launch: package_trace.LaunchFile) -> PackageFault | None:
     """What `ros2 launch` ends with for want of something that it needs; None where all is there."""
     if (stop := installing.stops(facts)) is not None:
         return stop
@@ -136,7 +127,9 @@ def not_started(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
     return None
 
 
-def _is_handed_on(facts: PackageFacts, launch: LaunchFile, lacks: Lacking) -> bool:
+def _is_handed_on(
+    facts: PackageFacts, launch: package_trace.LaunchFile, lacks: package_trace.Lacking
+) -> bool:
     """Whether a file that is not there is only named to a program, which starts all the same."""
     sources = {each.source for each in facts.trace.descriptions}
     if lacks.kind != "file" or (lacks.source and lacks.source in sources):
@@ -144,12 +137,12 @@ def _is_handed_on(facts: PackageFacts, launch: LaunchFile, lacks: Lacking) -> bo
     words = [*launch.processes]
     for node in launch.nodes:
         words += [*node.arguments, *(each.value for each in node.parameters)]
-    return any(lacks.name.removeprefix(f"{EMPTY}/") in word for word in words)
+    return any(lacks.name.removeprefix(f"{package_trace.EMPTY}/") in word for word in words)
 
 
-def ends(file: str, problem: Obstacle) -> Finding:
+def ends(file: str, problem: package_trace.Obstacle) -> Finding:
     """Of a launch file that comes to no end."""
-    rationale = msg("{what_happens}.", what_happens=how_it_ends(file, problem))
+    rationale = msg("{what_happens}.", what_happens=problem.ends(file))
     return Finding(0, rationale, advice(str(problem.text)))
 
 
@@ -162,7 +155,7 @@ def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float
     return Finding(share, rationale, faults[0].help)
 
 
-def _lacking(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
+def _lacking(facts: PackageFacts, launch: package_trace.LaunchFile) -> Iterator[PackageFault]:
     """What of the three parts a launch file does not have."""
     if not refused(facts, launch) and (undescribed := no_description(facts, launch)):
         yield undescribed
@@ -179,17 +172,17 @@ def _lacking(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
         yield rviz
 
 
-def is_publisher(node: LaunchedNode) -> bool:
+def is_publisher(node: package_trace.LaunchedNode) -> bool:
     """Whether a node is a robot_state_publisher."""
     return PUBLISHER in (node.package, node.executable)
 
 
-def handed_on(facts: PackageFacts, launch: LaunchFile) -> list[str]:
+def handed_on(facts: PackageFacts, launch: package_trace.LaunchFile) -> list[str]:
     nodes = filter(is_publisher, launch.nodes)
     return [facts.text(p.text) for n in nodes for p in n.parameters if p.name == DESCRIPTION]
 
 
-def refused(facts: PackageFacts, launch: LaunchFile) -> Obstacle | None:
+def refused(facts: PackageFacts, launch: package_trace.LaunchFile) -> package_trace.Obstacle | None:
     """Why xacro makes no description of the file that would be handed on."""
     problems = (each.problem for each in facts.descriptions if each.by == launch.file)
     return next((each for each in problems if each is not None), None)
@@ -208,7 +201,7 @@ def moves(facts: PackageFacts, texts: list[str]) -> bool:
     return not texts
 
 
-def is_joint_source(facts: PackageFacts, node: LaunchedNode) -> bool:
+def is_joint_source(facts: PackageFacts, node: package_trace.LaunchedNode) -> bool:
     """Whether a node publishes joint states, as far as one can see."""
     if node.package in JOINT_SOURCES:
         return True
@@ -221,7 +214,7 @@ def is_joint_source(facts: PackageFacts, node: LaunchedNode) -> bool:
     return is_another_s or node.package in facts.trace.others
 
 
-def _not_followed(launch: LaunchFile) -> str:
+def _not_followed(launch: package_trace.LaunchFile) -> str:
     """A launch file of another package of which it is not known what it starts; '' for none."""
     for each in launch.includes:
         if each.file not in FILES.get(each.package, ()) and not each.file.endswith("()"):
@@ -229,7 +222,7 @@ def _not_followed(launch: LaunchFile) -> str:
     return ""
 
 
-def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
+def no_description(facts: PackageFacts, launch: package_trace.LaunchFile) -> PackageFault | None:
     """Of a launch file in which no robot_state_publisher gets a text; None where one does."""
     publishers = [node for node in launch.nodes if is_publisher(node)]
     if not publishers:
@@ -251,7 +244,7 @@ def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | No
     return PackageFault("description", rationale, help)
 
 
-def _rviz(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
+def _rviz(facts: PackageFacts, launch: package_trace.LaunchFile) -> PackageFault | None:
     started = [node for node in launch.nodes if is_rviz(node)]
     missing = [each.name for each in launch.lacking]
     if any(_has_file(node, missing) for node in started):
@@ -279,9 +272,9 @@ def _rviz(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
     )
 
 
-def _has_file(node: LaunchedNode, missing: Sequence[str]) -> bool:
+def _has_file(node: package_trace.LaunchedNode, missing: Sequence[str]) -> bool:
     words = [word for each in node.arguments for word in each.replace("=", " ", 1).split()]
     at = next((n for n, w in enumerate(words) if w in ("-d", "--display-config")), len(words))
     return len(words) > at + 1 and not any(
-        words[at + 1] in (each, each.removeprefix(f"{EMPTY}/")) for each in missing
+        words[at + 1] in (each, each.removeprefix(f"{package_trace.EMPTY}/")) for each in missing
     )

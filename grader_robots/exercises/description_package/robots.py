@@ -10,7 +10,7 @@ from typing import Final
 
 from grader import Checks, Finding, Tolerances
 from grader.exercise import unless_unknown
-from grader.submission import Description, shown
+from grader.submission import package_trace, shown
 from grader.text import NOTHING, Message, msg
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,
@@ -64,7 +64,7 @@ def urdf(facts: PackageFacts, tolerances: Tolerances) -> Finding:
     )
 
 
-def of_description(facts: PackageFacts, description: Description) -> Finding:
+def of_description(facts: PackageFacts, description: package_trace.Description) -> Finding:
     """What a description is worth; no share where robot_state_publisher takes none."""
     where = description.source or description.by or msg("the robot of its files")
     text = facts.text(description.text)
@@ -79,7 +79,7 @@ def of_description(facts: PackageFacts, description: Description) -> Finding:
     return of_text(where, text)
 
 
-def readable(facts: PackageFacts) -> list[Description]:
+def readable(facts: PackageFacts) -> list[package_trace.Description]:
     """The descriptions that robot_state_publisher takes for a robot."""
     return [each for each in facts.descriptions if of_description(facts, each).share]
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from grader import Checks, Finding, Tolerances
 from grader.exercise import unless_unknown
-from grader.submission import LaunchedNode, LaunchFile, shown
+from grader.submission import package_trace, shown
 from grader.text import Message, msg
 from grader_robots.exercises.description_package.facts import (
     NO_FAULT,
@@ -32,7 +32,7 @@ _PLACES = ("-x", "-y", "-z", "-R", "-P", "-Y", "-timeout", "-spawn_service_timeo
 _TAKES_NOTHING = ("-stdin", "-unpause", "-b", "-package_to_model", "-allow_renaming")
 
 
-def spawners(launch: LaunchFile) -> list[LaunchedNode]:
+def spawners(launch: package_trace.LaunchFile) -> list[package_trace.LaunchedNode]:
     """The nodes that put a model into a world."""
     packages = ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo")
     return [
@@ -82,18 +82,20 @@ def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
     return Finding(1, msg("{file} puts the robot into Gazebo.", file=launches[0].file))
 
 
-def _stopped(facts: PackageFacts, launches: Sequence[LaunchFile]) -> Finding | None:
+def _stopped(facts: PackageFacts, launches: Sequence[package_trace.LaunchFile]) -> Finding | None:
     """The first of some launch files with which `ros2 launch` ends with an error."""
     found = (starts_nothing(facts, each) for each in launches)
     return next((each for each in found if each is not None), None)
 
 
-def includes_spawner(launch: LaunchFile) -> bool:
+def includes_spawner(launch: package_trace.LaunchFile) -> bool:
     """Whether a launch file leaves that to one of ros_gz_sim."""
     return any(each.file.endswith("gz_spawn_model.launch.py") for each in launch.includes)
 
 
-def _faults(facts: PackageFacts, launch: LaunchFile, node: LaunchedNode) -> Iterator[Message]:
+def _faults(
+    facts: PackageFacts, launch: package_trace.LaunchFile, node: package_trace.LaunchedNode
+) -> Iterator[Message]:
     sources, needed = PROGRAMS[node.executable]
     received = _given(node)
     if None in received:
@@ -127,7 +129,7 @@ def _faults(facts: PackageFacts, launch: LaunchFile, node: LaunchedNode) -> Iter
             )
 
 
-def _given(node: LaunchedNode) -> dict[str | None, str]:
+def _given(node: package_trace.LaunchedNode) -> dict[str | None, str]:
     """Option -> value; None: what is no option."""
     words = [word for each in node.arguments for word in each.split()]
     if "--ros-args" in words:
@@ -160,7 +162,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _is_published(launch: LaunchFile) -> bool:
+def _is_published(launch: package_trace.LaunchFile) -> bool:
     return any(
         is_publisher(node) and any(p.name == DESCRIPTION for p in node.parameters)
         for node in launch.nodes

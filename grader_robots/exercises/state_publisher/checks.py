@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grader import Checks, Finding, Recordings, Tolerances
 from grader.exercise import unless_unknown
-from grader.submission import PREFIX, LaunchedNode, LaunchFile, described, shown
+from grader.submission import package_trace, shown
 from grader.text import NOTHING, Message, joined, msg
 from grader_robots.exercises.description_package import installing, launching
 from grader_robots.exercises.description_package.facts import (
@@ -110,7 +110,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     return unless_unknown(facts.trace, best)
 
 
-def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
+def _judge(facts: PackageFacts, launch: package_trace.LaunchFile) -> Finding:
     if launch.problem is not None:
         return launching.ends(launch.file, launch.problem)
     stopped = launching.starts_nothing(facts, launch)
@@ -122,7 +122,7 @@ def _judge(facts: PackageFacts, launch: LaunchFile) -> Finding:
     )
 
 
-def _faults(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
+def _faults(facts: PackageFacts, launch: package_trace.LaunchFile) -> Iterator[PackageFault]:
     """What is wrong with the description, one's own node, and the files that it asks for."""
     texts = launching.handed_on(facts, launch)
     starts_publisher = any(map(launching.is_publisher, launch.nodes))
@@ -147,10 +147,12 @@ def _faults(facts: PackageFacts, launch: LaunchFile) -> Iterator[PackageFault]:
     yield from (fault._replace(what="places") for fault in asked[:1])
 
 
-def _undescribed(facts: PackageFacts, launch: LaunchFile, texts: list[str]) -> PackageFault:
+def _undescribed(
+    facts: PackageFacts, launch: package_trace.LaunchFile, texts: list[str]
+) -> PackageFault:
     """Why what robot_state_publisher gets is no URDF."""
     if why := launching.refused(facts, launch):
-        text = msg("{program} gets no description: {why}.", program=PUBLISHER, why=described(why))
+        text = msg("{program} gets no description: {why}.", program=PUBLISHER, why=why.described)
         return PackageFault("description", text, _TWO_NODES)
     if fault := launching.no_description(facts, launch):
         return fault
@@ -158,12 +160,12 @@ def _undescribed(facts: PackageFacts, launch: LaunchFile, texts: list[str]) -> P
     text = msg(
         "{parameter} has to be the text of the URDF, and is {what}.",
         parameter=DESCRIPTION,
-        what=repr(shown(found.removeprefix(f"{PREFIX}/"))[:60]),
+        what=repr(shown(found.removeprefix(f"{package_trace.PREFIX}/"))[:60]),
     )
     return PackageFault("description", text, _TWO_NODES)
 
 
-def _without_node(facts: PackageFacts, launch: LaunchFile) -> Message:
+def _without_node(facts: PackageFacts, launch: package_trace.LaunchFile) -> Message:
     """Why a launch file does not start one's own node alone; '' where it does."""
     others = [node.executable for node in launch.nodes if node.executable in JOINT_SOURCES]
     if others:
@@ -179,7 +181,7 @@ def _without_node(facts: PackageFacts, launch: LaunchFile) -> Message:
     return next(meant, msg("it does not start your node."))
 
 
-def _meant(node: LaunchedNode, name: str, programs: set[str]) -> Message:
+def _meant(node: package_trace.LaunchedNode, name: str, programs: set[str]) -> Message:
     """What is wrong with a node that is meant to be one's own."""
     if node.executable in programs:
         return msg(

@@ -7,7 +7,7 @@ from grader.exercise.verdict import Finding
 from grader.exercises.talker_listener.checks import launch
 from grader.recording.recording import Recording, Recordings, Run
 from grader.scenes.cast.trace import CastTrace
-from grader.submission.trace import LaunchFile, Obstacle, PackageTrace
+from grader.submission.package_trace import LaunchFile, Obstacle, PackageTrace
 from grader.text.message import msg
 from tests.files import lay
 from tests.inspecting import inspected

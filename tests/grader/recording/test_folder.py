@@ -19,7 +19,7 @@ from grader.recording.recording import OwnInterfaces, Provenance, Recordings
 from grader.recording.saving import BAG, FILES, OUTPUT, RUN, SCHEMA
 from grader.recording.saving import CIRCUMSTANCES_FILE as CIRCUMSTANCES
 from grader.scenes.turtlesim.trace import Log
-from grader.submission.trace import PackageTrace
+from grader.submission.package_trace import PackageTrace
 from grader.system import content
 from grader.system.strict_json import to_json
 from grader.text.message import msg

@@ -12,10 +12,10 @@ from grader.run.handover import Plan
 from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
 from grader.submission.answer import Inspection, decode
+from grader.submission.package_trace import encode
 from grader.submission.program import EntryPoint, Script
 from grader.submission.request import Request
 from grader.submission.start import Submission
-from grader.submission.trace import encode
 from tests.files import lay
 from tests.grader.submission.test_entry_points import SETUP, package
 from tests.tiers import others_are_more

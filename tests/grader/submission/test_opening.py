@@ -8,10 +8,10 @@ import pytest
 
 from grader.errors import UsageError
 from grader.run.opening import open_submission
-from grader.submission import unpacking
+from grader.submission import opened
 from grader.submission.folder import HAND_IN
 from grader.submission.program import EntryPoint, Script
-from grader.submission.safe_members import ArchiveLimits, Budget
+from grader.submission.safe_members import Budget
 from tests.files import lay, packed
 from tests.grader.submission.copies import GUARDED, NODE, below, found_in, refused
 
@@ -176,8 +176,8 @@ def test_archives_are_unpacked_three_levels_deep_and_no_further(tmp_path):
 
 
 def test_a_bomb_in_a_zip_is_stopped(tmp_path, monkeypatch):
-    small = Budget(ArchiveLimits(1_000_000))
-    monkeypatch.setattr(unpacking, "Budget", lambda: small)
+    small = Budget(1_000_000)
+    monkeypatch.setattr(opened, "Budget", lambda: small)
     for size, said in ((100_000, "no Python file"), (1_100_000, "b.zip holds more than 1 MB")):
         inside = packed({"zeros": bytes(size)})
         (tmp_path / "a.zip").write_bytes(packed({"b.zip": inside}))

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from grader.judging import judge
-from grader.submission.trace import LaunchFile, Obstacle
+from grader.submission.package_trace import LaunchFile, Obstacle
 from grader.text.message import msg
 from tests.grader_robots.packages import (
     EXERCISE,

@@ -9,7 +9,7 @@ import pytest
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings
-from grader.submission.trace import (
+from grader.submission.package_trace import (
     Include,
     InstalledScript,
     Lacking,

@@ -1,6 +1,6 @@
 """What is of other packages is told apart: known, unknown, and ours under a wrong name."""
 
-from grader.submission.trace import Include
+from grader.submission.package_trace import Include
 from tests.grader_robots.inspection.test_launches import each_launched, started
 
 MODEL = "walker.urdf.xacro"

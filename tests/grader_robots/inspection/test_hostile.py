@@ -22,7 +22,7 @@ from grader.submission.examining.steps import (
     start_of,
     step,
 )
-from grader.submission.trace import FAILED, PackageTrace, decode, encode
+from grader.submission.package_trace import FAILED, PackageTrace, decode, encode
 from grader.system.strict_json import from_json
 from grader_robots.inspection import meshes
 from tests.grader_robots.packages import INSPECTORS, REFERENCE, looked_at, written

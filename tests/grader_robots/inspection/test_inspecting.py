@@ -11,7 +11,7 @@ from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
 from grader.run import inspecting
 from grader.run.processes import levels, network
-from grader.submission.trace import FAILED
+from grader.submission.package_trace import FAILED
 from grader.system import scratch
 from tests import archive, runs
 from tests.grader.run.test_opening import TEXTS

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from grader.submission.trace import LaunchFile, PackageTrace
+from grader.submission.package_trace import LaunchFile, PackageTrace
 from tests.grader_robots.packages import looked_at, written
 
 FILE = "launch/display.launch.py"

@@ -12,7 +12,7 @@ from grader.errors import SubmissionError
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.submission.examining.steps import Ended, attempt
-from grader.submission.trace import decode, encode
+from grader.submission.package_trace import decode, encode
 from tests.conftest import CASES
 from tests.grader_robots.mangled import OUTSIDE, SAYS, Change, Mangled, packages
 from tests.grader_robots.packages import looked_at, recorded
@@ -62,7 +62,7 @@ def test_a_mangled_package_that_is_handed_in_is_no_failure_of_the_grader(package
 
 def test_a_failure_of_ours_at_a_file_is_a_finding_of_that_file():
     with pytest.raises(Ended) as ended:
-        attempt(lambda: {}["a"], "CMakeLists.txt", 4)
+        attempt(lambda: {}["a"], "CMakeLists.txt")
     problem = ended.value.problem
-    assert (problem.kind, problem.file, problem.line) == ("unknown", "CMakeLists.txt", 4)
+    assert (problem.kind, problem.file) == ("unknown", "CMakeLists.txt")
     assert OURS.search(str(problem.text))

@@ -8,7 +8,13 @@ import pytest
 from grader.recording.recording import Recording, Recordings, Run
 from grader.reports import read as read_report
 from grader.reports.page import html
-from grader.submission.trace import Description, LaunchedNode, LaunchFile, PackageTrace, Parameter
+from grader.submission.package_trace import (
+    Description,
+    LaunchedNode,
+    LaunchFile,
+    PackageTrace,
+    Parameter,
+)
 from grader_class.gradebook.feedback import Feedback
 from grader_class.page.thumb import THUMB, Thumb, thumb
 from grader_class.reports import gradescope

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from grader.submission.package_trace import Description, NamedMesh, PackageTrace, decode, encode
 from grader.submission.subject import PACKAGE
-from grader.submission.trace import Description, NamedMesh, PackageTrace, decode, encode
 from grader_robots.scene import described
 
 URI = "package://a/meshes/b.stl"

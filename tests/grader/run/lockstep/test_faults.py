@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from grader.run.lockstep import faults
-from grader.run.lockstep.registry import EndpointRegistry
+from grader.run.lockstep.matching import EndpointRegistry
 from grader.text.message import Message
 
 
@@ -24,7 +24,7 @@ def break_ours() -> None:
 def test_an_exception_in_our_code_is_ours():
     # a reader without anything in it
     assert faults.whose(raised(EndpointRegistry.remove, None, [object()])).startswith(
-        "AttributeError in registry.py, line "
+        "AttributeError in matching.py, line "
     )
 
 
@@ -61,7 +61,7 @@ def test_a_fault_is_reported_before_the_program_can_catch_it(monkeypatch):
     raised(Registry(lambda: 0).remove, None)
     raised(faults.guarded(faults.pass_on), int, "x")
     assert [str(line).rpartition(" ")[0] for line in told] == [
-        "virtual time itself failed (TypeError in registry.py, line"
+        "virtual time itself failed (TypeError in matching.py, line"
     ]
 
 

@@ -1,8 +1,8 @@
 import pytest
 from rclpy.qos import QoSProfile
 
+from grader.run.lockstep.matching import Writer
 from grader.run.lockstep.protocol import SHIFT, EndpointInfo, Table
-from grader.run.lockstep.registry import Writer
 from grader.run.simulator.endpoints import MOST_ENDPOINTS, SimulatorEndpoints
 
 TALKS = EndpointInfo("/a", "topic /chatter", "std_msgs/msg/String", True, id=1 << SHIFT | 1)

@@ -5,14 +5,15 @@ import io
 import stat
 import tarfile
 import zipfile
+from dataclasses import replace
 
 import pytest
 
 from grader.errors import SubmissionError
-from grader.submission.archive import unpack
-from grader.submission.safe_members import ArchiveLimits, Budget
+from grader.submission.safe_members import Budget
+from grader.submission.unpacking import unpack
 
-LIMITS = ArchiveLimits()
+LIMITS = Budget()
 
 
 def zipped(*members, data="x", method=zipfile.ZIP_DEFLATED):
@@ -49,7 +50,7 @@ def unpacked(folder, name, data, limits=LIMITS):
     into = folder / "unpacked"
     into.mkdir()
     (folder / name).write_bytes(data)
-    unpack(folder / name, into, Budget(limits))
+    unpack(folder / name, into, replace(limits))
     return {str(path.relative_to(into)) for path in into.rglob("*") if path.is_file()}
 
 
@@ -177,32 +178,32 @@ def test_what_is_no_plain_archive_of_files_is_refused(tmp_path, name, data, word
     ("name", "data", "limits", "words"),
     [
         (
-            *("a.zip", zipped("a", "b", "c"), ArchiveLimits(most_files=2)),
+            *("a.zip", zipped("a", "b", "c"), Budget(most_files=2)),
             "a.zip holds 3 files; the limit for a submission is 2",
         ),
         (
-            *("a.zip", zipped("a", "b", "c", data="0" * 400_000), ArchiveLimits(1_000_000)),
+            *("a.zip", zipped("a", "b", "c", data="0" * 400_000), Budget(1_000_000)),
             "a.zip holds more than 1 MB",
         ),
         (
-            *("a.zip", zipped("a"), ArchiveLimits(10)),
+            *("a.zip", zipped("a"), Budget(10)),
             "a.zip holds more than 1e-05 MB, the limit for a submission",
         ),
         (
             "a.tgz",
             tarred("a", "b", "c", data=b"0" * 400_000, mode="w:gz"),
-            ArchiveLimits(1_000_000),
+            Budget(1_000_000),
             "a.tgz holds more than 1 MB",
         ),
         (
-            *("a.tgz", gzip.compress(bytes(200_000)), ArchiveLimits(100_000)),
+            *("a.tgz", gzip.compress(bytes(200_000)), Budget(100_000)),
             "a.tgz holds more than 0.1 MB",
         ),
         (
             *("a.tar", tarred(other("a.py", comment="x" * 200_000)), LIMITS),
             "cannot be unpacked as a tar file: one of its headers has more than 100 kB",
         ),
-        (*("a.tar", tarred("a", "b", "c"), ArchiveLimits(headers=2)), "it has more than 2 entries"),
+        (*("a.tar", tarred("a", "b", "c"), Budget(headers=2)), "it has more than 2 entries"),
     ],
     ids=words_alone,
 )
@@ -212,7 +213,7 @@ def test_what_exceeds_a_limit_is_stopped_while_it_is_read(tmp_path, name, data, 
 
 
 def test_several_archives_of_a_submission_have_one_limit(tmp_path):
-    budget = Budget(ArchiveLimits(1_000_000))
+    budget = Budget(1_000_000)
     for name in ("a.zip", "b.zip"):
         (tmp_path / name).write_bytes(zipped("a", data="0" * 600_000))
     unpack(tmp_path / "a.zip", tmp_path, budget)

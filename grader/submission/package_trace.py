@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from typing import Annotated, Self
 
 from grader.system.strict_json import STRANGERS, Made, from_json, to_json
-from grader.text.message import Message
+from grader.text import strings
+from grader.text.message import Message, msg
 
 #: A description may have so many characters; all of a trace so many bytes.
 LONGEST_TEXT = 2_000_000
@@ -26,6 +27,11 @@ FAILED = 70
 PREFIX = "/prefix"
 #: Where the packages of ROS are said to be, and the current folder of who launches.
 ROS, EMPTY = "/opt/ros/jazzy", "/somewhere"
+
+
+def shown(content: str) -> str:
+    """A text of the submission's as it may stand in a sentence."""
+    return strings.shown(content).rstrip(".")
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,33 @@ class Obstacle:
     text: Message
     file: str = ""
     line: int = 0
+
+    @property
+    def described(self) -> Message:
+        """What it says, in a sentence."""
+        return self.text.map_texts(shown)
+
+    @property
+    def place(self) -> str | Message:
+        """' (launch/display.launch.py, line 9)', with a blank before it; '' for no place."""
+        if not self.file:
+            return ""
+        if not self.line:
+            return f" ({self.file})"
+        return msg(" ({file}, line {line})", file=self.file, line=self.line)
+
+    def ends(self, file: str) -> Message:
+        """'setup.py ends with NameError: ... (setup.py, line 3)', '... did not come to an end ...'.
+
+        Args:
+            file: whose evaluation it ended.
+        """
+        what = self.text.values.get("what")
+        if self.kind == "limit" and isinstance(what, Message):
+            return msg("{file} {what}", file=file, what=what.map_texts(shown))
+        return msg(
+            "{file} ends with {error}{place}", file=file, error=self.described, place=self.place
+        )
 
 
 @dataclass(frozen=True)

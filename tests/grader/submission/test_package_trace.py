@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from grader.recording.reading import load
 from grader.recording.recording import Recording, Recordings, Run
 from grader.recording.saving import save_all
-from grader.submission.trace import (
+from grader.submission.package_trace import (
     MOST_BYTES,
     Description,
     Lacking,

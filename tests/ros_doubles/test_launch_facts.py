@@ -16,9 +16,10 @@ import pytest
 import yaml
 
 from grader.submission.answer import LaunchOrder
-from grader.submission.program import NEVER, Program
-from grader.submission.trace import LaunchFile
+from grader.submission.package_trace import LaunchFile
+from grader.submission.program import Program
 from ros_doubles.frontend_substitutions import has_later
+from ros_doubles.launch_time import NEVER
 from tests.files import lay
 from tests.inspecting import inspected
 

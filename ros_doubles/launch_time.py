@@ -13,8 +13,9 @@ import itertools
 from collections.abc import Iterable
 from typing import Any, Final, NamedTuple
 
-from grader.submission.program import NEVER, WITH_THE_LAUNCH
-
+#: In place of the number of a program that is waited for: with the launch; nobody knows when.
+WITH_THE_LAUNCH: Final = -1
+NEVER: Final = -2
 #: So many actions may wait, and so many are done: some have others wait without end.
 _MOST_WAITING, _MOST_DONE = 400, 800
 

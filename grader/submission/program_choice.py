@@ -48,6 +48,7 @@ from grader.submission.launching import (
 )
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.manifest import read_manifest
+from grader.submission.opened import CPP, ONLY_PYTHON, PACKAGE, opened
 from grader.submission.private_copy import copy_folder
 from grader.submission.program import EntryPoint, Program, Script
 from grader.submission.python_source import read_source
@@ -58,7 +59,6 @@ from grader.submission.set_ups import (
     Unevaluated,
 )
 from grader.submission.start import Submission
-from grader.submission.unpacking import CPP, ONLY_PYTHON, PACKAGE, opened
 from grader.text.message import Message, Text, joined, msg
 from grader.text.strings import listed, nearest, shown
 

@@ -6,7 +6,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.submission.answer import Inspection, SetUp, SetUpFacts
-from grader.submission.finding import find, find_evaluated
+from grader.submission.program_choice import find, find_evaluated
 from grader.submission.reader import readable
 from grader.submission.request import Request
 from grader.submission.set_ups import Unevaluated
@@ -61,7 +61,7 @@ def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(tmp_path, scratch
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("grader.submission.archive.unpack", full)
+    monkeypatch.setattr("grader.submission.unpacking.unpack", full)
     (tmp_path / "a.zip").touch()
     with pytest.raises(OSError, match="No space left"), readable(tmp_path):
         find(tmp_path / "a.zip", Request(), scratch)
