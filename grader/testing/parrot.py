@@ -14,8 +14,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
 
+from grader import grading
 from grader.exercise.exercise import Exercise
-from grader.grading import gather, plan, runner, start
 from grader.recording.recording import Recording, Recordings
 from grader.run.opening import open_submission
 from grader.scenes.cast.trace import ROSOUT, CastTrace, SentMessage
@@ -39,22 +39,15 @@ _USUAL: Final = ("_parameters", "/get_parameter_types", "/get_type_description",
 
 
 def record(path: Path, exercise: Exercise, recordings: Recordings, folder: Path) -> Recordings:
-    """Run the parrots of a right solution, one for each of its runs, with another seed.
+    """Run the parrot of a right solution, which repeats its nominal run, with another seed.
 
     Args:
         recordings: of the solution.
-        folder: where they are laid out.
+        folder: where the parrot is laid out.
     """
-    seed, made = exercise.varied.seed + 1, []
     with open_submission(path, **exercise.opening) as submission:
-        programs = submission.programs
-    for number, recording in enumerate(recordings):
-        parrot = lay_out(path, programs, recording, folder / str(number))
-        with open_submission(parrot, **exercise.opening) as submission:
-            plans = plan(submission, exercise, seed)
-            with start(submission, plans[number : number + 1], runner(exercise, "virtual")) as runs:
-                made += [(number, each) for _, each in runs]
-    return gather(made)
+        parrot = lay_out(path, submission.programs, recordings.nominal, folder)
+    return grading.record(parrot, exercise, seed=exercise.varied.seed + 1)
 
 
 def lay_out(path: Path, programs: Iterable[Program], recording: Recording, folder: Path) -> Path:
