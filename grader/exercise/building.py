@@ -17,6 +17,7 @@ from typing import Annotated, Any
 
 from grader.errors import ExerciseError
 from grader.exercise import places, policies
+from grader.exercise.allowed import read_allowed
 from grader.exercise.asking import CHECKS
 from grader.exercise.cases import RunCase, read_cases
 from grader.exercise.check import Checks
@@ -115,6 +116,9 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     cases = read_cases(data, interfaces, limits.total_s, draws, has_cast=subject.has_cast)
     checks, heard = _checks(data, place, cases, interfaces, limits.total_s, draws)
     cases = [each.hearing(heard) for each in cases]
+    allowed = read_allowed(data, subject, setting)
+    if allowed is not None:
+        checks = checks.guarded(allowed.check, allowed.within)
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
         raise Mistake(("tolerances", wrong[0]), wrong[1])
@@ -141,6 +145,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         interfaces=interfaces,
         cases=tuple(cases),
         draws=draws,
+        allowed=allowed,
         is_to_end=any("exits" in each for each in data.get(EXPECT, {}).values()),
         title=authored(str(data["title"])),
         task=authored(plain.task),

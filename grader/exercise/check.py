@@ -22,6 +22,8 @@ from grader.text.message import NOTHING, Message, authored, chained, msg
 Tolerances = Mapping[str, Any]
 #: Raises a ValueError where a tolerance cannot be used.
 Validator = Callable[[Any], None]
+#: Returns the part of a recording that is judged.
+SeenPart = Callable[[Recording], Recording]
 
 
 #: Returns the finding of a check by its name; see `grader.exercise.asking.Answers`.
@@ -38,6 +40,7 @@ class Checks:
     def __init__(self, *parts: Checks) -> None:
         self._checks: list[Check] = [check for part in parts for check in part]
         self._validators: dict[str, Validator] = {}
+        self._seen: SeenPart | None = None
 
     def __iter__(self) -> Iterator[Check]:
         return iter(self._checks)
@@ -49,13 +52,31 @@ class Checks:
     def translated(self, language: str, texts: Mapping[str, Mapping[str, str]]) -> Checks:
         """Return a copy with titles and rubrics in a language: check -> title, rubric -> text."""
         made = Checks()
-        made._validators = self._validators
+        made._validators, made._seen = self._validators, self._seen
         for check in self:
             known = texts.get(check.name, {})
             title = check.title.translated(language, known.get("title"))
             rubric = check.rubric.translated(language, known.get("rubric"))
             made._checks.append(replace(check, title=title, rubric=rubric))
         return made
+
+    def guarded(self, check: Check, seen: SeenPart) -> Checks:
+        """Return a copy with one more check, whose checks see a part of each recording."""
+        if check.name in {each.name for each in self}:
+            raise ValueError(f"two checks are named {check.name!r}")
+        made = self.copy()
+        made._checks.append(check)
+        made._seen = seen
+        return made
+
+    def see(self, recordings: Recordings) -> Recordings:
+        """Return the part of recordings that these checks judge."""
+        if self._seen is None:
+            return recordings
+        if isinstance(recordings, NominalAlone):
+            return NominalAlone(self._seen(recordings.nominal))
+        nominal, *varied = map(self._seen, recordings)
+        return Recordings(nominal, tuple(varied))
 
     def tolerance(self, validate: Validator) -> Validator:
         """Register the decorated function as the validator of the tolerance that has its name.
@@ -149,7 +170,7 @@ def answers(
 ) -> list[Answers]:
     """Run the checks that the exercise gives points for; see `asking.ask`."""
     asked = [check for check in checks if check.name in points]
-    return asking.ask(asked, recordings, tolerances, rounds)
+    return asking.ask(asked, checks.see(recordings), tolerances, rounds)
 
 
 def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:

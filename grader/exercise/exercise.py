@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from grader.errors import ExerciseError
+from grader.exercise.allowed import Allowed
 from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks
 from grader.exercise.draws import Draw, Drawn, draw
@@ -113,6 +114,7 @@ class Exercise:
         setting: the text of the file that it is set up with; '' for none.
         cases: what plays beside a program in the nominal run, and in further ones.
         draws: the values that are drawn anew for each of these.
+        allowed: what of its scene a program may use; None for everything.
         is_to_end: whether a program is to end by itself.
         looks_at_package: whether the package around what is started is inspected as well.
         inspections: the names of the inspectors that examine packages.
@@ -148,6 +150,7 @@ class Exercise:
     interfaces: Mapping[str, str] = field(default_factory=dict)
     cases: tuple[RunCase, ...] = (RunCase(),)
     draws: Mapping[str, Draw] = field(default_factory=dict)
+    allowed: Allowed | None = None
     is_to_end: bool = False
 
     @property

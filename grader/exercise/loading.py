@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.errors import ExerciseError
-from grader.exercise import cases, places
+from grader.exercise import allowed, cases, places
 from grader.exercise.building import EXPECT, FITS, INTERFACES, NAME, build
 from grader.exercise.comparing import is_number
 from grader.exercise.draws import DRAW
@@ -35,7 +35,7 @@ from grader.text.message import Message
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", INSPECTS, CPU),
-    *(INSPECTIONS, INTERFACES, DRAW, *cases.KEYS, EXPECT),
+    *(INSPECTIONS, INTERFACES, DRAW, *cases.KEYS, *allowed.KEYS, EXPECT),
     *("points", "visible", "late", "tolerances", "starter", "program", "programs", FITS),
 )
 #: Keys of an edited copy -> what it replaces, for which the original's translations do not fit.

@@ -85,6 +85,8 @@ def _judged(exercise: Exercise, subject: Subject) -> Iterator[str]:
             yield text
     yield _heading(tr("How it is judged"))
     yield _runs(exercise, subject)
+    if exercise.allowed is not None:
+        yield _wrapped(translate(exercise.allowed.text))
     if exercise.late is not None:
         yield from _late(exercise.late)
 

@@ -34,7 +34,7 @@ HOOKS: Final[Mapping[str, tuple[type[Exception], ...]]] = {
     **dict.fromkeys(("untouched", "definitions_of", "to_messages"), ()),
     **dict.fromkeys(("bag_topics", "scenario", "view", "pictures"), ()),
     **dict.fromkeys(("remarks", "endpoints", "wrong_setting", "adapted", "how_to_try"), ()),
-    **dict.fromkeys(("odd_traces", "simulate", "preload", "starts"), ()),
+    **dict.fromkeys(("odd_traces", "within", "simulate", "preload", "starts"), ()),
     **{"interfaces_for": (SubmissionError,), "live_page": (OSError,)},
 }
 #: The subject of a package inspection; a run's recording may hold such a trace.

@@ -6,11 +6,28 @@ It is a scene that ran beside a submission, or an inspected package. Nothing her
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from grader.recording.subject import Endpoint, Keeper, Start, Trace, load_keeper
 from grader.scenes.view import Plane, View
 from grader.text.message import NOTHING, Message, msg
+
+#: Inputs of a submission's against the rules: when [ns from the start], '/turtle2/set_pen'.
+Oversteps = Sequence[tuple[int, str]]
+
+
+class Rules(NamedTuple):
+    """What an exercise lets a submission use of a scene.
+
+    Attributes:
+        may: services and actions, 'spawn', or of one thing alone, 'turtle1/set_pen'.
+        drives: the things that it may drive.
+        setting: what the scene is set up with.
+    """
+
+    may: tuple[str, ...] = ()
+    drives: tuple[str, ...] = ()
+    setting: str = ""
 
 
 class Subject(Keeper):
@@ -25,6 +42,9 @@ class Subject(Keeper):
     outcomes: ClassVar[Mapping[str, Message]] = {}
     #: How places become pixels.
     plane: ClassVar[Plane] = Plane(500, 1.0, 500.0)
+    #: The services and actions that an exercise may allow, each by the last part of its name; none
+    #: where inputs of a submission are not told from those of others.
+    inputs: ClassVar[tuple[str, ...]] = ()
 
     # How it is shown ------------------------------------------------------------------------------
 
@@ -67,6 +87,14 @@ class Subject(Keeper):
             setting: the text of a file of the exercise's, as a robot's description; '' for none.
         """
         return msg("{scene} takes none", scene=self.name) if setting else NOTHING
+
+    def within(self, trace: Trace, cast: Trace | None, rules: Rules) -> tuple[Trace, Oversteps]:
+        """Return the trace without what was moved against rules, and the inputs that did so.
+
+        Args:
+            cast: what scripted peers have sent, which is not the submission's.
+        """
+        return trace, ()
 
     def adapted(self, text: str, ros_distro: str) -> str:
         """Adapt a Python file or a package.xml to a ROS 2 release, named as in ROS_DISTRO."""

@@ -30,7 +30,6 @@ _OF_PEERS: Final[Mapping[str, tuple[str, bool, Mapping[str, tuple[str, str | Non
     "sends": ("actions", False, {"values": ("goal", None)}),
     "parameter": ("parameters", True, {}),
     "got": ("subscriptions", False, {}),
-    "heard": ("publishers", False, {}),
 }
 
 #: What of an entry names a drawn value, or something heard.
@@ -87,8 +86,10 @@ def add_checks(
     sent = {each.name for peers in casts for each in script.endpoints(peers)}
     there = sorted(sent.union(*(script.heard(peers, hears) for peers in casts)))
     for name, expectation in made.items():
-        for key in expectation.names:
-            for topic in expressions.looked_up(getattr(expectation, key), "heard") - {*there}:
+        heard = getattr(expectation, "heard", "")
+        for key in (*expectation.names, *(["heard"] if heard else [])):
+            asked = expressions.looked_up(getattr(expectation, key), "heard")
+            for topic in (asked if key != "heard" else {script.absolute(heard)}) - {*there}:
                 what = "nobody hears {topic} here, only {known}"
                 words = {"topic": repr(topic), "known": listed(there) or msg("none")}
                 raise Mistake((*keys, name, key), what, **words)

@@ -108,9 +108,12 @@ class ExpectedTopic(Expectation):
         holds: an expression over all `messages` together, which is to be true.
         tolerance: how far numbers may be off.
         begin, end: messages before and after are left alone [s].
+        heard: a topic without which the program cannot know what to send: what it sends before it
+            has a subscription of that does not count.
     """
 
     topic: Name
+    heard: str = ""
     type: Annotated[str, _message_type] = ""
     count: ExpectedCount = ExpectedCount()
     rate: ExpectedRate | None = None
@@ -145,7 +148,8 @@ class ExpectedLog(Expectation):
     Attributes:
         log: the text; a pattern; or with `each` a text with the fields of a message.
         each: a topic, for each of whose messages there is such a line: the program's,
-        heard: or those that the program has heard.
+        heard: or those that the program has heard: the peers', else its own. Lines count of nodes
+            that hear them, messages from when one does.
         level: such as `info`; '' for any.
     """
 

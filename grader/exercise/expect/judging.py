@@ -23,10 +23,10 @@ from grader.exercise.verdict import Evidence, Finding
 from grader.recording.recording import Recording, Recordings
 from grader.ros.fields import field_lines
 from grader.scenes.cast.script import absolute
-from grader.scenes.cast.trace import ROSOUT, CastTrace, Event, SentMessage
+from grader.scenes.cast.trace import ROSOUT, TRANSIENT_LOCAL, CastTrace, Event, SentMessage
 from grader.scenes.scene import STEP_NS
-from grader.system.expressions import MOST_STEPS, ExpressionError, filled
-from grader.text.message import Message, msg
+from grader.system.expressions import MOST_STEPS, ExpressionError, filled, looked_up
+from grader.text.message import Message, joined, msg
 from grader.text.strings import listed, nearest
 
 #: What to do where nothing better is known.
@@ -44,9 +44,10 @@ PART: Final = 0.5
 STEPS_FOR_ALL: Final = 2_000_000
 #: In real time, how much later something may be [s], and how far a rate may be off.
 REAL_LATE_S, REAL_RATE = 1.0, 0.3
-_DURABILITY: Final = {1: "transient_local", 2: "volatile"}
+_DURABILITY: Final = {TRANSIENT_LOCAL: "transient_local", 2: "volatile"}
 _RELIABILITY: Final = {1: "reliable", 2: "best_effort"}
 _LEVELS: Final = {"debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
+INF: Final = float("inf")
 #: So many lines are compared with one that is missing; so many characters of a name are shown.
 SEARCHED, LONGEST_NAME = 100, 200
 #: Of a service that every node has.
@@ -109,6 +110,9 @@ def _judged(expectation: e.Expectation, recording: Recording) -> Finding:
                 lack.finding.evidence,
             )
         return lack.finding
+    if recording.run.time == "real" and getattr(expectation, "heard", None):
+        more = msg("In real time nobody can tell more than that your program had a subscription.")
+        passed = joined([passed, more], " ")
     return Finding(1.0, passed)
 
 
@@ -215,6 +219,29 @@ def _of_type(name: str, found: str, right: str, call: str) -> Lacks:
     )
 
 
+def _since_heard(trace: CastTrace, topic: str) -> int:
+    """Return since when the program has a subscription of a topic, of the type that it has [ns]."""
+    readers = trace.readers(topic)
+    if not readers:
+        raise _no_such(
+            topic,
+            _endpoints(trace, "topic", writes=False),
+            msg("Nothing subscribes to {name}, nor to any other topic."),
+            msg("Nothing subscribes to {name}, only to {names}."),
+        )
+    kinds = {message.type for message in trace.messages if message.topic == topic}
+    fit = [event["time_ns"] for event in readers if not kinds or event["type"] in kinds]
+    if not fit:
+        raise _of_type(topic, readers[0]["type"], min(kinds), "create_subscription")
+    return int(min(fit))
+
+
+def _expect_heard(trace: CastTrace, template: Any) -> None:
+    """Expect subscriptions of what peers say and a template asks for."""
+    for topic in sorted(looked_up(template, "heard") & trace.topics_of_peers):
+        _since_heard(trace, topic)
+
+
 def _topic(trace: CastTrace, wanted: e.ExpectedTopic, _: Recording) -> Message:
     topic = absolute(wanted.topic)
     writers = _endpoints(trace, "topic", writes=True)
@@ -230,6 +257,10 @@ def _topic(trace: CastTrace, wanted: e.ExpectedTopic, _: Recording) -> Message:
     if wanted.type and wanted.type not in kinds:
         raise _of_type(topic, kinds[0], wanted.type, "create_publisher")
     messages = [m for m in trace.sent(topic) if wanted.begin <= m.time_ns / 1e9 <= wanted.end]
+    if wanted.heard:
+        since_ns = _since_heard(trace, absolute(wanted.heard))
+        messages = [each for each in messages if each.time_ns >= since_ns]
+    _expect_heard(trace, wanted.values)
     if 2 < len(messages) < wanted.count.at_least:
         _expect_rate(trace, wanted, topic, messages, 0.0)
     _expect_count(wanted.count, len(messages), msg("messages on {topic}", topic=topic))
@@ -289,12 +320,13 @@ class _Heard:
     def __init__(self, trace: CastTrace) -> None:
         self.by_topic: dict[str, list[Any]] = {}
         self._trace, self._next = trace, 0
-        self._of_peers = {each.topic for each in trace.messages if trace.is_peer(each)}
 
     def until(self, place: int) -> None:
         """Add the messages before this place among all."""
         for each in self._trace.messages[self._next : place]:
-            is_heard = each.topic not in self._of_peers or self._trace.is_peer(each)
+            is_heard = each.topic not in self._trace.topics_of_peers or (
+                self._trace.is_peer(each) and self._trace.is_heard(each)
+            )
             if each.topic != ROSOUT and is_heard:
                 self.by_topic.setdefault(each.topic, []).append(self._trace.values(each))
         self._next = max(self._next, place)
@@ -366,13 +398,23 @@ def _got(trace: CastTrace, wanted: e.ExpectedReceipt, _: Recording) -> Message:
 
 
 class _Log:
-    """The lines that the program has logged, by time."""
+    """The lines that the program has logged, by time.
 
-    def __init__(self, trace: CastTrace, level: str) -> None:
+    Args:
+        heard: a topic: of several programs those count that hear it.
+    """
+
+    def __init__(self, trace: CastTrace, level: str, heard: str = "") -> None:
         self.lines: list[tuple[int, str]] = []
         self._by_text: dict[str, list[int]] = {}
+        programs = {node: {*names.split(", ")} for node, names in trace.programs.items()}
+        hearing = [programs.get(each["node"], set()) for each in trace.readers(heard)]
+        known = [node for node, names in programs.items() if any(names & each for each in hearing)]
         for sent in trace.sent(ROSOUT):
             values = trace.values(sent)
+            logger = f"/{values['name'].replace('.', '/')}/"
+            if programs and heard and not any(logger.startswith(f"{node}/") for node in known):
+                continue
             if not level or values["level"] == _LEVELS[level]:
                 self.lines.append((sent.time_ns, values["msg"]))
                 self._by_text.setdefault(values["msg"], []).append(sent.time_ns)
@@ -388,7 +430,8 @@ class _Log:
 
 
 def _log(trace: CastTrace, wanted: e.ExpectedLog, recording: Recording) -> Message:
-    log = _Log(trace, wanted.level)
+    heard = absolute(wanted.heard) if wanted.heard else ""
+    log = _Log(trace, wanted.level, heard)
     if not wanted.each and not wanted.heard:
         text = _filled(wanted.log, {}, 0)
         found = log.times(text, 0, trace.duration_ns + STEP_NS)
@@ -403,9 +446,12 @@ def _log(trace: CastTrace, wanted: e.ExpectedLog, recording: Recording) -> Messa
             raise _not_logged([(None, text)], log, trace, wanted, recording)
         _expect_count(wanted.count, len(found), msg("such lines"))
         return msg("{n} lines like {text} were logged.", n=len(found), text=shown(text))
-    topic = absolute(wanted.each or wanted.heard)
-    by_peers = bool(wanted.heard)
-    known = [(m.time_ns, trace.values(m)) for m in trace.sent(topic, by_peers=by_peers)]
+    topic = heard or absolute(wanted.each)
+    sent = trace.sent(topic, by_peers=heard in trace.topics_of_peers)
+    if heard:
+        _since_heard(trace, topic)
+        sent = [each for each in sent if trace.is_heard(each)]
+    known = [(each.time_ns, trace.values(each)) for each in sent]
     if not known:
         raise Lacks(msg("Nothing came on {topic} that could be logged.", topic=topic))
     within_ns = round(wanted.within * 1e9)
@@ -431,7 +477,13 @@ def _not_logged(
     """Say which line is missing first; what is half right has to be so for each."""
     time_ns, text = missing[0]
     of_any_level = _Log(trace, "")
-    is_elsewhere = [bool(of_any_level.times(each, 0, float("inf"))) for _, each in missing]
+    is_elsewhere = [bool(of_any_level.times(each, 0, INF)) for _, each in missing]
+    of_all = _Log(trace, wanted.level)
+    is_of_others = all(of_all.times(e, 0, INF) and not log.times(e, 0, INF) for _, e in missing)
+    if wanted.heard and is_of_others:
+        said = msg("{text} was logged, by a program that does not hear {topic}.")
+        help_ = msg("Log it in the callback of the subscription.")
+        raise Lacks(said.given(text=shown(text), topic=wanted.heard), help_, time_ns)
     if wanted.level and all(is_elsewhere):
         return Lacks(
             msg("{text} was logged, but not as {level}.", text=shown(text), level=wanted.level),
@@ -706,6 +758,7 @@ def _transform(trace: CastTrace, wanted: e.ExpectedTransform, _: Recording) -> M
                 **names, frames=listed(frames) or msg("none")),
             msg("header.frame_id is the parent, child_frame_id the child."),
         )  # fmt: skip
+    _expect_heard(trace, [wanted.translation, wanted.rotation])
     _expect_count(wanted.count, len(own), msg("transforms from {parent} to {child}", **names))
     heard, times = _Heard(trace), [each.time_ns for each in trace.messages]
     for time_ns, each in own:

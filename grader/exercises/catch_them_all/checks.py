@@ -14,7 +14,8 @@ from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.text.message import Message, msg
 from turtlesim_py.world.arena import TICK_NS
-from turtlesim_py.world.events import Kill, TeleportAbsolute, TeleportRelative
+from turtlesim_py.world.events import Kill
+from turtlesim_py.world.trajectory import Trajectory
 
 checks = Checks()
 STEP_S = TICK_NS / 1e9
@@ -26,7 +27,8 @@ class Life(NamedTuple):
     """A turtle, other than turtle1, from its first tick to its last.
 
     Attributes:
-        way_m: how far turtle1 was at its end [m]; inf where there was none.
+        born_m, way_m: how far turtle1 was at its beginning, and at its end [m]; inf where there was
+            none.
         is_killed: whether it was killed, and not still there at the end of the run.
     """
 
@@ -35,6 +37,7 @@ class Life(NamedTuple):
     last: int
     x: float
     y: float
+    born_m: float
     way_m: float
     is_killed: bool
 
@@ -45,12 +48,18 @@ def spawns(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
     The first at most {first_s} s after the start, and the next at most {spawn_s} s after the one
     before, or after fewer than {most_alive} lived again; {slack_s} s more cost nothing. What
-    counts is the share of the waits that are no longer.
+    counts is the share of the waits that are no longer. At least half are spawned {born_m} m or
+    more from turtle1.
     """
     trace = TurtleTrace.of(recordings.nominal.trace)
     lives = _lives(trace)
     if not lives:
         return Finding(0, NONE, SPAWN)
+    near_m = sorted(life.born_m for life in lives)[len(lives) // 2]
+    if near_m < tolerances["born_m"]:
+        text = msg("Half of {n} turtles were spawned within {way:.2f} m of turtle1.",
+                   n=len(lives), way=near_m)  # fmt: skip
+        return Finding(0, text, msg("Draw each place from the whole window."))
     waits = _waits(trace, lives, tolerances["most_alive"])
     most = [tolerances["spawn_s"]] * len(waits)
     most[0] = tolerances["first_s"]
@@ -76,15 +85,11 @@ def catches(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """turtle1 catches eight.
 
     At least {least} turtles are killed when turtle1 is within {catch_m} m of them. Fewer are a part
-    of the points. turtle1 drives, and is not teleported.
+    of the points. One that is spawned within {born_m} m of turtle1 does not count, here and below.
     """
     trace = TurtleTrace.of(recordings.nominal.trace)
-    if jumps := [*trace.of_kind(TeleportAbsolute), *trace.of_kind(TeleportRelative)]:
-        text = msg("turtle1 was teleported.")
-        seen = (Evidence(jumps[0].tick * STEP_S, text, tick=jumps[0].tick),)
-        return Finding(0, text, msg("Drive it by velocity commands."), seen)
     lives, least = _lives(trace), tolerances["least"]
-    killed = [each for each in lives if each.is_killed]
+    killed = _prey(lives, tolerances)
     caught = [each for each in killed if each.way_m <= tolerances["catch_m"]]
     text = msg("Turtles that turtle1 caught: {n}, expected {least}.", n=len(caught), least=least)
     if len(caught) >= least:
@@ -108,7 +113,7 @@ def near(recordings: Recordings, tolerances: Tolerances) -> Finding:
     Each turtle that is killed is so when turtle1 is within {catch_m} m of it. What counts is their
     share.
     """
-    killed = _killed(TurtleTrace.of(recordings.nominal.trace))
+    killed = _prey(_lives(TurtleTrace.of(recordings.nominal.trace)), tolerances)
     if not killed:
         return Finding(0, msg("No turtle was killed."), msg("Who calls /kill, and when?"))
     far = [each for each in killed if each.way_m > tolerances["catch_m"]]
@@ -129,8 +134,9 @@ def _seen(life: Life) -> Evidence:
     return replace(seen, x=life.x, y=life.y) if is_place else seen
 
 
-def _killed(trace: TurtleTrace) -> list[Life]:
-    return [life for life in _lives(trace) if life.is_killed]
+def _prey(lives: list[Life], tolerances: Tolerances) -> list[Life]:
+    """Return those that were killed, and for which turtle1 had to drive."""
+    return [life for life in lives if life.is_killed and life.born_m >= tolerances["born_m"]]
 
 
 def _lives(trace: TurtleTrace) -> list[Life]:
@@ -144,15 +150,20 @@ def _lives(trace: TurtleTrace) -> list[Life]:
                 continue
             first, last = part[0], part[-1]
             tick = int(way.ticks[last])
-            row = int(np.searchsorted(hunter.ticks, tick, side="right")) - 1
-            way_m = math.inf
-            if row >= 0:
-                way_m = math.hypot(way.x[last] - hunter.x[row], way.y[last] - hunter.y[row])
+            born_m, way_m = (_apart(way, row, hunter) for row in (first, last))
             is_killed = tick < trace.ticks and any((name, tick + n) in kills for n in range(3))
             place = (float(way.x[last]), float(way.y[last]))
-            way_m = way_m if math.isfinite(way_m) else math.inf
-            lives.append(Life(name, int(way.ticks[first]), tick, *place, way_m, is_killed))
+            lives.append(Life(name, int(way.ticks[first]), tick, *place, born_m, way_m, is_killed))
     return sorted(lives, key=lambda life: life.first)
+
+
+def _apart(way: Trajectory, row: int, hunter: Trajectory) -> float:
+    """How far the hunter was [m]; inf where there was none."""
+    at = int(np.searchsorted(hunter.ticks, way.ticks[row]))
+    if at == len(hunter) or hunter.ticks[at] != way.ticks[row]:
+        return math.inf
+    way_m = math.hypot(way.x[row] - hunter.x[at], way.y[row] - hunter.y[at])
+    return way_m if math.isfinite(way_m) else math.inf
 
 
 def _waits(trace: TurtleTrace, lives: list[Life], most: int) -> list[tuple[float, float]]:

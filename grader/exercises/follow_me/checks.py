@@ -15,6 +15,7 @@ from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.text.message import msg
 from grader.text.strings import without_controls
 from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.trajectory import Trajectory
 
 checks = Checks()
 STEP_S = TICK_NS / 1e9
@@ -22,7 +23,7 @@ FOLLOWER = "turtle2"
 
 
 class Following(NamedTuple):
-    """The ticks of a run from some moment on; a tick without the follower is far away.
+    """The ticks of a run from some moment on; a tick without one of both is far away.
 
     Attributes:
         ticks: int64 (n,).
@@ -126,16 +127,23 @@ def _is_near(found: Following, tolerances: Tolerances) -> NDArray[np.bool_]:
 
 def _following(recording: Recording, from_s: float) -> Following:
     trace = TurtleTrace.of(recording.trace)
-    leader, own = trace.trajectory(), trace.trajectory(FOLLOWER)
-    kept = leader.ticks * STEP_S >= from_s
-    ticks = leader.ticks[kept]
-    rows = np.searchsorted(own.ticks, ticks)
-    there = rows < len(own)
-    there[there] = own.ticks[rows[there]] == ticks[there]
-    x, y = np.full(len(ticks), np.nan), np.full(len(ticks), np.nan)
-    x[there], y[there] = own.x[rows[there]], own.y[rows[there]]
+    ticks = np.arange(1, trace.ticks + 1)
+    ticks = ticks[ticks * STEP_S >= from_s]
+    (x, y, _), (lead_x, lead_y, theta) = (
+        _at(trace.trajectory(name), ticks) for name in (FOLLOWER, FIRST_TURTLE)
+    )
     with np.errstate(all="ignore"):
-        east, north = x - leader.x[kept], y - leader.y[kept]
+        east, north = x - lead_x, y - lead_y
         away = np.hypot(east, north)
-        ahead = east * np.cos(leader.theta[kept]) + north * np.sin(leader.theta[kept])
+        ahead = east * np.cos(theta) + north * np.sin(theta)
     return Following(ticks, x, y, np.where(np.isfinite(away), away, np.inf), ahead < 0)
+
+
+def _at(way: Trajectory, ticks: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return x, y and theta at each of these ticks; NaN where there was no such turtle."""
+    rows = np.searchsorted(way.ticks, ticks)
+    there = rows < len(way)
+    there[there] = way.ticks[rows[there]] == ticks[there]
+    found = np.full((3, len(ticks)), np.nan)
+    found[:, there] = [each[rows[there]] for each in (way.x, way.y, way.theta)]
+    return found

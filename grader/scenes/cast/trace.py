@@ -24,6 +24,8 @@ EVENTS, STRING = "/cast/events", "std_msgs/msg/String"
 #: The type of transforms.
 TF: Final = "tf2_msgs/msg/TFMessage"
 ROSOUT: Final = "/rosout"
+#: As DDS numbers it.
+TRANSIENT_LOCAL: Final = 1
 
 
 class SentMessage(NamedTuple):
@@ -98,12 +100,36 @@ class CastTrace:
             for each in self.values(sent)["transforms"]
         ]
 
+    def readers(self, topic: str, kind: str = "") -> list[Event]:
+        """Return the program's subscriptions of a topic, of any type or this one."""
+        found = self._readers.get(f"topic {topic}", [])
+        return [each for each in found if kind in ("", each["type"])]
+
+    def is_heard(self, message: SentMessage) -> bool:
+        """Whether the program had a subscription of its type then; of a latched topic, any time."""
+        readers = self.readers(message.topic, message.type)
+        is_latched = any(each["durability"] == TRANSIENT_LOCAL for each in readers)
+        return is_latched or any(each["time_ns"] <= message.time_ns for each in readers)
+
     def is_peer(self, message: SentMessage) -> bool:
         return message.node in self.peers
 
     def values(self, message: SentMessage) -> Any:
         """Return the values of a message as plain data: objects with fields, lists, numbers."""
         return self._types.values(message.data, message.type)
+
+    @cached_property
+    def topics_of_peers(self) -> set[str]:
+        """The topics on which peers publish, whether or not anything was recorded of them."""
+        offered = {each["name"] for each in self.of_kind("offers", what="publisher")}
+        return offered | {each.topic for each in self.messages if self.is_peer(each)}
+
+    @cached_property
+    def _readers(self) -> Mapping[str, list[Event]]:
+        found: dict[str, list[Event]] = {}
+        for event in self.of_kind("endpoint", writes=False):
+            found.setdefault(event["channel"], []).append(event)
+        return found
 
     @cached_property
     def _types(self) -> BagTypes:

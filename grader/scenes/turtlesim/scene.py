@@ -11,11 +11,14 @@ from typing import Any, ClassVar, Final
 
 from grader.recording.mcap import Channel
 from grader.recording.subject import BagMessage, Endpoint, Pictures, Start, Trace
+from grader.scenes.cast.trace import CastTrace
 from grader.scenes.live import LivePage
 from grader.scenes.playback import Playback
 from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
+from grader.scenes.subject import Oversteps, Rules
 from grader.scenes.turtlesim import interfaces, messages, view, words
 from grader.scenes.turtlesim.interfaces import endpoints_of
+from grader.scenes.turtlesim.rules import INPUTS, within
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace
 from grader.scenes.view import View
 from grader.text.message import NOTHING, Message, msg
@@ -52,6 +55,7 @@ class Turtlesim(Scene):
     #: from the centre to half a metre before a wall; rounded, for authors of exercises
     farthest_start_m = round(SIZE_M / 2 - 0.5, 2)
     usual_start = USUAL_START
+    inputs = INPUTS
 
     def wrong_setting(self, setting: str) -> Message:
         """Return why a setting is no scenario to play beside a submission; NOTHING where it is.
@@ -79,6 +83,10 @@ class Turtlesim(Scene):
         except ScenarioError as error:
             return msg("expected a scenario in JSON: {why}", why=str(error))
         return NOTHING
+
+    def within(self, trace: Trace, cast: Trace | None, rules: Rules) -> tuple[Trace, Oversteps]:
+        assert cast is None or isinstance(cast, CastTrace)
+        return within(TurtleTrace.of(trace), cast, rules)
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Return places at a distance from the centre of the window; the same for the same seed."""

@@ -104,6 +104,12 @@ def test_what_is_no_yaml_object_is_refused(tmp_path, text):
         ("varied_runs: {count: 1000000}", "line 2: varied_runs: count: expected at most 100"),
         ("points: {moves: 0, spiral: 0}", "line 2: points: all are 0"),
         ("points:\n  spiral: x", "line 3: points: spiral: expected a number, found 'x'"),
+        ("may: [fly]", "line 2: may: expected some of clear, set_pen, kill, "),
+        ("may: turtle1", "line 2: may: expected"),
+        (
+            "scene: graph\nvaried_runs: null\ndrives: [turtle1]",
+            "line 4: drives: expected some of none, found",
+        ),
         ("starter: nowhere", "line 2: starter: there is no 'nowhere'"),
         (b"title: caf\xe9", "line 2: it is not UTF-8"),
         ("title: a\0", "line 2: the character"),

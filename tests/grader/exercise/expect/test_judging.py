@@ -24,6 +24,7 @@ from tests.grader.exercise.expect.traces import (
 )
 
 TALKS = endpoint("topic /chatter")
+HEARS = endpoint("topic /chatter", writes=False)
 FIVE = [text(0.5 * n + 0.5, "/chatter", f"Hello {n}") for n in range(5)]
 
 
@@ -81,16 +82,70 @@ def test_a_value_may_depend_on_what_was_heard_of_peers():
     data = [number(n, "/data", n, node="/peer") for n in range(1, 6)]
     mean = {"topic": "mean", "values": "=mean([each.data for each in heard['/data'][-3:]])"}
     talks = endpoint("topic /mean", "std_msgs/msg/Float64")
-    passes(mean, talks, *data, number(5.5, "/mean", 4.0))
-    fails("data was 3, expected 4", mean, talks, *data, number(5.5, "/mean", 3.0))
+    ends = (talks, endpoint("topic /data", "std_msgs/msg/Float64", writes=False))
+    passes(mean, *ends, *data, number(5.5, "/mean", 4.0))
+    fails("data was 3, expected 4", mean, *ends, *data, number(5.5, "/mean", 3.0))
     # nothing came yet: a finding, and no failure of the exercise
-    fails("cannot be told", mean, talks, *data, number(0.5, "/mean", 3.0))
+    fails("cannot be told", mean, *ends, *data, number(0.5, "/mean", 3.0))
     mean = {"topic": "mean", "values": "=heard['/data'][-1].data"}
     heard, own = number(1, "/data", 7, node="/peer"), number(2, "/data", 0)
-    passes(mean, talks, heard, own, number(3, "/mean", 7))
-    assert judged(mean, talks, heard, own, number(3, "/mean", 0)).share == 0
+    passes(mean, *ends, heard, own, number(3, "/mean", 7))
+    assert judged(mean, *ends, heard, own, number(3, "/mean", 0)).share == 0
     # where no peer publishes, the program's other node does
     passes(mean, talks, own, number(3, "/mean", 0))
+
+
+def test_only_a_message_that_a_subscription_could_get_was_heard():
+    logs = {"log": 'Publishing: "{data}"', "heard": "chatter"}
+    relays = {"topic": "out", "values": "=heard['/chatter'][-1]"}
+    out, five = endpoint("topic /out"), [each._replace(node="/peer") for each in FIVE]
+    parts = [*five, *LOGGED, out, text(2.1, "/out", "Hello 3")]
+    other = endpoint("topic /other", writes=False)
+    late = endpoint("topic /chatter", writes=False, time_ns=1_100_000_000)
+    float_ = endpoint("topic /chatter", "std_msgs/msg/Float64", writes=False)
+    for wanted in (logs, relays):
+        fails("Nothing subscribes to /chatter, nor to any", wanted, *parts)
+        fails("Nothing subscribes to /chatter, only to /other.", wanted, *parts, other)
+        fails("expected std_msgs/msg/String", wanted, *parts, float_)
+        passes(wanted, *parts, late)
+    # what came before is neither asked for, nor counted, nor known
+    passes(logs, late, *five, *LOGGED[2:])
+    fails("3 messages on /chatter", {**logs, "count": {"at_least": 4}}, late, *five, *LOGGED)
+    fails("cannot be told", relays, late, out, *five, text(1.05, "/out", "Hello 1"))
+    # a latched one came later, all the same
+    latched = {**late, "durability": 1}
+    passes({**logs, "count": {"at_least": 5}}, latched, *five, *LOGGED)
+
+
+def test_what_is_sent_without_a_subscription_of_what_it_depends_on_does_not_count():
+    wanted = {"topic": "chatter", "heard": "/tf", "count": {"at_least": 3}}
+    tf = {"kind": "tf2_msgs/msg/TFMessage", "writes": False}
+    fails("Nothing subscribes to /tf", wanted, TALKS, *FIVE)
+    passes(wanted, TALKS, *FIVE, endpoint("topic /tf", **tf))
+    late = endpoint("topic /tf", time_ns=1_600_000_000, **tf)
+    fails("2 messages on /chatter", wanted, TALKS, *FIVE, late)
+
+
+def test_in_real_time_a_check_says_that_it_knows_no_more_than_a_subscription():
+    wanted = {"log": 'Publishing: "{data}"', "heard": "chatter"}
+    found = judged(wanted, HEARS, *FIVE, *LOGGED, time="real")
+    assert found.share == 1
+    assert "nobody can tell more than that your program had a subscr" in str(found.rationale)
+    assert "nobody" not in str(judged(wanted, HEARS, *FIVE, *LOGGED).rationale)
+
+
+def test_of_several_programs_the_lines_of_those_count_that_hear():
+    wanted = {"log": 'Publishing: "{data}"', "heard": "chatter"}
+    programs = {"/talker": "talker-1", "/ns/listener": "listener-2"}
+    hears = endpoint("topic /chatter", writes=False, node="/ns/listener")
+    for logger in ("ns.listener", "ns.listener.child"):
+        lines = [line(0.5 * n + 0.5, f'Publishing: "Hello {n}"', name=logger) for n in range(5)]
+        passes(wanted, hears, *FIVE, *lines, programs=programs)
+    for logger in ("talker", "another", "ns.listener2"):
+        lines = [line(0.5 * n + 0.5, f'Publishing: "Hello {n}"', name=logger) for n in range(5)]
+        words = "by a program that does not hear chatter"
+        fails(words, wanted, hears, *FIVE, *lines, programs=programs)
+        passes(wanted, hears, *FIVE, *lines)
 
 
 @pytest.mark.parametrize(
@@ -227,8 +282,8 @@ def test_each_message_has_its_line_in_time():
     fails("Nothing came on /chatter that could be logged.", EACH, *LOGGED)
     heard = [each._replace(node="/peer") for each in FIVE]
     wanted = {"log": 'Publishing: "{data}"', "heard": "chatter"}
-    passes(wanted, *heard, *LOGGED)
-    fails("was not logged", wanted, *heard, *LOGGED[1:])
+    passes(wanted, HEARS, *heard, *LOGGED)
+    fails("was not logged", wanted, HEARS, *heard, *LOGGED[1:])
 
 
 def test_a_print_or_another_level_earns_half_and_one_line_for_all_nothing():
@@ -407,7 +462,7 @@ def test_the_end_a_flood_and_the_hint_of_the_author_are_told():
 def test_a_pattern_of_the_author_that_never_ends_is_ended(monkeypatch):
     monkeypatch.setattr(asking, "LIMITS", WorkLimits(cpu_s=0.3, wall_s=30.0))
     checks = Checks()
-    add_checks(checks, {"logs": {"log": "/^(a+)+$/"}}, [RunCase()], KnownTypes({}), 10)
+    add_checks(checks, {"logs": {"log": "/^(a+)+$/"}}, [RunCase()], KnownTypes({}), 10, {})
     recording = Recording(trace(line(1, "a" * 60 + "!")), scene="graph")
     (verdict,) = judge(Recordings(recording), checks, {"logs": 1}, {})
     assert verdict.status == "not_judged"

@@ -1,11 +1,13 @@
 """Traces of casts for tests, written by hand; `/peer` is the one peer."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import parse
 from grader.exercise.verdict import Finding
-from grader.recording.recording import Recording, Recordings, Run
+from grader.recording.recording import Clock, Recording, Recordings, Run
 from grader.ros.bag_types import BagTypes
 from grader.scenes.cast.trace import CastTrace, SentMessage
 from grader.scenes.scene import STEP_NS
@@ -27,8 +29,8 @@ def number(at_s: float, topic: str, value: float, **more: Any) -> SentMessage:
     return sent(at_s, topic, "std_msgs/msg/Float64", data=value, **more)
 
 
-def line(at_s: float, value: str, level: int = 20) -> SentMessage:
-    values = {"stamp": NOW, "name": "", "file": "", "function": "", "line": 0}
+def line(at_s: float, value: str, level: int = 20, name: str = "") -> SentMessage:
+    values = {"stamp": NOW, "name": name, "file": "", "function": "", "line": 0}
     return sent(at_s, "/rosout", "rcl_interfaces/msg/Log", level=level, msg=value, **values)
 
 
@@ -71,8 +73,12 @@ def judged(
     output: str = "",
     code: int | None = 0,
     length_s: float = 10,
+    time: Clock = "virtual",
+    programs: Mapping[str, str] | None = None,
 ) -> Finding:
     """The finding on what is expected of a trace with these parts."""
-    run = Run("virtual", exit_code=code)
-    recording = Recording(trace(*parts, length_s=length_s), run, output=output, scene="graph")
-    return judging.judge(parse(expected, ("expect", "it")), Recordings(recording))
+    run = Run(time, exit_code=code)
+    made = replace(trace(*parts, length_s=length_s), programs=programs or {})
+    recording = Recording(made, run, output=output, scene="graph")
+    wanted = parse(expected, ("expect", "it"))
+    return judging.judge(lambda _: wanted, Recordings(recording))

@@ -1,0 +1,71 @@
+"""Which inputs of a run are the submission's, and which of these its exercise does not allow."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+from grader.scenes.cast.trace import CastTrace
+from grader.scenes.subject import Oversteps, Rules
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.system import strict_json
+from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.events import CmdVel, Event, Kill, Spawn, from_json
+
+#: They change what is drawn, and where nothing is.
+_HARMLESS: Final = ("clear", "set_pen")
+_MOVING: Final = ("teleport_absolute", "teleport_relative", "rotate_absolute")
+INPUTS: Final = (*_HARMLESS, "kill", "reset", "spawn", *_MOVING)
+_TWIST: Final = "geometry_msgs/msg/Twist"
+
+
+def within(
+    trace: TurtleTrace, cast: CastTrace | None, rules: Rules
+) -> tuple[TurtleTrace, Oversteps]:
+    """Return the trace in which all that was moved against rules ends there, and how it was."""
+    scenario = strict_json.loads(rules.setting).get("events", []) if rules.setting else []
+    given = [from_json(each) for each in scenario]
+    # one that is killed and spawned again has been teleported
+    kept = {FIRST_TURTLE, *rules.drives, *(each.name for each in given if isinstance(each, Spawn))}
+    allowed = {*rules.may, *(f"{each}/cmd_vel" for each in rules.drives)}
+    beyond, ends = list[tuple[int, str]](), dict[str, int]()
+    others = Counter([*map(_key, given), *(() if cast is None else _of_peers(cast))])
+    for event in trace.events:
+        name, target = _key(event)[:2]
+        others[_key(event)] -= 1
+        is_of_others = others[_key(event)] >= 0 or event.op not in (CmdVel.op, *INPUTS)
+        is_kept = isinstance(event, Kill) and target in kept
+        if is_of_others or (not is_kept and allowed & {event.op, name[1:]}):
+            continue
+        beyond.append((event.tick * TICK_NS, name))
+        for turtle in (target,) if target else trace.trajectories:
+            if event.op not in _HARMLESS:
+                ends.setdefault(turtle, event.tick)
+    ways = {
+        turtle: way[way.ticks < ends.get(turtle, trace.ticks + 1)]
+        for turtle, way in trace.trajectories.items()
+    }
+    return replace(trace, trajectories=ways), beyond
+
+
+def _key(event: Event) -> tuple[str, str, object]:
+    """Return what an input has in common with the message that it came by: name, turtle, values."""
+    turtle = getattr(event, "turtle", "")
+    values = (event.linear, event.angular) if isinstance(event, CmdVel) else None
+    name = f"/{turtle}/{event.op}" if turtle else f"/{event.op}"
+    return name, turtle or str(getattr(event, "name", "")), values
+
+
+def _of_peers(cast: CastTrace) -> Iterator[tuple[str, str, object]]:
+    """Yield the keys of what peers have sent."""
+    for message in cast.messages:
+        if cast.is_peer(message) and message.type == _TWIST:
+            linear, angular = (tuple(each.values()) for each in cast.values(message).values())
+            yield message.topic, message.topic.split("/")[1], (linear, angular)
+    for event in (*cast.of_kind("call"), *cast.of_kind("goal")):
+        if "sent_ns" in event:
+            name = str(event.get("service") or event["action"])
+            of_turtle = name.split("/")[1] if name.count("/") > 1 else ""
+            yield name, of_turtle or str(event.get("request", {}).get("name", "")), None
