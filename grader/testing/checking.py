@@ -35,6 +35,8 @@ AGAIN = "again"
 LARGER = 1.62
 #: The share of points that a parrot may have where others send or ask something.
 MOST_EXCUSED = 0.25
+#: The share of a check's points that it may have by chance.
+BY_CHANCE = 0.1
 
 
 def check_exercise(
@@ -234,7 +236,7 @@ def _parroted(exercise: Exercise, trial: Trial) -> Iterator[Fault]:
     excuses = {check.name: check.parrot for check in exercise.checks}
     excused = 0.0
     for verdict in trial.verdicts:
-        if not verdict.score:
+        if verdict.score <= BY_CHANCE * verdict.max_score:
             continue
         if why := excuses[verdict.check]:
             excused += verdict.score if why != OF_FILES else 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -42,7 +43,7 @@ class Life(NamedTuple):
     is_killed: bool
 
 
-@checks()
+@checks(parrot="who spawns needs to hear nothing")
 def spawns(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """Turtles are spawned again and again.
 
@@ -86,9 +87,13 @@ def catches(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
     At least {least} turtles are killed when turtle1 is within {catch_m} m of them. Fewer are a part
     of the points. One that is spawned within {born_m} m of turtle1 does not count, here and below.
+    In one more run turtle1 starts elsewhere; the worse counts, here and below.
     """
-    trace = TurtleTrace.of(recordings.nominal.trace)
-    lives, least = _lives(trace), tolerances["least"]
+    return _worst(_catches(_lives(trace), tolerances) for trace in _traces(recordings))
+
+
+def _catches(lives: list[Life], tolerances: Tolerances) -> Finding:
+    least = tolerances["least"]
     killed = _prey(lives, tolerances)
     caught = [each for each in killed if each.way_m <= tolerances["catch_m"]]
     text = msg("Turtles that turtle1 caught: {n}, expected {least}.", n=len(caught), least=least)
@@ -113,7 +118,11 @@ def near(recordings: Recordings, tolerances: Tolerances) -> Finding:
     Each turtle that is killed is so when turtle1 is within {catch_m} m of it. What counts is their
     share.
     """
-    killed = _prey(_lives(TurtleTrace.of(recordings.nominal.trace)), tolerances)
+    return _worst(_near(_lives(trace), tolerances) for trace in _traces(recordings))
+
+
+def _near(lives: list[Life], tolerances: Tolerances) -> Finding:
+    killed = _prey(lives, tolerances)
     if not killed:
         return Finding(0, msg("No turtle was killed."), msg("Who calls /kill, and when?"))
     far = [each for each in killed if each.way_m > tolerances["catch_m"]]
@@ -124,6 +133,16 @@ def near(recordings: Recordings, tolerances: Tolerances) -> Finding:
                n=len(far), all=len(killed), way=first.way_m, name=first.name)  # fmt: skip
     help_ = msg("Kill a turtle only when turtle1 says that it is there.")
     return Finding(1 - len(far) / len(killed), text, help_, (_seen(first),))
+
+
+def _traces(recordings: Recordings) -> Iterator[TurtleTrace]:
+    return (TurtleTrace.of(recording.trace) for recording in recordings)
+
+
+def _worst(findings: Iterable[Finding]) -> Finding:
+    """Return the worst of several runs, with its evidence in that run."""
+    run, worst = min(enumerate(findings), key=lambda each: each[1].share)
+    return replace(worst, evidence=tuple(replace(each, run=run) for each in worst.evidence))
 
 
 def _seen(life: Life) -> Evidence:
