@@ -112,9 +112,9 @@ class PeerNode:
             self._refuse("", str(error))
             return None
 
-    def _refuse(self, what: str, why: Any) -> None:
-        """Record what a peer cannot do with what the program has sent."""
-        self._recorder.event("refused", peer=self.name, what=what[:200], why=why)
+    def _refuse(self, what: str, why: Any, kind: str = "refused") -> None:
+        """Record what a peer cannot do with what the program has sent, or not do at all."""
+        self._recorder.event(kind, peer=self.name, what=what[:200], why=why)
 
     def serve(self, has_unread: Callable[[str], bool]) -> None:
         """Call back for what has arrived, and for what is due then.
@@ -144,21 +144,30 @@ class PeerNode:
         chosen = used if used in entry.types else entry.types[0]
         return chosen, self._types.find(chosen)
 
-    def _filled(self, template: Any, names: Mapping[str, Any]) -> Any:
+    def _filled(self, template: Any, names: Mapping[str, Any], kind: str = "refused") -> Any:
         """Fill in a template; what a program's values make impossible is recorded."""
         try:
             return filled(template, names)
         except ExpressionError as error:
-            self._refuse(str(template), error.message.serialise())
+            self._refuse(str(template), error.message.serialise(), kind)
             return None
 
-    def _made(self, kind: Any, values: Any) -> Any:
+    def _own(self, template: Any, n: int = 0) -> Any:
+        """Fill in a template that no value of a program's has a part in."""
+        return self._filled(template, {"n": n, "t": self._now_ns() / 1e9}, "unsaid")
+
+    def _made(self, kind: Any, values: Any, fault: str = "refused") -> Any:
         """Make a message of what a program's values have led to; None where that fails."""
         try:
             return make(kind, {} if values is None else values)
         except ValueError as error:
-            self._refuse(kind.__name__, str(error)[:300])
+            self._refuse(kind.__name__, str(error)[:300], fault)
             return None
+
+    def _own_made(self, kind: Any, values: Any) -> Any:
+        """Make a message of values of its own; only a type of the program's may not hold them."""
+        is_theirs = self._types.is_theirs(kind)
+        return self._made(kind, values, "refused" if is_theirs else "unsaid")
 
     # Topics -----------------------------------------------------------------------------------
 
@@ -168,8 +177,8 @@ class PeerNode:
 
         def say(n: int) -> None:
             template = entry.messages[min(n, len(entry.messages) - 1)] if entry.messages else None
-            values = self._filled(template or entry.message, {"n": n, "t": self._now_ns() / 1e9})
-            message = self._made(kind, values)
+            values = self._own(template or entry.message, n)
+            message = self._own_made(kind, values)
             if message is not None:
                 publisher.publish(message)
                 self._recorder.said(publisher.topic_name, chosen, self.name, message)
@@ -198,7 +207,7 @@ class PeerNode:
 
         def say() -> None:
             numbers = [*entry.translation, *entry.rotation]
-            values = self._filled(numbers, {"t": self._now_ns() / 1e9})
+            values = self._own(numbers)
             if values is None:
                 return
             stamp = plain(self.node.get_clock().now().to_msg())
@@ -211,7 +220,7 @@ class PeerNode:
                 "child_frame_id": entry.child,
                 "transform": {"translation": dict(moved), "rotation": dict(turned)},
             }
-            message = self._made(kind, {"transforms": [frame]})
+            message = self._own_made(kind, {"transforms": [frame]})
             if message is None:
                 return
             publisher.publish(message)
@@ -275,9 +284,7 @@ class PeerNode:
 
         def ask() -> None:
             kind = clients[0].srv_type
-            request = self._made(
-                kind.Request, self._filled(entry.request, {"t": self._now_ns() / 1e9})
-            )
+            request = self._own_made(kind.Request, self._own(entry.request))
             if request is None:  # the program has the type with other fields
                 return
             event.update(request=plain(request), sent_ns=self._now_ns())
@@ -327,7 +334,7 @@ class PeerNode:
 
         def send() -> None:
             client = clients[0]
-            goal = self._made(client._action_type.Goal, self._filled(entry.goal, {"t": 0.0}))
+            goal = self._own_made(client._action_type.Goal, self._own(entry.goal))
             if goal is None:  # the program has the type with other fields
                 return
             event.update(goal=plain(goal), sent_ns=self._now_ns(), feedback=[])

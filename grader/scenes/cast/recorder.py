@@ -11,12 +11,13 @@
 | parameter | peer, id, node, sent_ns; set {name: reason or ''}, values {name: value}, answered_ns |
 | got | peer, topic, values: what a subscription has received |
 | refused | peer, what, why: what a peer could not do with what the program sent |
+| unsaid | peer, what, why: what a peer was to say, and no message can hold |
 | full | nothing: what came then is not recorded |
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -170,11 +171,18 @@ class Types:
 
     Args:
         texts: the definitions of the former, by names such as 'my_interfaces/msg/Num'.
+        theirs: the names of those that a hand-in alone has.
         are_compiled: whether these can be imported as installed ones can.
     """
 
-    def __init__(self, texts: Mapping[str, str], *, are_compiled: bool = False) -> None:
-        self._texts = texts
+    def __init__(
+        self,
+        texts: Mapping[str, str],
+        theirs: Set[str] = frozenset(),
+        *,
+        are_compiled: bool = False,
+    ) -> None:
+        self._texts, self._theirs = texts, theirs
         self._own = Definitions({} if are_compiled else texts)
         #: definitions of all messages that were asked for, and of their fields
         self.used: dict[str, str] = {}
@@ -191,6 +199,11 @@ class Types:
             return self._own.type(name)
         except (ImportError, AttributeError) as error:
             raise NoType(f"there is no type {name}: {error}") from None
+
+    def is_theirs(self, kind: Any) -> bool:
+        """Whether a class is of a type that a hand-in alone has."""
+        folder = kind.__module__.rpartition(".")[0].replace(".", "/")
+        return f"{folder}/{kind.__name__.partition('_')[0]}" in self._theirs
 
     def use(self, name: str) -> Any:
         """Return the class of a message, whose definition a recording is to have.

@@ -407,7 +407,7 @@ def test_the_end_a_flood_and_the_hint_of_the_author_are_told():
 def test_a_pattern_of_the_author_that_never_ends_is_ended(monkeypatch):
     monkeypatch.setattr(asking, "LIMITS", WorkLimits(cpu_s=0.3, wall_s=30.0))
     checks = Checks()
-    add_checks(checks, {"logs": {"log": "/^(a+)+$/"}}, [RunCase()], KnownTypes({}), 10)
+    add_checks(checks, {"logs": {"log": "/^(a+)+$/"}}, [RunCase()], KnownTypes({}), 10, {})
     recording = Recording(trace(line(1, "a" * 60 + "!")), scene="graph")
     (verdict,) = judge(Recordings(recording), checks, {"logs": 1}, {})
     assert verdict.status == "not_judged"
