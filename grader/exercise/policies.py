@@ -29,7 +29,7 @@ class Late:
     """How late a submission is, and what that costs.
 
     Attributes:
-        late_s: after it was due [s], grace included; 0 where it was in time.
+        late_s: after it was due [s], grace included; 0 where it was in time, or nobody knows.
         days: how many started days of it cost points.
         points: what that costs.
     """
@@ -67,6 +67,11 @@ class LatePolicy:
         days = max(-(-charged // _DAY), 0)
         points = min(days * self.per_day, self.most)
         return Late(max(late.total_seconds(), 0.0), days, round(points, 2))
+
+    @property
+    def at_least(self) -> Late:
+        """What a submission costs of which it is known that it is late, and not by how much."""
+        return Late(0.0, 1, round(min(self.per_day, self.most), 2))
 
 
 # The keys of exercise.yaml ------------------------------------------------------------------------

@@ -218,6 +218,7 @@ class Canvas(Layout):
     def attempts(self, items: Sequence[Item], notes: list[Message]) -> list[Attempt]:
         files: dict[tuple[str, str], list[tuple[Item, str]]] = defaultdict(list)
         people: dict[tuple[str, str], Person] = {}
+        late = set[tuple[str, str]]()
         for item, match in ((item, self.fits(item)) for item in items):
             assert match is not None
             name, user = match["name"] or "", match["user"] or ""
@@ -226,7 +227,7 @@ class Canvas(Layout):
             if match["typed"] and user:  # where there is no file, Canvas's id is read from this
                 columns["Exported as"] = item.name
             if match["late"] or match["late_too"]:
-                columns["Late"] = "yes"
+                late.add(whose)
             people[whose] = person(whose[0], name, columns)
             submitted = files[whose]
             if match["file"] and not is_junk(match["filename"]):
@@ -235,7 +236,8 @@ class Canvas(Layout):
             notes.append(
                 msg("Some ids stand there with several names; look at these hand-ins yourself.")
             )
-        return [self._attempt("_".join(key), people[key], files[key]) for key in files]
+        attempts = {key: self._attempt("_".join(key), people[key], files[key]) for key in files}
+        return [replace(each, is_marked_late=key in late) for key, each in attempts.items()]
 
     def _attempt(self, whose: str, student: Person, files: Sequence[tuple[Item, str]]) -> Attempt:
         if files:  # Canvas assigns a feedback file to the student by this

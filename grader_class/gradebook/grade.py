@@ -63,6 +63,12 @@ class Grade:
         return self.final if result is None or self.final is None else result.score
 
     @property
+    def late_days(self) -> int | None:
+        """How many started days of lateness count; None where nothing was judged."""
+        submitted = None if self.entry.result is None else self.entry.result.handed_in
+        return None if submitted is None else submitted.days
+
+    @property
     def late_deduction(self) -> float:
         """The deduction for being late [points]."""
         if self.score is None or self.final is None:
