@@ -38,11 +38,6 @@ _SAID: Final[Mapping[str, Mapping[str, tuple[str | None, str | None, set[str]]]]
         "result": ("result", "goal", {"goal"}),
     },
 }
-#: The numbers of a frame, what they are called in a message, and its type.
-_OF_FRAMES: Final = (
-    ("translation", "xyz", "geometry_msgs/msg/Vector3"),
-    ("rotation", "xyzw", "geometry_msgs/msg/Quaternion"),
-)
 
 
 class KnownTypes:
@@ -224,9 +219,10 @@ def check_cast(
                         known.check_each(said, entry.types, part, (*at, key), asked)
                     if asked is not None:
                         known.check_names(given, entry.types, asked, more, (*at, key))
-                for key, axes, of in _OF_FRAMES if kind == "frames" else ():
-                    numbers = dict(zip(axes, getattr(entry, key), strict=True))
-                    known.check_each([numbers], [of], "", (*at, key))
+                parts = {"translation": "Vector3", "rotation": "Quaternion"}
+                for key, of in parts.items() if kind == "frames" else ():
+                    numbers = dict(zip("xyzw", getattr(entry, key), strict=False))
+                    known.check_each([numbers], [f"geometry_msgs/msg/{of}"], "", (*at, key))
 
 
 def check_time(time_s: Any, end_s: float, at: tuple[str, ...]) -> None:

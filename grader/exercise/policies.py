@@ -58,8 +58,10 @@ class LatePolicy:
     per_day: Amount = 0.0
     most: Amount = math.inf
 
-    def deduction(self, at: datetime) -> Late:
-        """Return what a submission at some time costs."""
+    def deduction(self, at: datetime | None) -> Late:
+        """Return what a submission at some time costs; None: it is late, nobody knows how much."""
+        if at is None:
+            return Late(0.0, 1, round(min(self.per_day, self.most), 2))
         if at.utcoffset() is None:
             raise ValueError(f"expected a time with its zone, found {at.isoformat()}")
         late = at - self.due
@@ -67,11 +69,6 @@ class LatePolicy:
         days = max(-(-charged // _DAY), 0)
         points = min(days * self.per_day, self.most)
         return Late(max(late.total_seconds(), 0.0), days, round(points, 2))
-
-    @property
-    def at_least(self) -> Late:
-        """What a submission costs of which it is known that it is late, and not by how much."""
-        return Late(0.0, 1, round(min(self.per_day, self.most), 2))
 
 
 # The keys of exercise.yaml ------------------------------------------------------------------------

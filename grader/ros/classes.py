@@ -56,21 +56,8 @@ def parts(element: Any) -> list[Any]:
         return [element]
     if isinstance(element, idl.Service):
         return [element.request_message, element.response_message, element.event_message]
-    of_services = [part for service in services(element) for part in parts(service)]
-    return [element.goal, element.result, element.feedback, *of_services, element.feedback_message]
-
-
-def services(element: Any) -> list[Any]:
-    """Return the services of a service or an action; none of a message."""
-    if isinstance(element, idl.Action):
-        return [element.send_goal_service, element.get_result_service]
-    return [element] if isinstance(element, idl.Service) else []
-
-
-def service_parts(service: Any) -> dict[str, str]:
-    """Return the classes of a service by its attributes: 'Request' -> 'Add_Request'."""
-    name = service.namespaced_type.name
-    return {part: f"{name}_{part}" for part in ("Request", "Response", "Event")}
+    services = parts(element.send_goal_service) + parts(element.get_result_service)
+    return [element.goal, element.result, element.feedback, *services, element.feedback_message]
 
 
 def classes_of(element: Any, find: Find) -> dict[str, Any]:
@@ -99,9 +86,14 @@ def classes_of(element: Any, find: Find) -> dict[str, Any]:
 
     for message in parts(element):
         make(message.structure.namespaced_type.name, *_message(message, find))
-    for service in services(element):
-        own = {part: made[name] for part, name in service_parts(service).items()}
-        make(service.namespaced_type.name, own | {"__init__": _refuse})
+    if isinstance(element, idl.Message):
+        return made
+    services = [element]
+    if isinstance(element, idl.Action):
+        services = [element.send_goal_service, element.get_result_service]
+    for name in (service.namespaced_type.name for service in services):
+        own = {part: made[f"{name}_{part}"] for part in ("Request", "Response", "Event")}
+        make(name, own | {"__init__": _refuse})
     if isinstance(element, idl.Action):
         name = element.namespaced_type.name
         own_msg, own_srv = ["action_msgs", "msg"], ["action_msgs", "srv"]

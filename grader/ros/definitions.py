@@ -29,7 +29,7 @@ import rosidl_parser.definition as idl
 
 from grader.errors import SubmissionError
 from grader.ros import uncompiled
-from grader.ros.classes import classes_of, described, parts, service_parts, services
+from grader.ros.classes import classes_of, described, parts
 from grader.ros.messages import installed, module_of, number_of, value_type
 from grader.text.message import Message, msg
 
@@ -177,8 +177,9 @@ class Definitions:
         """Return what rosidl_generator_py's `my_interfaces.srv` has of a type; [] if it is none."""
         if name not in self._extents:
             return []
-        each = (service_parts(service).values() for service in services(self._elements[name]))
-        return [name.rpartition("/")[2], *chain(*each)]
+        names = (each.structure.namespaced_type.name for each in parts(self._elements[name]))
+        of_services = (each for each in names if each.endswith(("_Request", "_Response", "_Event")))
+        return [name.rpartition("/")[2], *of_services]
 
     # whether they hold together ----------------------------------------------------------------
 

@@ -218,7 +218,6 @@ class Canvas(Layout):
     def attempts(self, items: Sequence[Item], notes: list[Message]) -> list[Attempt]:
         files: dict[tuple[str, str], list[tuple[Item, str]]] = defaultdict(list)
         people: dict[tuple[str, str], Person] = {}
-        late = set[tuple[str, str]]()
         for item, match in ((item, self.fits(item)) for item in items):
             assert match is not None
             name, user = match["name"] or "", match["user"] or ""
@@ -227,7 +226,7 @@ class Canvas(Layout):
             if match["typed"] and user:  # where there is no file, Canvas's id is read from this
                 columns["Exported as"] = item.name
             if match["late"] or match["late_too"]:
-                late.add(whose)
+                columns["Late"] = "yes"
             people[whose] = person(whose[0], name, columns)
             submitted = files[whose]
             if match["file"] and not is_junk(match["filename"]):
@@ -236,8 +235,7 @@ class Canvas(Layout):
             notes.append(
                 msg("Some ids stand there with several names; look at these hand-ins yourself.")
             )
-        attempts = {key: self._attempt("_".join(key), people[key], files[key]) for key in files}
-        return [replace(each, is_marked_late=key in late) for key, each in attempts.items()]
+        return [self._attempt("_".join(key), people[key], files[key]) for key in files]
 
     def _attempt(self, whose: str, student: Person, files: Sequence[tuple[Item, str]]) -> Attempt:
         if files:  # Canvas assigns a feedback file to the student by this
@@ -252,7 +250,8 @@ class Canvas(Layout):
             names = [name for _, name in files]
         pieces = tuple(Piece(item.path, name) for (item, _), name in zip(files, names, strict=True))
         problem = NOTHING if pieces else self._ONLY_TEXT
-        return Attempt(whose, (student,), pieces, number, problem=problem)
+        late = "Late" in student.columns
+        return Attempt(whose, (student,), pieces, number, problem=problem, is_marked_late=late)
 
 
 class Repositories(Layout):

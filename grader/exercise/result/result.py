@@ -73,32 +73,20 @@ class SubmissionInfo:
 
     @classmethod
     def of(
-        cls,
-        id: str,
-        name: str,
-        attempt: int,
-        at: datetime | None,
-        policy: LatePolicy | None,
-        *,
-        is_late: bool = False,
+        cls, id: str, name: str, attempt: int, at: datetime | None, policy: LatePolicy | None
     ) -> Self:
-        """Make it by an exercise's policy for late submissions.
-
-        Args:
-            is_late: whether it is known to be late where the time is not known.
+        """Make it by a policy for late submissions; None: there is none, or nothing is known.
 
         Raises:
             ValueError: the time has no zone.
         """
-        late = Late()
-        if policy is not None and (at is not None or is_late):
-            late = policy.at_least if at is None else policy.deduction(at)
+        late = Late() if policy is None else policy.deduction(at)
         return cls(id, name, attempt, at, late.late_s, late.days, late.points)
 
     def by(self, policy: LatePolicy | None) -> Self:
         """Return the same submission by the policy of another exercise, or of a changed one."""
-        whose = (self.id, self.name, self.attempt, self.at)
-        return type(self).of(*whose, policy, is_late=self.days > 0)
+        known = policy if self.at is not None or self.days else None
+        return type(self).of(self.id, self.name, self.attempt, self.at, known)
 
 
 @dataclass(frozen=True)

@@ -152,10 +152,6 @@ class PeerNode:
             self._refuse(str(template), error.message.serialise(), kind)
             return None
 
-    def _own(self, template: Any, n: int = 0) -> Any:
-        """Fill in a template that no value of a program's has a part in."""
-        return self._filled(template, {"n": n, "t": self._now_ns() / 1e9}, "unsaid")
-
     def _made(self, kind: Any, values: Any, fault: str = "refused") -> Any:
         """Make a message of what a program's values have led to; None where that fails."""
         try:
@@ -164,10 +160,10 @@ class PeerNode:
             self._refuse(kind.__name__, str(error)[:300], fault)
             return None
 
-    def _own_made(self, kind: Any, values: Any) -> Any:
-        """Make a message of values of its own; only a type of the program's may not hold them."""
-        is_theirs = self._types.is_theirs(kind)
-        return self._made(kind, values, "refused" if is_theirs else "unsaid")
+    def _own(self, kind: Any, template: Any, n: int = 0) -> Any:
+        """Make a message in which no value of a program's has a part; maybe of a type of its."""
+        values = self._filled(template, {"n": n, "t": self._now_ns() / 1e9}, "unsaid")
+        return self._made(kind, values, "refused" if self._types.is_theirs(kind) else "unsaid")
 
     # Topics -----------------------------------------------------------------------------------
 
@@ -177,8 +173,7 @@ class PeerNode:
 
         def say(n: int) -> None:
             template = entry.messages[min(n, len(entry.messages) - 1)] if entry.messages else None
-            values = self._own(template or entry.message, n)
-            message = self._own_made(kind, values)
+            message = self._own(kind, template or entry.message, n)
             if message is not None:
                 publisher.publish(message)
                 self._recorder.said(publisher.topic_name, chosen, self.name, message)
@@ -206,21 +201,15 @@ class PeerNode:
         publisher = self.node.create_publisher(kind, entry.topic, _qos(quality))
 
         def say() -> None:
-            numbers = [*entry.translation, *entry.rotation]
-            values = self._own(numbers)
-            if values is None:
-                return
             stamp = plain(self.node.get_clock().now().to_msg())
-            moved, turned = (
-                zip("xyz", values[:3], strict=True),
-                zip("xyzw", values[3:], strict=True),
-            )
+            moved = zip("xyz", entry.translation, strict=True)
+            turned = zip("xyzw", entry.rotation, strict=True)
             frame = {
                 "header": {"stamp": stamp, "frame_id": entry.parent},
                 "child_frame_id": entry.child,
                 "transform": {"translation": dict(moved), "rotation": dict(turned)},
             }
-            message = self._own_made(kind, {"transforms": [frame]})
+            message = self._own(kind, {"transforms": [frame]})
             if message is None:
                 return
             publisher.publish(message)
@@ -284,7 +273,7 @@ class PeerNode:
 
         def ask() -> None:
             kind = clients[0].srv_type
-            request = self._own_made(kind.Request, self._own(entry.request))
+            request = self._own(kind.Request, entry.request)
             if request is None:  # the program has the type with other fields
                 return
             event.update(request=plain(request), sent_ns=self._now_ns())
@@ -334,7 +323,7 @@ class PeerNode:
 
         def send() -> None:
             client = clients[0]
-            goal = self._own_made(client._action_type.Goal, self._own(entry.goal))
+            goal = self._own(client._action_type.Goal, entry.goal)
             if goal is None:  # the program has the type with other fields
                 return
             event.update(goal=plain(goal), sent_ns=self._now_ns(), feedback=[])
