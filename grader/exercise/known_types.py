@@ -155,9 +155,8 @@ class KnownTypes:
         for values in said:
             faults = []
             for each in types:
-                names: dict[str, Any] = {"n": 1, "t": 0.5}
-                if asked is not None:
-                    names |= {**(fields := self._examples(each, asked)), asked: fields}
+                fields = self._examples(each, asked) if asked else {}
+                names = {"n": 1, "t": 0.5, **fields, asked or "": fields}
                 try:
                     self.check(_tried(values, names), each, part, at, is_expected=is_expected)
                 except Mistake as fault:

@@ -63,10 +63,10 @@ class Grade:
         return self.final if result is None or self.final is None else result.score
 
     @property
-    def late_days(self) -> int | None:
-        """How many started days of lateness count; None where nothing was judged."""
-        submitted = None if self.entry.result is None else self.entry.result.handed_in
-        return None if submitted is None else submitted.days
+    def late_days(self) -> int:
+        """How many started days of lateness count."""
+        submitted = self.entry.result and self.entry.result.handed_in
+        return submitted.days if submitted else 0
 
     @property
     def late_deduction(self) -> float:

@@ -143,7 +143,7 @@ def _row(grade: Grade, checks: Sequence[str]) -> list[str]:
     return [
         *map(cell, (grade.person.id, grade.person.name, hand_in.id, "; ".join(grade.group))),
         *(str(hand_in.attempt), "" if hand_in.at is None else hand_in.at.isoformat(), entry.state),
-        *(decimal(grade.score), "" if grade.late_days is None else str(grade.late_days)),
+        *(decimal(grade.score), str(grade.late_days)),
         *map(decimal, (grade.late_deduction, grade.final, entry.max_score)),
         *(decimal(earned.get(check)) for check in checks),
         cell(clip(translate(entry.message), LONGEST)),

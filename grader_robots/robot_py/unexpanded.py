@@ -9,7 +9,7 @@ from grader_robots.robot_py import tinyxml
 #: What urdfdom reads of a robot; the rest is for simulators and controllers.
 PARTS = ("link", "joint", "material")
 #: Attributes that are names: `${namespace}base_link` is one like any other.
-NAMES = ("name", "link", "joint")
+NAMES = ("name", "link", "joint", "reference")
 SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\((?:arg|find|env|optenv|eval|dirname)\b[^)]*\)")
 
 
@@ -20,11 +20,10 @@ def unexpanded(text: str) -> str:
     except tinyxml.Malformed:
         return ""
     for part in robot.children if robot is not None else ():
-        is_read = part.name in PARTS
-        for element in part.walk() if is_read else [part]:
+        for element in part.walk() if part.name in PARTS else [part]:
             if element.name.startswith("xacro:"):
                 return f"<{element.name}"
-            values = (v for n, v in element.attributes.items() if is_read and n not in NAMES)
+            values = (v for n, v in element.attributes.items() if n not in NAMES)
             if found := SUBSTITUTION.search("\n".join(values)):
                 return found[0]
     return ""

@@ -51,7 +51,7 @@ def test_a_class_without_times_is_refused_until_a_roster_has_them(files, graded)
 
 def test_who_handed_in_nothing_needs_no_time(graded):
     code, said, late = graded({"1.py": NODE, "roster.csv": ROSTER + "3,\n"})
-    assert (code, late["3"]) == (0, ("", "0.00")), said
+    assert (code, late["3"]) == (0, ("0", "0.00")), said
 
 
 def test_what_canvas_marks_as_late_is_a_day_late_and_nobody_else_is(graded):

@@ -138,8 +138,7 @@ def _check_fit(
                  for t in getattr(entry, "types", ())]  # fmt: skip
         for field, (inner, asked) in said.items():
             value = getattr(wanted, field)
-            several = value if isinstance(value, list) else []
-            values = several if field == "feedback" else [value]  # of each, in order
+            values = [value] if field != "feedback" else value if isinstance(value, list) else []
             known.check_each(values, types, inner, (*at, field), asked, is_expected=True)
             if asked is not None:
                 known.check_names(value, types, asked, {asked}, (*at, field))

@@ -100,7 +100,7 @@ def _judged(expectation: e.Expectation, recording: Recording) -> Finding:
         expectation = _less_punctual(expectation)
     try:
         if not isinstance(expectation, (e.ExpectedNode, e.ExpectedExit)):
-            _expect_all(trace)
+            _expect_all(trace, recording.interfaces.texts)
         passed = _JUDGES[type(expectation)](trace, expectation, recording)
     except Lacks as lack:
         if expectation.help:
@@ -131,10 +131,12 @@ class PeerFault(Exception):
         super().__init__(f"{event['peer']} cannot say what the exercise asks of it, {what}")
 
 
-def _expect_all(trace: CastTrace) -> None:
-    """Expect that all was said and recorded: what came behind may be anything."""
+def _expect_all(trace: CastTrace, theirs: Mapping[str, str]) -> None:
+    """Expect that all was said, but in types of `theirs`, and recorded: anything may follow."""
+    types = {name.rpartition("/")[2] for name in theirs}
     for event in trace.of_kind("unsaid"):
-        raise PeerFault(event)
+        if event["what"].partition("_")[0] not in types:
+            raise PeerFault(event)
     for event in trace.of_kind("full"):
         raise Lacks(
             msg("Your program sent so much that nothing after {time} s was recorded.",
@@ -499,12 +501,8 @@ def _only(trace: CastTrace, kind: str, key: str) -> Event:
 
 
 def _expect_answers(trace: CastTrace, peer: str, right: Any = None, sent: Any = ()) -> None:
-    """Expect that a peer could use what the program has `sent`, and its types.
-
-    Raises:
-        PeerFault: it could not, though nothing was sent but what is `right`.
-    """
-    for event in trace.of_kind("refused", peer=peer):
+    """Expect that a peer could use what the program `sent`; not its fault where that is `right`."""
+    for event in (*trace.of_kind("refused", peer=peer), *trace.of_kind("unsaid", peer=peer)):
         if right and not any(next(differences(each, right), None) for each in sent):
             raise PeerFault(event)
         is_ours = not isinstance(event["why"], str)

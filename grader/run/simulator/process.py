@@ -77,9 +77,9 @@ class SceneRun:
 
             definitions = {**plan.own_definitions, **plan.definitions}
             peers, end_s = script.parse(plan.cast), plan.limits.total_s
-            theirs = plan.own_definitions.keys() - plan.definitions.keys()
-            more = (definitions, end_s, wire, theirs)
-            self._cast = Playing(peers, plan.hears, *more, are_compiled=are_compiled)
+            self._cast = Playing(
+                peers, plan.hears, definitions, end_s, wire, are_compiled=are_compiled
+            )
         hooks = Hooks(has_unread, None if self._feed is None else self._feed.write, self._cast)
         with self._in_time():
             self._simulation = self._scene.simulate(

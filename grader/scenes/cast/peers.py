@@ -161,9 +161,9 @@ class PeerNode:
             return None
 
     def _own(self, kind: Any, template: Any, n: int = 0) -> Any:
-        """Make a message in which no value of a program's has a part; maybe of a type of its."""
+        """Make a message in which no value of a program's has a part."""
         values = self._filled(template, {"n": n, "t": self._now_ns() / 1e9}, "unsaid")
-        return self._made(kind, values, "refused" if self._types.is_theirs(kind) else "unsaid")
+        return self._made(kind, values, "unsaid")
 
     # Topics -----------------------------------------------------------------------------------
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping
 from typing import Any, Protocol
 
 from grader.scenes.cast.peers import PeerNode
@@ -46,7 +46,6 @@ class Playing:
         topics: those that are recorded besides what the peers hear.
         definitions: of types that are not installed, or were compiled for this run.
         end_s: how long the run may last [s].
-        theirs: the names of definitions that a hand-in alone has.
     """
 
     def __init__(
@@ -56,14 +55,13 @@ class Playing:
         definitions: Mapping[str, str],
         end_s: float,
         wire: Wire,
-        theirs: Set[str] = frozenset(),
         *,
         are_compiled: bool = False,
     ) -> None:
         self._wire = wire
         #: of the program's channels; of the first endpoint where several differ
         self._types_of: dict[str, str] = {}
-        types = Types(definitions, theirs, are_compiled=are_compiled)
+        types = Types(definitions, are_compiled=are_compiled)
 
         def now_ns() -> int:
             return wire.now_ns

@@ -17,7 +17,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -171,18 +171,11 @@ class Types:
 
     Args:
         texts: the definitions of the former, by names such as 'my_interfaces/msg/Num'.
-        theirs: the names of those that a hand-in alone has.
         are_compiled: whether these can be imported as installed ones can.
     """
 
-    def __init__(
-        self,
-        texts: Mapping[str, str],
-        theirs: Set[str] = frozenset(),
-        *,
-        are_compiled: bool = False,
-    ) -> None:
-        self._texts, self._theirs = texts, theirs
+    def __init__(self, texts: Mapping[str, str], *, are_compiled: bool = False) -> None:
+        self._texts = texts
         self._own = Definitions({} if are_compiled else texts)
         #: definitions of all messages that were asked for, and of their fields
         self.used: dict[str, str] = {}
@@ -199,11 +192,6 @@ class Types:
             return self._own.type(name)
         except (ImportError, AttributeError) as error:
             raise NoType(f"there is no type {name}: {error}") from None
-
-    def is_theirs(self, kind: Any) -> bool:
-        """Whether a class is of a type that a hand-in alone has."""
-        folder = kind.__module__.rpartition(".")[0].replace(".", "/")
-        return f"{folder}/{kind.__name__.partition('_')[0]}" in self._theirs
 
     def use(self, name: str) -> Any:
         """Return the class of a message, whose definition a recording is to have.

@@ -1,11 +1,12 @@
 """Traces of casts for tests, written by hand; `/peer` is the one peer."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import parse
 from grader.exercise.verdict import Finding
-from grader.recording.recording import Recording, Recordings, Run
+from grader.recording.recording import OwnInterfaces, Recording, Recordings, Run
 from grader.ros.bag_types import BagTypes
 from grader.scenes.cast.trace import CastTrace, SentMessage
 from grader.scenes.scene import STEP_NS
@@ -71,9 +72,11 @@ def judged(
     output: str = "",
     code: int | None = 0,
     length_s: float = 10,
+    own: Mapping[str, str] | None = None,
 ) -> Finding:
-    """The finding on what is expected of a trace with these parts."""
-    run = Run("virtual", exit_code=code)
-    recording = Recording(trace(*parts, length_s=length_s), run, output=output, scene="graph")
+    """The finding on what is expected of a trace with these parts, and with types of its own."""
+    run, interfaces = Run("virtual", exit_code=code), OwnInterfaces(own or {})
+    whole = trace(*parts, length_s=length_s)
+    recording = Recording(whole, run, output=output, scene="graph", interfaces=interfaces)
     wanted = parse(expected, ("expect", "it"))
     return judging.judge(lambda _: wanted, Recordings(recording))
