@@ -130,10 +130,7 @@ def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
 
 
 def check_lateness(hand_ins: Iterable[HandIn], exercise: Exercise) -> None:
-    """Refuse to grade by a policy for late hand-ins where it is not known which are late.
-
-    An export that marks some as late says of the others that they are in time.
-    """
+    """Refuse to grade by a policy for late hand-ins where no times and no marks tell them."""
     there = [each for each in hand_ins if each.problem == NOTHING]
     unknown = [each for each in there if each.at is None]
     is_costly = exercise.late is not None and exercise.late.per_day > 0
