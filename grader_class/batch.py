@@ -12,7 +12,7 @@ from grader.recording import Clock
 from grader.submission import LaunchAsked
 from grader.system import content, files
 from grader.system import versions as system
-from grader.text import NOTHING, Message, joined, msg, tr
+from grader.text import NOTHING, Message, joined, listed, msg, tr
 from grader_class import export, grade
 from grader_class.class_file import ANOTHER_MACHINE, CLASS, MACHINE, ClassFile
 from grader_class.entry import Entry, HandIn
@@ -127,6 +127,20 @@ def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
         differences=joined(list(differences.values()), "; "),
         advice=advice,
     )
+
+
+def check_lateness(hand_ins: Iterable[HandIn], exercise: Exercise) -> None:
+    """Refuse to grade by a policy for late hand-ins where no times and no marks tell them."""
+    there = [each for each in hand_ins if each.problem == NOTHING]
+    unknown = [each for each in there if each.at is None]
+    is_costly = exercise.late is not None and exercise.late.per_day > 0
+    if is_costly and unknown and not any(each.is_marked_late for each in there):
+        raise UsageError(
+            "{name} takes points from late hand-ins (late:), and when they were handed in is not "
+            "known: {who}. Add a roster.csv with the columns id and at, or leave `late` out.",
+            name=exercise.name,
+            who=listed(each.known_as for each in unknown),
+        )
 
 
 def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:

@@ -212,7 +212,8 @@ def _judge(
 ) -> None:
     """Write the folder of a hand-in, except the recording, which `Store.put` links into it."""
     result = judge(recordings, exercise, submission=hand_in.name)
-    whose = SubmissionInfo.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
+    late = exercise.late if hand_in.at is not None or hand_in.is_marked_late else None
+    whose = SubmissionInfo.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, late)
     result = replace(result, artifacts=artifacts(recordings.nominal), handed_in=whose)
     files.make_folder(folder)
     result.put(folder)

@@ -113,6 +113,7 @@ def regrade(out: Path, exercise_path: str, jobs: int, store: Store | None = None
     of_class, exercise = ClassFile.read(out), load_exercise(exercise_path)
     of_class.check_exercise(out, exercise, exercise_path)
     before = {entry.id: entry for entry in entries(out)}
+    batch.check_lateness((e.hand_in for e in before.values() if e.state == "judged"), exercise)
     judged: list[tuple[Entry, Entry]] = []
     failures: list[tuple[Entry, Message]] = []
     made: list[Task] = []

@@ -188,10 +188,14 @@ def _of_python(path: str, read: str) -> Any:
     return made
 
 
-def _of_xml(text: str) -> Entity:
-    if "<!DOCTYPE" in text:
+class _Builder(ElementTree.TreeBuilder):
+    def doctype(self, *_: object) -> None:
         raise NotKnown("a DOCTYPE")
-    return Entity.of_xml(ElementTree.fromstring(text))
+
+
+def _of_xml(text: str) -> Entity:
+    parser = ElementTree.XMLParser(target=_Builder())
+    return Entity.of_xml(ElementTree.fromstring(text, parser))
 
 
 def _of_yaml(text: str) -> Entity:

@@ -114,7 +114,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
     tolerances = decoded(Mapping[str, Any], data.get("tolerances") or {}, "tolerances")
     draws = read_draws(data)
     cases = read_cases(data, interfaces, limits.total_s, draws, has_cast=subject.has_cast)
-    checks, heard = _checks(data, place, cases, interfaces, limits.total_s, draws)
+    checks, heard = _checks(data, place, cases, interfaces, limits.total_s, draws, subject)
     cases = [each.hearing(heard) for each in cases]
     allowed = read_allowed(data, subject, setting)
     if allowed is not None:
@@ -245,6 +245,7 @@ def _checks(
     definitions: Mapping[str, str],
     end_s: float,
     draws: Mapping[str, Draw],
+    subject: Subject,
 ) -> tuple[Checks, set[str]]:
     """Return the checks of checks.py and those of what is expected, and the topics of these."""
     if EXPECT not in data:
@@ -254,7 +255,10 @@ def _checks(
 
     has_own = (place.folder / CHECKS).is_file()
     checks = places.import_checks(place).copy() if has_own else Checks()
-    return checks, add_checks(checks, data[EXPECT], cases, KnownTypes(definitions), end_s, draws)
+    met = subject.endpoints(subject.untouched(None), "") if isinstance(subject, Scene) else ()
+    own = {each.name for each in met if each.kind == "publisher"}
+    known = KnownTypes(definitions)
+    return checks, add_checks(checks, data[EXPECT], cases, known, end_s, draws, own)
 
 
 def _programs(plain: _Plain) -> tuple[str, ...]:

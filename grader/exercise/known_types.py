@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
@@ -16,7 +17,7 @@ from typing import Any, Final
 from grader.exercise.comparing import is_number, is_range
 from grader.ros.fields import Field, parse
 from grader.scenes.cast import script
-from grader.system.expressions import is_pattern
+from grader.system.expressions import ExpressionError, filled, is_pattern
 from grader.system.yaml_file import Mistake
 from grader.text.message import msg
 from grader.text.strings import nearest
@@ -127,9 +128,7 @@ class KnownTypes:
         elif not isinstance(value, Mapping) and not is_expected:
             fits, wanted = False, msg("fields with values")
         else:
-            package = field.package or within.partition("/")[0]
-            inner = f"{package}/msg/{base.rpartition('/')[2]}"
-            self.check(value, inner, "", at, is_expected=is_expected)
+            self.check(value, _inner(field, within), "", at, is_expected=is_expected)
             return
         if not fits:
             what = "expected {wanted}, since it is a {type}; found {found}"
@@ -141,10 +140,14 @@ class KnownTypes:
         types: Sequence[str],
         part: str,
         at: tuple[str, ...],
+        asked: str | None = None,
         *,
         is_expected: bool = False,
     ) -> None:
         """Check values of messages that may have one of several types.
+
+        Args:
+            asked: the part whose fields expressions may use: each is tried with an example.
 
         Raises:
             Mistake: one fits none of them.
@@ -152,12 +155,31 @@ class KnownTypes:
         for values in said:
             faults = []
             for each in types:
+                fields = self._examples(each, asked) if asked else {}
+                names = {"n": 1, "t": 0.5, **fields, asked or "": fields}
+                tried = values
+                with suppress(ExpressionError):  # else they need what only a run has
+                    tried = filled(values, names)
                 try:
-                    self.check(values, each, part, at, is_expected=is_expected)
+                    self.check(tried, each, part, at, is_expected=is_expected)
                 except Mistake as fault:
                     faults.append(fault)
             if len(faults) == len(types) > 0:
                 raise faults[0]
+
+    def _examples(self, name: str, part: str = "") -> dict[str, Any]:
+        """Return a value of each field of a type."""
+        fields = self.fields(name, part).values()
+        return {field.name: self._example(field, name) for field in fields}
+
+    def _example(self, field: Field, within: str) -> Any:
+        if field.array:
+            return [self._example(field._replace(array=""), within)] * (field.size or 3)
+        if _WHOLE.fullmatch(field.base):
+            return 1
+        known = {"string": "a", "wstring": "a", "bool": True, "float32": 1.5, "float64": 1.5}
+        found = known.get(field.base)
+        return self._examples(_inner(field, within)) if found is None else found
 
     def check_names(
         self, said: Any, types: Iterable[str], part: str, more: set[str], at: tuple[str, ...]
@@ -196,9 +218,13 @@ def check_cast(
                     given = getattr(entry, key)
                     said = given if isinstance(given, tuple) else (given,)
                     if part is not None:
-                        known.check_each(said, entry.types, part, (*at, key))
+                        known.check_each(said, entry.types, part, (*at, key), asked)
                     if asked is not None:
                         known.check_names(given, entry.types, asked, more, (*at, key))
+                parts = {"translation": "Vector3", "rotation": "Quaternion"}
+                for key, of in parts.items() if kind == "frames" else ():
+                    numbers = dict(zip("xyzw", getattr(entry, key), strict=False))
+                    known.check_each([numbers], [f"geometry_msgs/msg/{of}"], "", (*at, key))
 
 
 def check_time(time_s: Any, end_s: float, at: tuple[str, ...]) -> None:
@@ -231,6 +257,12 @@ def _definition(name: str) -> str:
     package, kind, _ = name.split("/")
     file = _installed(package, kind).get(name)
     return "" if file is None else file.read_text("utf-8", "replace")
+
+
+def _inner(field: Field, within: str) -> str:
+    """Return the type of a field of a type, which is no basic one."""
+    package = field.package or within.partition("/")[0]
+    return f"{package}/msg/{field.base.rpartition('/')[2]}"
 
 
 def _is_open(value: Any, *, is_expected: bool) -> bool:

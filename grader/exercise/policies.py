@@ -29,7 +29,7 @@ class Late:
     """How late a submission is, and what that costs.
 
     Attributes:
-        late_s: after it was due [s], grace included; 0 where it was in time.
+        late_s: after it was due [s], grace included; 0 where it was in time, or nobody knows.
         days: how many started days of it cost points.
         points: what that costs.
     """
@@ -58,8 +58,10 @@ class LatePolicy:
     per_day: Amount = 0.0
     most: Amount = math.inf
 
-    def deduction(self, at: datetime) -> Late:
-        """Return what a submission at some time costs."""
+    def deduction(self, at: datetime | None) -> Late:
+        """Return what a submission at some time costs; None: it is late, nobody knows how much."""
+        if at is None:
+            return Late(0.0, 1, round(min(self.per_day, self.most), 2))
         if at.utcoffset() is None:
             raise ValueError(f"expected a time with its zone, found {at.isoformat()}")
         late = at - self.due

@@ -180,9 +180,10 @@ def attempt(result: Result) -> list[str]:
         sentence = tr("{who}, attempt {attempt}, handed in {when}.", **who, when=when)
     else:
         sentence = tr("{who}, attempt {attempt}.", **who)
-    if info.late_s <= 0:
+    if info.late_s <= 0 and not info.days:
         return [sentence]
-    values = {"late": duration(info.late_s), "less": points(info.deducted)}
+    late = duration(info.late_s) if info.late_s > 0 else tr("some time")
+    values = {"late": late, "less": points(info.deducted)}
     if not info.deducted:
         cost = tr("Handed in {late} late, which costs no points.", **values)
     elif result.not_shown is not None:  # the total would reveal the points of hidden checks

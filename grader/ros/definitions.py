@@ -18,6 +18,7 @@ import sys
 import warnings
 from collections.abc import Mapping, Set
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final, cast
@@ -160,16 +161,25 @@ class Definitions:
             vars(module).update(self._made(name))
 
         def get(name: str) -> Any:
-            if error := self.errors.get(folder + name):
+            of_type = folder + name.partition("_")[0]
+            if error := self.errors.get(of_type):
                 raise ImportError(str(error)) from error
-            if folder + name not in self._extents:
+            if name not in self._exported(of_type):
                 raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-            found = importlib.import_module(module_of(slot_of(folder + name)))
+            found = importlib.import_module(module_of(slot_of(of_type)))
             return vars(module).setdefault(name, getattr(found, name))
 
         if folder.count("/") == 2:
-            own = [name.removeprefix(folder) for name in self._extents if name.startswith(folder)]
-            vars(module).update(__getattr__=get, __all__=own)
+            own = [self._exported(name) for name in self._extents if name.startswith(folder)]
+            vars(module).update(__getattr__=get, __all__=list(chain(*own)))
+
+    def _exported(self, name: str) -> list[str]:
+        """Return what rosidl_generator_py's `my_interfaces.srv` has of a type; [] if it is none."""
+        if name not in self._extents:
+            return []
+        names = (each.structure.namespaced_type.name for each in parts(self._elements[name]))
+        of_services = (each for each in names if each.endswith(("_Request", "_Response", "_Event")))
+        return [name.rpartition("/")[2], *of_services]
 
     # whether they hold together ----------------------------------------------------------------
 

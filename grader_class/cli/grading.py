@@ -48,6 +48,7 @@ def grade_class(args: Namespace) -> int:
         if exercise is None:
             args.named = _named(found, messages) or args.named
             exercise = load_exercise(args.named)
+        batch.check_lateness(found.hand_ins, exercise)
         path = args.exercise or args.named
         order = Order(
             exercise=exercise,

@@ -68,6 +68,7 @@ class Attempt:
         at: when it was handed in, with its time zone.
         problem: why there is nothing to grade.
         keys: what may be the student's id in a roster, the best first; (): those of the person.
+        is_marked_late: whether the export says that it is late.
         alone: whether a single file in a folder is the submission, and not the folder.
     """
 
@@ -78,6 +79,7 @@ class Attempt:
     at: datetime | None = None
     problem: Message = NOTHING
     keys: tuple[str, ...] = ()
+    is_marked_late: bool = False
     alone: bool = False
 
 

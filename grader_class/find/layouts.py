@@ -250,7 +250,8 @@ class Canvas(Layout):
             names = [name for _, name in files]
         pieces = tuple(Piece(item.path, name) for (item, _), name in zip(files, names, strict=True))
         problem = NOTHING if pieces else self._ONLY_TEXT
-        return Attempt(whose, (student,), pieces, number, problem=problem)
+        late = "Late" in student.columns
+        return Attempt(whose, (student,), pieces, number, problem=problem, is_marked_late=late)
 
 
 class Repositories(Layout):

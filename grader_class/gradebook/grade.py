@@ -63,6 +63,12 @@ class Grade:
         return self.final if result is None or self.final is None else result.score
 
     @property
+    def late_days(self) -> int:
+        """How many started days of lateness count."""
+        submitted = self.entry.result and self.entry.result.handed_in
+        return submitted.days if submitted else 0
+
+    @property
     def late_deduction(self) -> float:
         """The deduction for being late [points]."""
         if self.score is None or self.final is None:

@@ -46,7 +46,7 @@ PSEUDONYMS = "pseudonyms.csv"
 BYTE_ORDER_MARK = "\ufeff"
 _BEFORE = (
     *("id", "name", "hand_in", "group", "attempt", "handed_in", "state"),
-    *("score", "late_deduction", "final", "max_score"),
+    *("score", "late_days", "late_deduction", "final", "max_score"),
 )
 _AFTER = ("message",)
 
@@ -143,7 +143,8 @@ def _row(grade: Grade, checks: Sequence[str]) -> list[str]:
     return [
         *map(cell, (grade.person.id, grade.person.name, hand_in.id, "; ".join(grade.group))),
         *(str(hand_in.attempt), "" if hand_in.at is None else hand_in.at.isoformat(), entry.state),
-        *map(decimal, (grade.score, grade.late_deduction, grade.final, entry.max_score)),
+        *(decimal(grade.score), str(grade.late_days)),
+        *map(decimal, (grade.late_deduction, grade.final, entry.max_score)),
         *(decimal(earned.get(check)) for check in checks),
         cell(clip(translate(entry.message), LONGEST)),
     ]
@@ -165,6 +166,7 @@ def _line(grade: Grade) -> Any:
         "handed_in": None if hand_in.at is None else hand_in.at.isoformat(),
         "state": entry.state,
         "score": grade.score,
+        "late_days": grade.late_days,
         "late_deduction": grade.late_deduction,
         "final": grade.final,
         "max_score": entry.max_score,

@@ -95,11 +95,13 @@ class Student:
     def late(self) -> str:
         """The lateness in words, and its deduction; '' where it was in time."""
         found = self._handed_in
-        if found is None or found.late_s <= 0:
+        if found is None or (found.late_s <= 0 and not found.days):
             return ""
         minutes = max(int(found.late_s // 60), 1)
         days, hours = divmod(minutes // 60, 24)
-        if days:
+        if found.late_s <= 0:
+            length = tr("some time")
+        elif days:
             length = tr("{days} d {hours} h", days=days, hours=hours)
         else:
             length = tr("{hours} h {minutes} min", hours=hours, minutes=minutes % 60)

@@ -6,9 +6,10 @@ import os
 import re
 from pathlib import Path
 from typing import Final
-from xml.etree import ElementTree
 
 from grader.submission import Workspace, begin, package_trace, safe_files, steps
+from grader_robots.robot_py import tinyxml
+from grader_robots.robot_py.unexpanded import unexpanded
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].
@@ -26,17 +27,15 @@ _ARGUMENT: Final = re.compile(_GIVEN.replace("{}", "arg", 1).replace("{}", "defa
 
 
 def named_meshes(text: str, place: Workspace) -> tuple[package_trace.NamedMesh, ...] | None:
-    """The files that a description names; None where it is no XML."""
+    """The files that a description names; None where urdfdom could not read it."""
     try:
-        if "<!DOCTYPE" in text:
-            return None
-        root = ElementTree.fromstring(text)
-    except (ElementTree.ParseError, ValueError):
+        document = tinyxml.read(text)
+    except tinyxml.Malformed:
         return None
     found: dict[tuple[str, bool], package_trace.NamedMesh] = {}
-    for element in root.iter():
-        if element.tag in ("mesh", "texture") and (uri := element.get("filename")):
-            key = uri, element.tag == "mesh"
+    for element in document.walk():
+        if element.name in ("mesh", "texture") and (uri := element.get("filename")):
+            key = uri, element.name == "mesh"
             if key not in found and len(found) < _MOST_FILES:
                 state, path = _resolved(uri.strip(), place)
                 named, at = place.shown(uri)[:1000], place.shown(path)[:1000]
@@ -95,7 +94,7 @@ def expanded(place: Workspace) -> list[dict[str, str]]:
         if not re.search(r"<robot\b[^>]*\bname\s*=", text):
             continue  # a part that another file includes
         code, errors = 0, ""
-        if "xacro" in text:
+        if file.endswith(".xacro") or unexpanded(text):
             code, text, errors = record.xacro([str(path)])
         made.append(
             {"file": file, "text": "" if code else text, "errors": steps.end_of(errors, 1000)}

@@ -134,6 +134,13 @@ class Element:
         """Return all children of that name."""
         return (child for child in self.children if child.name == name)
 
+    def walk(self) -> Iterator[Element]:
+        """Yield the element and all within it, in their order."""
+        waiting = [self]
+        while waiting:
+            yield (element := waiting.pop())
+            waiting += reversed(element.children)
+
     def get(self, attribute: str) -> str | None:
         """Return an attribute's value; None where it is not given."""
         return self.attributes.get(attribute)

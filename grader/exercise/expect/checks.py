@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import Any, Final
 
 from grader.exercise.cases import USUAL, RunCase
@@ -43,12 +43,14 @@ def add_checks(
     known: KnownTypes,
     end_s: float,
     draws: Mapping[str, Draw],
+    unheard: Set[str] = frozenset(),
 ) -> set[str]:
     """Add a check for each entry; return the topics that they judge.
 
     Args:
         cases: those of the exercise, with their peers.
         end_s: how long a run lasts [s].
+        unheard: topics of the scene itself, of which nothing is recorded.
 
     Raises:
         Mistake: something in it is wrong; its keys name the place.
@@ -71,6 +73,10 @@ def add_checks(
         what = "expected some of {known}, found {found}"
         expect(not unknown, (*at, "cases"), what, unknown, known=", ".join(named))
         _check_fit(expectation, casts, known, at)
+        for topic in unheard & {*map(script.absolute, expectation.topics)}:
+            raise Mistake(
+                at, "{topic} is the scene's: a cast hears programs and peers alone", topic=topic
+            )
         begin_s, until_s = (getattr(expectation, key, 0.0) for key in ("begin", "end"))
         check_time(begin_s, end_s, (*at, "begin"))
         if begin_s > until_s > 0:
@@ -84,7 +90,7 @@ def add_checks(
     topics = {topic for each in made.values() for topic in each.topics}
     hears = {topic for each in cases for topic in each.hears} | topics
     sent = {each.name for peers in casts for each in script.endpoints(peers)}
-    there = sorted(sent.union(*(script.heard(peers, hears) for peers in casts)))
+    there = sorted(sent.union(*(script.heard(peers, hears) for peers in casts)) - unheard)
     for name, expectation in made.items():
         heard = getattr(expectation, "heard", "")
         for key in (*expectation.names, *(["heard"] if heard else [])):
@@ -133,8 +139,8 @@ def _check_fit(
                  for t in getattr(entry, "types", ())]  # fmt: skip
         for field, (inner, asked) in said.items():
             value = getattr(wanted, field)
-            values = value if isinstance(value, tuple) else (value,)
-            known.check_each(values, types, inner, (*at, field), is_expected=True)
+            values = [value] if field != "feedback" else value if isinstance(value, list) else []
+            known.check_each(values, types, inner, (*at, field), asked, is_expected=True)
             if asked is not None:
                 known.check_names(value, types, asked, {asked}, (*at, field))
 

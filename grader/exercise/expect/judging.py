@@ -101,7 +101,7 @@ def _judged(expectation: e.Expectation, recording: Recording) -> Finding:
         expectation = _less_punctual(expectation)
     try:
         if not isinstance(expectation, (e.ExpectedNode, e.ExpectedExit)):
-            _expect_all(trace)
+            _expect_all(trace, recording.interfaces.texts)
         passed = _JUDGES[type(expectation)](trace, expectation, recording)
     except Lacks as lack:
         if expectation.help:
@@ -126,8 +126,21 @@ def _less_punctual(expectation: e.Expectation) -> e.Expectation:
     return replace(expectation, **wider)
 
 
-def _expect_all(trace: CastTrace) -> None:
-    """Expect that all was recorded: what came behind may be anything."""
+class PeerFault(Exception):
+    """A peer could not say what the exercise has it say, which is no fault of the program's."""
+
+    def __init__(self, event: Event) -> None:
+        why = event["why"] if isinstance(event["why"], str) else str(Message.parse(event["why"]))
+        what = f"{event['what']} at {event['time_ns'] / 1e9:.2f} s: {why}"
+        super().__init__(f"{event['peer']} cannot say what the exercise asks of it, {what}")
+
+
+def _expect_all(trace: CastTrace, theirs: Mapping[str, str]) -> None:
+    """Expect that all was said, but in types of `theirs`, and recorded: anything may follow."""
+    types = {name.rpartition("/")[2] for name in theirs}
+    for event in trace.of_kind("unsaid"):
+        if event["what"].partition("_")[0] not in types:
+            raise PeerFault(event)
     for event in trace.of_kind("full"):
         raise Lacks(
             msg("Your program sent so much that nothing after {time} s was recorded.",
@@ -539,9 +552,11 @@ def _only(trace: CastTrace, kind: str, key: str) -> Event:
     raise Lacks(msg("Nothing was recorded of {name}.", name=key))
 
 
-def _expect_answers(trace: CastTrace, peer: str) -> None:
-    """Expect that a peer could use what the program has sent, and its types."""
-    for event in trace.of_kind("refused", peer=peer):
+def _expect_answers(trace: CastTrace, peer: str, right: Any = None, sent: Any = ()) -> None:
+    """Expect that a peer could use what the program `sent`; not its fault where that is `right`."""
+    for event in (*trace.of_kind("refused", peer=peer), *trace.of_kind("unsaid", peer=peer)):
+        if right and not any(next(differences(each, right), None) for each in sent):
+            raise PeerFault(event)
         is_ours = not isinstance(event["why"], str)
         why = Message.parse(event["why"]) if is_ours else shown(event["why"])
         raise Lacks(
@@ -609,7 +624,7 @@ def _served(trace: CastTrace, wanted: e.ExpectedRequest, _: Recording) -> Messag
                service=service, time=_seconds(first["time_ns"]))  # fmt: skip
     right = _filled(wanted.request, {}, first["time_ns"])
     _compare(what, first["request"], right, wanted.tolerance, first["time_ns"])
-    _expect_answers(trace, first["peer"])
+    _expect_answers(trace, first["peer"], right, [each["request"] for each in events])
     _expect_count(wanted.count, len(events), msg("calls of {service}", service=service))
     return msg("{service} was called as expected.", service=service)
 
@@ -688,7 +703,7 @@ def _sends(trace: CastTrace, wanted: e.ExpectedGoal, _: Recording) -> Message:
     what = msg("The goal for {action}", action=action)
     right = _filled(wanted.values, {}, events[0]["time_ns"])
     _compare(what, events[0]["goal"], right, None, events[0]["time_ns"])
-    _expect_answers(trace, events[0]["peer"])
+    _expect_answers(trace, events[0]["peer"], right, [each["goal"] for each in events])
     return msg("The action {action} got its goal.", action=action)
 
 

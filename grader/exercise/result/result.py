@@ -75,17 +75,18 @@ class SubmissionInfo:
     def of(
         cls, id: str, name: str, attempt: int, at: datetime | None, policy: LatePolicy | None
     ) -> Self:
-        """Make it by an exercise's policy for late submissions.
+        """Make it by a policy for late submissions; None: there is none, or nothing is known.
 
         Raises:
             ValueError: the time has no zone.
         """
-        late = Late() if at is None or policy is None else policy.deduction(at)
+        late = Late() if policy is None else policy.deduction(at)
         return cls(id, name, attempt, at, late.late_s, late.days, late.points)
 
     def by(self, policy: LatePolicy | None) -> Self:
         """Return the same submission by the policy of another exercise, or of a changed one."""
-        return type(self).of(self.id, self.name, self.attempt, self.at, policy)
+        known = policy if self.at is not None or self.days else None
+        return type(self).of(self.id, self.name, self.attempt, self.at, known)
 
 
 @dataclass(frozen=True)

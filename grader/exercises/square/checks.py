@@ -83,6 +83,9 @@ def sides(recordings: Recordings, tolerances: Tolerances) -> Finding:
     {corner_size_m} m is no corner. A side is right if it is {side_m} m long, give or take
     {side_error_m} m. The points are the number of right sides, four at most, divided by the number
     of sides or by four, whichever is more: 3 right sides of 5 are 3/5 of the points.
+
+    Sides, corners and straightness are those of the first round: what turtle1 drives after its
+    first return, {return_m} m or less from its start, counts for `returns` alone.
     """
     way = Way(recordings.nominal, tolerances)
     found = [(side.last, side.length_m) for side in way.straight_sides()]

@@ -47,7 +47,7 @@ HOST = (
     "grader/system/linux.py",
     # what inspects a package
     *("grader/system/limited.py", "grader/submission", "ros_doubles"),
-    *("grader_robots/__init__.py", "grader_robots/inspection"),
+    *("grader_robots/__init__.py", "grader_robots/inspection", "grader_robots/robot_py"),
     "grader/system/strict_json.py",
     # ... and the sentences of its remarks
     *("grader/text/__init__.py", "grader/text/__init__.pyi", "grader/text/message.py"),

@@ -112,9 +112,9 @@ class PeerNode:
             self._refuse("", str(error))
             return None
 
-    def _refuse(self, what: str, why: Any) -> None:
-        """Record what a peer cannot do with what the program has sent."""
-        self._recorder.event("refused", peer=self.name, what=what[:200], why=why)
+    def _refuse(self, what: str, why: Any, kind: str = "refused") -> None:
+        """Record what a peer cannot do with what the program has sent, or not do at all."""
+        self._recorder.event(kind, peer=self.name, what=what[:200], why=why)
 
     def serve(self, has_unread: Callable[[str], bool]) -> None:
         """Call back for what has arrived, and for what is due then.
@@ -144,21 +144,26 @@ class PeerNode:
         chosen = used if used in entry.types else entry.types[0]
         return chosen, self._types.find(chosen)
 
-    def _filled(self, template: Any, names: Mapping[str, Any]) -> Any:
+    def _filled(self, template: Any, names: Mapping[str, Any], kind: str = "refused") -> Any:
         """Fill in a template; what a program's values make impossible is recorded."""
         try:
             return filled(template, names)
         except ExpressionError as error:
-            self._refuse(str(template), error.message.serialise())
+            self._refuse(str(template), error.message.serialise(), kind)
             return None
 
-    def _made(self, kind: Any, values: Any) -> Any:
+    def _made(self, kind: Any, values: Any, fault: str = "refused") -> Any:
         """Make a message of what a program's values have led to; None where that fails."""
         try:
             return make(kind, {} if values is None else values)
         except ValueError as error:
-            self._refuse(kind.__name__, str(error)[:300])
+            self._refuse(kind.__name__, str(error)[:300], fault)
             return None
+
+    def _own(self, kind: Any, template: Any, n: int = 0) -> Any:
+        """Make a message in which no value of a program's has a part."""
+        values = self._filled(template, {"n": n, "t": self._now_ns() / 1e9}, "unsaid")
+        return self._made(kind, values, "unsaid")
 
     # Topics -----------------------------------------------------------------------------------
 
@@ -168,8 +173,7 @@ class PeerNode:
 
         def say(n: int) -> None:
             template = entry.messages[min(n, len(entry.messages) - 1)] if entry.messages else None
-            values = self._filled(template or entry.message, {"n": n, "t": self._now_ns() / 1e9})
-            message = self._made(kind, values)
+            message = self._own(kind, template or entry.message, n)
             if message is not None:
                 publisher.publish(message)
                 self._recorder.said(publisher.topic_name, chosen, self.name, message)
@@ -197,21 +201,15 @@ class PeerNode:
         publisher = self.node.create_publisher(kind, entry.topic, _qos(quality))
 
         def say() -> None:
-            numbers = [*entry.translation, *entry.rotation]
-            values = self._filled(numbers, {"t": self._now_ns() / 1e9})
-            if values is None:
-                return
             stamp = plain(self.node.get_clock().now().to_msg())
-            moved, turned = (
-                zip("xyz", values[:3], strict=True),
-                zip("xyzw", values[3:], strict=True),
-            )
+            moved = zip("xyz", entry.translation, strict=True)
+            turned = zip("xyzw", entry.rotation, strict=True)
             frame = {
                 "header": {"stamp": stamp, "frame_id": entry.parent},
                 "child_frame_id": entry.child,
                 "transform": {"translation": dict(moved), "rotation": dict(turned)},
             }
-            message = self._made(kind, {"transforms": [frame]})
+            message = self._own(kind, {"transforms": [frame]})
             if message is None:
                 return
             publisher.publish(message)
@@ -275,9 +273,7 @@ class PeerNode:
 
         def ask() -> None:
             kind = clients[0].srv_type
-            request = self._made(
-                kind.Request, self._filled(entry.request, {"t": self._now_ns() / 1e9})
-            )
+            request = self._own(kind.Request, entry.request)
             if request is None:  # the program has the type with other fields
                 return
             event.update(request=plain(request), sent_ns=self._now_ns())
@@ -327,7 +323,7 @@ class PeerNode:
 
         def send() -> None:
             client = clients[0]
-            goal = self._made(client._action_type.Goal, self._filled(entry.goal, {"t": 0.0}))
+            goal = self._own(client._action_type.Goal, entry.goal)
             if goal is None:  # the program has the type with other fields
                 return
             event.update(goal=plain(goal), sent_ns=self._now_ns(), feedback=[])

@@ -11,6 +11,7 @@
 | parameter | peer, id, node, sent_ns; set {name: reason or ''}, values {name: value}, answered_ns |
 | got | peer, topic, values: what a subscription has received |
 | refused | peer, what, why: what a peer could not do with what the program sent |
+| unsaid | peer, what, why: what a peer was to say, and no message can hold |
 | full | nothing: what came then is not recorded |
 """
 

@@ -164,6 +164,7 @@ OBLIGATORY: Final[Mapping[str, tuple[str, ...]]] = {
     "parameter": ("peer", "id", "node"),
     "got": ("peer", "topic", "values"),
     "refused": ("peer", "what", "why"),
+    "unsaid": ("peer", "what", "why"),
     "full": (),
 }
 _TYPES: Final[Mapping[str, type | tuple[type, ...]]] = {

@@ -23,7 +23,10 @@ _LAUNCH_ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml"
 _OF_YAML: Final = re.compile(rb"^launch\s*:", re.MULTILINE)
 _OF_LAUNCH: Final = {
     ".py": re.compile(rb"^def generate_launch_description\b", re.MULTILINE),
-    ".xml": re.compile(rb"<launch\b"),
+    # the first that is neither a declaration nor a comment
+    ".xml": re.compile(
+        rb"\A[^<]*+(?:(?:<\?(?:(?!\?>).)*+\?>|<!--(?:(?!-->).)*+-->)[^<]*+)*+<launch\b", re.DOTALL
+    ),
     ".yaml": _OF_YAML,
     ".yml": _OF_YAML,
 }

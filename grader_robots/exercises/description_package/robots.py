@@ -19,6 +19,7 @@ from grader_robots.exercises.description_package.facts import (
 )
 from grader_robots.robot_py.model import Inertial, Joint, JointType, Model, Origin
 from grader_robots.robot_py.tinyxml import Consequence
+from grader_robots.robot_py.unexpanded import unexpanded
 from grader_robots.robot_py.urdf import ParsedUrdf, parse
 
 checks = Checks()
@@ -28,7 +29,6 @@ FAULTY = 0.5
 ROUNDED = 0.01
 #: Who means an angle in radians turns something once round at most [rad], with some rounding.
 ONCE_ROUND = math.tau + 0.02
-_XACRO = re.compile(r"</?xacro:\w+|\$\{[^}]*\}|\$\((?:arg|find|env|optenv|eval|dirname)\b[^)]*\)")
 
 
 @checks()
@@ -58,7 +58,8 @@ def urdf(facts: PackageFacts, tolerances: Tolerances) -> Finding:
         finding = of_description(facts, description)
         if finding.share < 1:
             return finding
-        links += facts.text(description.text).count("<link ")
+        model = parse(facts.text(description.text)).model
+        links += len(model.links) if model is not None else 0
     return Finding(
         1, msg("urdfdom takes all {links} links, and nothing in them is at odds.", links=links)
     )
@@ -104,12 +105,12 @@ def of_text(where: str | Message, text: str) -> Finding:
             text=shown(text),
         )
         return Finding(0, rationale, msg("Hand on what is in the file, not its path."))
-    if raw := _XACRO.search(text):
+    if raw := unexpanded(text):
         rationale = msg(
             "{where}: xacro has not been run on it: {found!r} is left in what "
             "robot_state_publisher gets, which understands plain URDF alone.",
             where=where,
-            found=shown(raw[0]),
+            found=shown(raw),
         )
         help = msg("Hand on what xacro makes of the file: Command(['xacro ', path]).")
         return Finding(0, rationale, help)

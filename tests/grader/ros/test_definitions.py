@@ -120,6 +120,36 @@ def test_programs_import_them(importable):
     assert scope["Num"] is Num
 
 
+@pytest.mark.parametrize("package", ["mine_own", "example_interfaces"])
+def test_the_names_that_are_generated_beside_a_type_can_be_imported_as_of_an_installed_one(
+    package, importable
+):
+    importable(
+        {
+            "mine_own/srv/AddTwoInts": "---\n",
+            "mine_own/action/Fibonacci": "int32 order\n---\nint32[] sequence\n---\n",
+            "mine_own/srv/Wrong": "text a\n---\n",
+        }
+    )
+    services = (
+        ("srv", "AddTwoInts"),
+        ("action", "Fibonacci_SendGoal"),
+        ("action", "Fibonacci_GetResult"),
+    )
+    for kind, service in services:
+        for part in ("Request", "Response", "Event"):
+            scope = {}
+            exec(f"from {package}.{kind} import {service}_{part}", scope)
+            exec(f"from {package}.{kind} import *", scope)
+            assert scope[f"{service}_{part}"]().get_fields_and_field_types() is not None
+    for name in ("Fibonacci_Goal", "Fibonacci_SendGoal", "Metaclass_Fibonacci"):
+        with pytest.raises(ImportError, match=f"cannot import name '{name}'"):
+            exec(f"from {package}.action import {name}")
+    if package == "mine_own":
+        with pytest.raises(ImportError, match="line 1: `text` is no type"):
+            exec("from mine_own.srv import Wrong_Request")
+
+
 def test_a_bad_file_leaves_the_others_importable(importable):
     importable(
         {

@@ -79,6 +79,49 @@ def test_a_description_as_an_argument_is_read_with_a_remark(tmp_path):
     assert "as a file, which it still reads" in str(trace.launches[0].remarks[0])
 
 
+def as_it_stands():
+    """The reference's launch file, which hands the description on without xacro."""
+    return (
+        (REFERENCE / DISPLAY)
+        .read_text()
+        .replace('Command(["xacro ", model])', "open(model).read()")
+    )
+
+
+COMMENT = "<!-- <xacro:include filename='$(find x)/y'/> ${z} <!DOCTYPE -- <link name='n'/> -->"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("<link name='a'/>", f"{COMMENT}<link name='a'/>"),  # which only urdfdom takes for one
+        ("name='a'", "name='${namespace}a'"),
+        ("</robot>", "<gazebo><a:camera b='${c}'/></gazebo></robot>"),  # of an unbound prefix
+    ],
+)
+def test_a_description_that_urdfdom_takes_keeps_all_points(old, new, tmp_path):
+    robot = "<robot name='r'><link name='a'/></robot>".replace(old, new)
+    without: dict[str, str | None] = {"urdf/plain.urdf": robot, **NO_SPAWN, XACRO: None}
+    launch = as_it_stands().replace("walker.urdf.xacro", "plain.urdf")
+    assert lost(graded(written(tmp_path / "launched", {**without, DISPLAY: launch}))) == {}
+    assert "urdf" not in lost(graded(written(tmp_path / "alone", {**without, DISPLAY: None})))
+
+
+@pytest.mark.parametrize(
+    "left",
+    [
+        "<xacro:wheel/>",
+        "<link name='b'><visual><geometry><mesh filename='${c}'/></geometry></visual></link>",
+        "<link name='b'><inertial><mass value='$(arg m)'/></inertial></link>",
+    ],
+)
+def test_what_xacro_should_have_replaced_is_told(left, tmp_path):
+    files = {XACRO: f"<robot name='r'><link name='a'/>{left}</robot>", DISPLAY: as_it_stands()}
+    result = graded(written(tmp_path, files))
+    assert lost(result)["urdf"] == 0
+    assert "xacro has not been run on it" in str(result.diagnosis.cause)
+
+
 def test_launch_files_may_lie_in_a_package_beside(tmp_path):
     folder = tmp_path / "workspace"
     written(folder / "a", {DISPLAY: None, "launch/spawn.launch.py": None})

@@ -7,6 +7,7 @@ import pytest
 from grader.exercise import asking
 from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks, judge
+from grader.exercise.expect import judging
 from grader.exercise.expect.checks import add_checks
 from grader.exercise.known_types import KnownTypes
 from grader.exercise.verdict import Finding
@@ -352,6 +353,14 @@ def test_a_request_to_a_peer_is_compared():
     fails("/add was never called.", wanted)
     other = endpoint("request /ad", ASKED["type"])
     fails("the program has clients of /ad", wanted, other)
+
+
+def test_what_a_type_of_the_hand_in_s_does_not_hold_is_no_fault_of_the_exercise():
+    unsaid = event("unsaid", what="AddTwoInts_Request", why="AddTwoInts_Request has no field a")
+    own = {"example_interfaces/srv/AddTwoInts": "int64 x\n---\n"}
+    fails("has no field a", CALL, event("call", **ASKED), unsaid, own=own)
+    with pytest.raises(judging.PeerFault, match="/peer cannot say what the exercise asks of it"):
+        judged(CALL, event("call", **ASKED), unsaid)
 
 
 @pytest.mark.parametrize("expected", [{"served": "add"}, {"sends": "add"}])

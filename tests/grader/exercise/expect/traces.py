@@ -7,7 +7,7 @@ from typing import Any
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import parse
 from grader.exercise.verdict import Finding
-from grader.recording.recording import Clock, Recording, Recordings, Run
+from grader.recording.recording import Clock, OwnInterfaces, Recording, Recordings, Run
 from grader.ros.bag_types import BagTypes
 from grader.scenes.cast.trace import CastTrace, SentMessage
 from grader.scenes.scene import STEP_NS
@@ -75,10 +75,11 @@ def judged(
     length_s: float = 10,
     time: Clock = "virtual",
     programs: Mapping[str, str] | None = None,
+    own: Mapping[str, str] | None = None,
 ) -> Finding:
-    """The finding on what is expected of a trace with these parts."""
-    run = Run(time, exit_code=code)
-    made = replace(trace(*parts, length_s=length_s), programs=programs or {})
-    recording = Recording(made, run, output=output, scene="graph")
+    """The finding on what is expected of a trace with these parts, and with types of its own."""
+    run, interfaces = Run(time, exit_code=code), OwnInterfaces(own or {})
+    whole = replace(trace(*parts, length_s=length_s), programs=programs or {})
+    recording = Recording(whole, run, output=output, scene="graph", interfaces=interfaces)
     wanted = parse(expected, ("expect", "it"))
     return judging.judge(lambda _: wanted, Recordings(recording))

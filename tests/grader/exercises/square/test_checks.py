@@ -310,6 +310,13 @@ def test_a_wrong_one_loses_the_points_of_what_is_wrong_and_is_told_where_to_look
             assert str(item.note)
 
 
+def test_what_lies_after_the_first_return_is_left_to_another_check_as_the_rubric_says():
+    found = judged(recorded(Legs([*SQUARE, *polygon([1, 3], 1.0)])))
+    assert scores(found) == but(returns=7.5, anywhere=13.12)
+    (rubric,) = (check.rubric for check in EXERCISE.checks if check.name == "sides")
+    assert "what turtle1 drives after its first return" in " ".join(str(rubric).split())
+
+
 def test_a_turtle_that_drives_into_the_wall_draws_no_square():
     verdicts = judged(recorded(Legs([ahead(4), *SQUARE])))
     assert verdicts["sides"].status == "failed"

@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 import yaml
 
+import grader
 from grader.cli import main
+from grader.errors import CheckFailed
 from grader.exercise.known_types import KnownTypes, check_cast
 from grader.scenes.cast import script
 from grader.system.yaml_file import Mistake
@@ -13,7 +15,7 @@ from grader.system.yaml_file import Mistake
 STRING = "std_msgs/msg/String"
 EXERCISE = """exercise: small
 title: A small one
-scene: graph
+scene: {scene}
 cast:
 {cast}
 limits: {{first_motion_s: 1, rest_s: 0, total_s: 2}}
@@ -76,9 +78,75 @@ FILES = MISTAKES["files"]
     ids=lambda value: value if isinstance(value, str) else value["says"],
 )
 def test_a_mistake_in_a_file_is_told_with_its_line_and_ends_with_2(file, verb, tmp_path, capsys):
+    expect_mistake(file, verb, tmp_path, capsys)
+
+
+@pytest.mark.parametrize(
+    "expect",
+    [
+        "  it: {topic: turtle1/pose}",
+        "  it: {log: x, each: /turtle1/pose}",
+        """  it: {topic: t, values: '=heard["/turtle1/pose"][-1].x'}""",
+    ],
+)
+def test_a_topic_of_the_scene_is_none_that_a_cast_hears(expect, tmp_path, capsys):
+    file = {"expect": expect, "cast": "  a: {}", "line": 8, "says": "turtle1/pose"}
+    expect_mistake(file, "run", tmp_path, capsys, "turtlesim")
+
+
+LISTENS = """import rclpy
+from example_interfaces.srv import AddTwoInts
+from std_msgs.msg import Int32
+
+rclpy.init()
+node = rclpy.create_node("listener")
+node.create_subscription(Int32, "x", lambda message: None, 10)
+node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=9))
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(
+    ("expected", "peer", "why"),
+    [
+        (
+            "topic: t",
+            "publishers: {x: {type: std_msgs/msg/Int32, rate: 5, "
+            """message: '=n if n < 2 else "a"'}}""",
+            "Int32.data: The 'data' field must be of type 'int'",
+        ),
+        (
+            "topic: t",
+            "publishers: {x: {type: std_msgs/msg/Int32, rate: 5, message: '=1 // (2 - n)'}}",
+            "integer division or modulo by zero",
+        ),
+        (
+            "served: add, request: {a: 9}",
+            "services: {add: {type: example_interfaces/srv/AddTwoInts, "
+            """response: '=1 if a < 9 else "a"'}}""",
+            "AddTwoInts_Response.sum: The 'sum' field must be of type 'int'",
+        ),
+    ],
+)
+def test_what_a_peer_turns_out_to_be_unable_to_say_is_the_exercise_s_fault(
+    expected, peer, why, tmp_path
+):
+    cast, expect = f"  a: {{{peer}}}", f"  it: {{{expected}}}"
+    path = tmp_path / "small" / "exercise.yaml"
+    path.parent.mkdir()
+    path.write_text(EXERCISE.format(cast=cast, expect=expect, scene="graph"))
+    (tmp_path / "node.py").write_text(LISTENS)
+    with pytest.raises(CheckFailed) as caught:
+        grader.grade(tmp_path / "node.py", path.parent)
+    assert (caught.value.exit_code, caught.value.whose) == (3, "exercise")
+    assert "/a cannot say what the exercise asks of it" in str(caught.value)
+    assert why in str(caught.value)
+
+
+def expect_mistake(file, verb, tmp_path, capsys, scene="graph"):
     path = tmp_path / "small"
     path.mkdir()
-    text = EXERCISE.format(cast=file["cast"], expect=file["expect"])
+    text = EXERCISE.format(cast=file["cast"], expect=file["expect"], scene=scene)
     (path / "exercise.yaml").write_text(text)
     (tmp_path / "node.py").write_text("import rclpy\n")
     words = [verb, str(tmp_path / "node.py"), "--exercise", str(path)]
