@@ -29,7 +29,7 @@ from grader.text.message import Message, msg
 
 #: Called after each run with the number of finished runs, that of all, and the solution's name.
 Progress = Callable[[int, int, str], None]
-AGAIN = "again"
+AGAIN, PARROT = "again", "parrot of "
 #: From a wall to the middle it is 5.54 m. Who stops 2.1 m or less from a wall in two runs from
 #: the middle, by the same commands, has driven at most 5.54 / (5.54 - 2.1) times as large a circle.
 LARGER = 1.62
@@ -64,7 +64,7 @@ def check_exercise(
     """
     asked = exercise if isinstance(exercise, Exercise) else load_exercise(exercise)
     solutions = read_solutions(asked, None if mutants is None else Path(mutants))
-    recorded, parroted = _run(asked, solutions, jobs or os.cpu_count() or 1, progress)
+    recorded = _run(asked, solutions, jobs or os.cpu_count() or 1, progress)
     faults: dict[Fault, list[str]] = {}
     trials = []
     for solution in solutions:
@@ -85,9 +85,9 @@ def check_exercise(
             faults.setdefault(fault, []).append(what)
     problems = [Problem(fault, tuple(on)) for fault, on in faults.items()]
     parrots = [
-        Trial(solution, tuple(examine(asked, parroted[solution.name])[0]))
+        Trial(solution, tuple(examine(asked, recorded[name])[0]))
         for solution in solutions
-        if solution.name in parroted
+        if (name := f"{PARROT}{solution.name}") in recorded
     ]
     passed: dict[Fault, list[str]] = {}
     for trial in parrots:
@@ -126,7 +126,7 @@ def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
 
 def _run(
     exercise: Exercise, solutions: Sequence[Solution], jobs: int, progress: Progress | None
-) -> tuple[Mapping[str, Recordings], Mapping[str, Recordings]]:
+) -> Mapping[str, Recordings]:
     """Run all solutions, and the first once more; and the parrots of the right ones."""
     with make_folder() as folder, ThreadPoolExecutor(jobs) as pool:
 
@@ -135,11 +135,11 @@ def _run(
             recordings = record(path, exercise)
             if solution.is_right and exercise.is_started and name != AGAIN:
                 at = folder / "parrots" / name
-                parroted[name] = parrot.record(path, exercise, recordings, at)
+                parrots[PARROT + name] = parrot.record(path, exercise, recordings, at)
             return recordings
 
         paths = {solution.name: solution.lay_out(folder) for solution in solutions}
-        parroted: dict[str, Recordings] = {}
+        parrots: dict[str, Recordings] = {}
         tasks: dict[Future[Recordings], str] = {}
         try:
             for name, solution in [(AGAIN, solutions[0]), *((s.name, s) for s in solutions)]:
@@ -152,7 +152,7 @@ def _run(
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-        return {name: task.result() for task, name in tasks.items()}, parroted
+        return parrots | {name: task.result() for task, name in tasks.items()}
 
 
 def _changed(exercise: Exercise, recording: Recording) -> Fault | None:

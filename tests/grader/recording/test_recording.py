@@ -79,7 +79,7 @@ def test_the_facts_about_a_run_survive(recorded, tmp_path):
     ticks, simulated_s = recorded.run.ticks, recorded.run.simulated_s
     programs = (ProgramRun("a-1", "b", "a", "killed", -9, "ü\n"),)
     flags = (Message.of("odd"), msg("ü {at}", at=1.5))
-    told = ("ROS domain 77", flags, 42, "i", "late", programs)
+    told = ("ROS domain 77", flags, 42, "i", "late", {"a": 1.5, "b": "ü"}, programs)
     run = Run("virtual", "crashed", -11, ticks, simulated_s, 1.5, recorded.run.trace_sha256, *told)
     changed = replace(
         recorded,

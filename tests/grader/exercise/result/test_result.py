@@ -186,9 +186,9 @@ def test_what_lateness_costs_is_what_the_policy_says():
     assert LATE.by(None).deducted == 0
     assert LatePolicy(DUE, 0, 0, 100).deduction(DUE.replace(year=2027)).points == 0
     assert Result.from_json(samples.result()).final == 18.33
-    for at, policy in ((None, POLICY), (DUE, None)):
-        in_time = to_json(SubmissionInfo.of("4711", "", 1, at, policy))
-        assert Result.from_json(samples.result() | {"handed_in": in_time}).final == 18.33
+    for at, policy, final in ((DUE, None, 18.33), (DUE, POLICY, 18.33), (None, POLICY, 8.33)):
+        told = to_json(SubmissionInfo.of("4711", "", 1, at, policy))
+        assert Result.from_json(samples.result() | {"handed_in": told}).final == final
 
 
 @pytest.mark.parametrize("at", ["2026-12-02T01:59:00", "soon"])
