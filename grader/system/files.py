@@ -208,8 +208,8 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     """Find out whether `put` will work, without changing anything.
 
     Args:
-        schema, inputs: see `check_writable`; without a schema an older file of this name counts as
-            ours.
+        schema: see `check_writable`; without one an older file of this name counts as ours.
+        inputs: see `check_writable`.
     """
     mode = _mode(path)
     if mode is not None and stat.S_ISDIR(mode):
