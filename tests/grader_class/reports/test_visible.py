@@ -197,7 +197,7 @@ def test_what_lateness_costs_does_not_tell_what_hidden_checks_gave(tmp_path):
     ("hand_in", "words"),
     [
         (SubmissionInfo.of("4711", "", 1, DUE, POLICY), "4711, attempt 1, handed in 2026-11-30 22"),
-        (SubmissionInfo.of("4711", "Zoë", 1, None, POLICY), "Zoë, attempt 1."),
+        (SubmissionInfo.of("4711", "Zoë", 1, None, None), "Zoë, attempt 1."),
         (SubmissionInfo("4711", "Zoë", 1, DUE, 300), "Handed in 5 min late, which costs no points"),
     ],
 )

@@ -54,7 +54,7 @@ def test_a_hostile_program_earns_only_what_it_does(name):
 
 def test_who_is_called_like_a_peer_hides_nothing():
     result = graded("poses_as_a_peer")
-    assert "there is no '/data' yet" in said(result, "out")
+    assert "Nothing subscribes to /data" in said(result, "out")
     assert "data was 'hidden', expected 'Hello 0'" in said(result, "chatter")
 
 
