@@ -35,7 +35,7 @@ _TWO_NODES = msg(
 )
 
 
-@checks()
+@checks(parrot="it is in the files, whatever a program sends")
 def package(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """It is a package with an entry point.
 
@@ -83,7 +83,7 @@ def _wrong(facts: PackageFacts) -> Iterator[Message]:
         )
 
 
-@checks()
+@checks(parrot="it is in the files, whatever a program sends")
 def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """Its launch file starts robot and node.
 

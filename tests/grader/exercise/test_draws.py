@@ -22,7 +22,9 @@ exercise: adds
 title: It adds
 scene: graph
 draw: {a: {integer: [1, 99], example: 2}}
-cast: {caller: {calls: {one: {service: add, type: example_interfaces/srv/AddTwoInts, request: REQUEST}}}}
+cast:
+  caller:
+    calls: {one: {service: add, type: example_interfaces/srv/AddTwoInts, request: REQUEST}}
 limits: {first_motion_s: 5, rest_s: 0, total_s: 3}
 cases: CASES
 expect: {sums: {call: one, response: {sum: RESPONSE}}}
