@@ -24,7 +24,7 @@ from grader.submission.program import EntryPoint, Program
 from turtlesim_py.world import events
 from turtlesim_py.world.turtle import TICK_S
 
-PROGRAM: Final = Path(__file__).with_name("parrot_program.py")
+PROGRAM: Final = Path(__file__).with_name("submissions") / "parrot.py"
 #: Kinds of a turtle's inputs -> its service below the turtle's name, and the type.
 _SERVICES: Final[Mapping[type[events.Event], tuple[str, str]]] = {
     events.SetPen: ("set_pen", "turtlesim/srv/SetPen"),
