@@ -241,7 +241,7 @@ class GradedNode(TurtlesimNode):
         # as wrong after the cut as before
         request.name = request.name[:LONGEST_NAME]
         if why := self.allowance.why_not_hatch(len(self.arena.turtles)):
-            self.log("ERROR", f"Cannot spawn a turtle named [{request.name}]: {why}")
+            self.log("ERROR", f"Cannot spawn a turtle named [{request.name}]: {why!s}")
             response.name = ""
             return response
         response = super()._on_spawn(request, response)
@@ -254,7 +254,7 @@ class GradedNode(TurtlesimNode):
 
     def _on_reset(self, request: Any, response: Any) -> Any:
         if why := self.allowance.why_not_hatch(0):
-            self.log("ERROR", f"Cannot reset: {why}")
+            self.log("ERROR", f"Cannot reset: {why!s}")
             return response
         self.allowance.hatched += 1
         return super()._on_reset(request, response)

@@ -104,6 +104,7 @@ def test_there_are_only_so_many_turtles():
     recording = run("hatches_hundreds")
     assert recording.output.splitlines()[0] == str(MOST_TURTLES - 1)
     assert "turtles" in flags(recording)
+    assert "could not serve" not in flags(recording)
 
 
 def test_names_are_cut():
