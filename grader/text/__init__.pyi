@@ -4,6 +4,7 @@ from grader.text.message import Message as Message
 from grader.text.message import joined as joined
 from grader.text.message import msg as msg
 from grader.text.strings import clip as clip
+from grader.text.strings import for_terminal as for_terminal
 from grader.text.strings import listed as listed
 from grader.text.strings import nearest as nearest
 from grader.text.strings import number as number

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from difflib import get_close_matches
@@ -30,6 +29,8 @@ _REPLACEMENT = "\ufffd"
 #: a narrow terminal any word may come to the start of a line.
 _COMMANDS = re.compile(r"^([^\S\n]*)::|##(?=\[|vso\[)", re.MULTILINE | re.IGNORECASE)
 _COMMANDS_WRAPPED = re.compile(r"::(?=[a-z-]+[ :])|##(?=\[|vso\[)", re.IGNORECASE)
+#: A text within another value has so many characters at most.
+_MOST_WITHIN = 1_000_000
 #: A name is compared with so many others of this length at most: the time grows with its cube.
 _MOST_NAMES, _LONGEST_NAME = 200, 100
 
@@ -48,20 +49,23 @@ def _controls_but(keep: str) -> re.Pattern[str]:
     return re.compile(f"(?![{re.escape(keep)}]){_CONTROLS}") if keep else re.compile(_CONTROLS)
 
 
-def plain(value: Cleaned, limit: int = sys.maxsize) -> Cleaned:
+def plain(value: Cleaned, limit: int | None = None) -> Cleaned:
     r"""Remove colours, control characters and commands for a runner of CI.
 
     `\n` is the only line break of the result.
 
     Args:
         value: a text, a message, or JSON or a dataclass with texts.
-        limit: texts are cut to this many characters first.
+        limit: texts are cut to this many characters first; a text alone is not without it, and
+            those within other values to a million.
     """
     made: Any = value
     if isinstance(value, str):
-        text = _LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", clip(value, limit)))
-        made = _COMMANDS.sub(_spaced, without_controls(text, keep="\t\n"))
-    elif isinstance(value, Message):
+        cut = value if limit is None else clip(value, limit)
+        text = _LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", cut))
+        return _COMMANDS.sub(_spaced, without_controls(text, keep="\t\n"))  # type: ignore[return-value]
+    limit = _MOST_WITHIN if limit is None else limit
+    if isinstance(value, Message):
         made = value.map_texts(lambda text: plain(text, limit))
     elif isinstance(value, Mapping):
         made = {plain(key, limit): plain(item, limit) for key, item in value.items()}

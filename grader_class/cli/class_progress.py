@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from grader.cli import say
 from grader.reports.wording import points
-from grader.text import Message, clip, msg, plain, tr, translate
+from grader.text import Message, clip, for_terminal, msg, tr, translate
 from grader_class.batch import Planned
 from grader_class.entry import Entry, HandIn, State
 from grader_class.store import Store
@@ -89,7 +89,7 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
                 bar,
                 advance=1,
                 failed=tr("{failed} failed", failed=failed) if failed else "",
-                description=clip(plain(f"{hand_in.known_as}: {_outcome(entry)}"), 60),
+                description=clip(for_terminal(f"{hand_in.known_as}: {_outcome(entry)}"), 60),
             )
 
         yield show

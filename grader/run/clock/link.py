@@ -12,6 +12,7 @@ import os
 import socket
 from collections import deque
 from collections.abc import Callable
+from typing import NoReturn
 
 from grader.run.clock.scheduler import Scheduler
 from grader.run.lockstep import real
@@ -73,7 +74,8 @@ class SimulatorSockets:
         except OSError:
             data = b""
         table = self._decode(data)
-        assert isinstance(table, Table)
+        if not isinstance(table, Table) or len(descriptors) != 1:
+            self._break(ProtocolError(f"{table!r:.200} where a table was expected"))
         (mailbox,) = descriptors
         os.set_inheritable(mailbox, False)
         self._mailbox = socket.socket(fileno=mailbox)
@@ -112,17 +114,21 @@ class SimulatorSockets:
         PROGRESS.pack_into(self._progress, 0, tick)
 
     def _decode(self, data: bytes) -> Table | Reply:
-        """Decode a packet; refuse a wrong one: the submission has used the socket."""
+        """Decode a packet, which is one of these."""
         if not data:
             real.leave(1)
         try:
             packet = decode(data)
-            if isinstance(packet, Table | Reply):
-                return packet
-            raise ProtocolError(f"{packet!r:.200} was not expected")
         except ProtocolError as error:
-            self._refuse(msg("broke our virtual time ({error})", error=f"{error!r:.200}"))
-            raise
+            self._break(error)
+        if not isinstance(packet, Table | Reply):
+            self._break(ProtocolError(f"{packet!r:.200} was not expected"))
+        return packet
+
+    def _break(self, error: ProtocolError) -> NoReturn:
+        """Refuse a wrong packet: the submission has read or written on the socket."""
+        self._refuse(msg("broke our virtual time ({error})", error=f"{error!r:.200}"))
+        raise error
 
 
 class SimulatorLink(EndpointRegistry):

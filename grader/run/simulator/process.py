@@ -63,7 +63,7 @@ class SceneRun:
         """Set up the scene; ROS is up.
 
         Args:
-            shown: a `LiveFeed` argument; '' where there is no audience.
+            shown: the argument of a `LiveFeed`; '' where there is no audience.
             wire: a `grader.scenes.cast.playing.Wire`, for a cast.
             has_unread: as in `Hooks`.
             are_compiled: whether interfaces that are not installed were compiled for this run.

@@ -29,7 +29,7 @@ from ros_doubles import known
 #: Set-ups that were evaluated already, by their folders.
 Known = Mapping[Path, tuple[SetUpFacts, Obstacle | None]]
 #: What stands in for ROS's packages, and where all of our code is.
-DOUBLES: Final = Path(ros_doubles.__file__).parent
+DOUBLES: Final = Path(ros_doubles.__file__).parent / "packages"
 CODE: Final = Path(__file__).resolve().parents[3]
 MARKS = "share/ament_index/resource_index/packages"
 #: Folders whose files a description package is expected to install.

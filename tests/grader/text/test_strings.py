@@ -81,3 +81,11 @@ def test_plain_text_commands_no_runner_of_ci(raw, plain):
 
 def test_in_a_terminal_no_word_does_wherever_the_line_is_cut():
     assert text.for_terminal("x ::ERROR file=a::b \x1b[31m[/b]") == "x : :ERROR file=a: :b [/b]"
+
+
+def test_a_text_alone_stays_whole_and_one_within_something_has_an_end():
+    long = "x" * 1_000_001
+    assert text.plain(long) == long
+    assert {len(each) for each in text.plain({"a": long, "b": [long]}["b"])} == {1_000_000}
+    assert len(text.plain({"a": long})["a"]) == 1_000_000
+    assert text.plain({"a": "12345"}, 4) == {"a": "123…"}
