@@ -18,7 +18,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from grader.exercise.draws import DRAWN, Draw, Drawn, examples, put_in
+from grader.exercise.draws import DRAWN, Draw, examples, put_in
+from grader.recording.recording import Drawn
 from grader.recording.subject import Endpoint, Role
 from grader.system.yaml_file import Mistake, decoded, expect
 from grader.text.message import msg
@@ -140,7 +141,7 @@ def _case(
     made = {**data, **made}
     cast = _cast(made, definitions, end_s, at)
     arguments = _texts(made, ARGUMENTS, at)
-    return RunCase(name, cast, _texts(data, HEARS, at), arguments, written if draws else {})
+    return RunCase(name, cast, _texts(data, HEARS, at), arguments, written)
 
 
 def _changed(usual: Mapping[str, Any], change: Mapping[str, Any]) -> dict[str, Any]:

@@ -18,8 +18,9 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from string import ascii_lowercase
-from typing import Annotated, Any, Final
+from typing import Any, Final
 
+from grader.recording.recording import Drawn, Value
 from grader.system.expressions import ExpressionError, with_fields
 from grader.system.yaml_file import Mistake, decoded, expect
 from grader.text.message import Message, msg
@@ -31,20 +32,6 @@ MOST_DRAWS, LONGEST_WORD = 20, 40
 #: Digits of a drawn number behind the point.
 DIGITS: Final = 2
 _NAME: Final = re.compile(r"[a-z]\w{0,40}", re.ASCII)
-_TEXT: Final = re.compile(r"[\w .-]{1,100}", re.ASCII)
-
-
-def _a_value(value: Any) -> Any:
-    """For `Annotated`: a number, true, false, or a text that means nothing in a template."""
-    is_text = isinstance(value, str) and _TEXT.fullmatch(value) is not None
-    if not is_text and type(value) not in (bool, int, float):
-        raise ValueError(f"expected a number or a word, found {value!r:.80}")
-    return value
-
-
-Value = Annotated[Any, _a_value]
-#: What was drawn for a run, by its names.
-Drawn = Mapping[str, Value]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,8 +52,7 @@ class Draw:
     one_of: tuple[Value, ...] = ()
 
     def __post_init__(self) -> None:
-        ways = [self.integer is not None, self.number is not None, self.word != 0]
-        if sum((*ways, bool(self.one_of))) != 1:
+        if sum(map(bool, (self.integer, self.number, self.word, self.one_of))) != 1:
             raise ValueError("expected one of integer, number, word, one_of")
         low, high = self.integer or self.number or (0, 0)
         if low > high or not 0 <= self.word <= LONGEST_WORD:
@@ -86,24 +72,17 @@ class Draw:
 
     def value(self, chance: random.Random) -> Value:
         """Draw one."""
-        drawn = self._any(chance)
-        while drawn == self.example and not self.one_of and not self._is_single:
-            drawn = self._any(chance)
-        return drawn
-
-    @property
-    def _is_single(self) -> bool:
-        low, high = self.integer or self.number or (0, 1)
-        return low == high
+        if self.one_of:
+            return chance.choice(self.one_of)
+        drawn = [self._any(chance) for _ in range(9)]
+        return next((each for each in drawn if each != self.example), self.example)
 
     def _any(self, chance: random.Random) -> Value:
-        if self.integer is not None:
+        if self.integer:
             return chance.randint(*self.integer)
-        if self.number is not None:
+        if self.number:
             return round(chance.uniform(*self.number), DIGITS)
-        if self.word:
-            return "".join(chance.choices(ascii_lowercase, k=self.word))
-        return chance.choice(self.one_of)
+        return "".join(chance.choices(ascii_lowercase, k=self.word))
 
 
 def read_draws(data: Mapping[str, Any]) -> dict[str, Draw]:

@@ -19,9 +19,10 @@ from grader.errors import ExerciseError
 from grader.exercise.allowed import Allowed
 from grader.exercise.cases import RunCase
 from grader.exercise.check import Checks
-from grader.exercise.draws import Draw, Drawn, draw
+from grader.exercise.draws import Draw, draw
 from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
+from grader.recording.recording import Drawn
 from grader.recording.subject import Endpoint, Role, Start
 from grader.scenes.scene import Limits, Scene
 from grader.scenes.subject import Subject, load_subject
@@ -271,8 +272,6 @@ class Exercise:
 
     def drawn_cases(self, seed: int | None = None) -> list[tuple[RunCase, Drawn]]:
         """Return the case of each run with what was drawn for it; see `starts`."""
-        if not self.draws:
-            return [(case, {}) for case in self.cases]
         used = self.varied.seed if seed is None else seed
         drawn = [draw(self.draws, used, number) for number in range(len(self.cases))]
         return [(case.with_drawn(d), d) for case, d in zip(self.cases, drawn, strict=True)]

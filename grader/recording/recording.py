@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -29,14 +30,18 @@ NOT_THERE: Final = msg(
 MOST_PROGRAMS: Final = 8
 
 
-def _a_scalar(value: Any) -> Any:
-    """For `Annotated`: a number, a text, true or false."""
-    if type(value) not in (bool, int, float, str):
-        raise ValueError(f"expected a number or a text, found {value!r:.80}")
+def _a_value(value: Any) -> Any:
+    """For `Annotated`: a number, true, false, or a text that means nothing in a template."""
+    is_text = isinstance(value, str) and _TEXT.fullmatch(value) is not None
+    if not is_text and type(value) not in (bool, int, float):
+        raise ValueError(f"expected a number or a word, found {value!r:.80}")
     return value
 
 
-Scalar = Annotated[Any, _a_scalar]
+_TEXT: Final = re.compile(r"[\w .-]{1,100}", re.ASCII)
+Value = Annotated[Any, _a_value]
+#: What was drawn for a run, by its names.
+Drawn = Mapping[str, Value]
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,7 @@ class Run:
     seed: int | None = None
     interfaces: str = field(default="", metadata=SPARSE)
     case: str = field(default="", metadata=SPARSE)
-    drawn: Mapping[str, Scalar] = field(default_factory=dict, hash=False, metadata=SPARSE)
+    drawn: Drawn = field(default_factory=dict, hash=False, metadata=SPARSE)
     programs: tuple[ProgramRun, ...] = field(default=(), metadata=SPARSE)
 
 

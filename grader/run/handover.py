@@ -15,7 +15,7 @@ from typing import Any, Self
 from grader.errors import GraderFailure, SceneFailure
 from grader.recording import bag
 from grader.recording.mcap import read_mcap
-from grader.recording.recording import PublishedTopic, Scalar
+from grader.recording.recording import Drawn, PublishedTopic
 from grader.recording.scene_and_cast import CastKeeper, merge
 from grader.recording.subject import Keeper, Start, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
@@ -68,9 +68,7 @@ class Plan:
     )
     arguments: tuple[str, ...] = field(default=(), metadata=strict_json.SPARSE)
     case: str = field(default="", metadata=strict_json.SPARSE)
-    drawn: Mapping[str, Scalar] = field(
-        default_factory=dict, hash=False, metadata=strict_json.SPARSE
-    )
+    drawn: Drawn = field(default_factory=dict, hash=False, metadata=strict_json.SPARSE)
     budget: CpuBudget = field(
         default_factory=CpuBudget, compare=False, metadata=strict_json.UNSTORED
     )

@@ -30,9 +30,6 @@ from grader.text.message import Message, msg
 #: Called after each run with the number of finished runs, that of all, and the solution's name.
 Progress = Callable[[int, int, str], None]
 AGAIN, PARROT = "again", "parrot of "
-#: From a wall to the middle it is 5.54 m. Who stops 2.1 m or less from a wall in two runs from
-#: the middle, by the same commands, has driven at most 5.54 / (5.54 - 2.1) times as large a circle.
-LARGER = 1.62
 #: The share of points that a parrot may have where others send or ask something.
 MOST_EXCUSED = 0.25
 #: The share of a check's points that it may have by chance.
@@ -96,7 +93,7 @@ def check_exercise(
     problems += [Problem(fault, tuple(on)) for fault, on in passed.items()]
     checks = tuple(asked.points)
     examination = Examination(asked.name, checks, tuple(trials), (), tuple(parrots))
-    problems += [Problem(fault) for fault in (*_never_failing(examination), *_too_alike(asked))]
+    problems += [Problem(fault) for fault in _never_failing(examination)]
     return replace(examination, problems=tuple(problems))
 
 
@@ -266,23 +263,6 @@ def _never_failing(examination: Examination) -> Iterator[Fault]:
     for check, caught in examination.catches.items():
         if not caught:
             yield Fault(check, msg("never fails on any mutant"))
-
-
-def _too_alike(exercise: Exercise) -> Iterator[Fault]:
-    """Yield the varied runs in which a stop that was computed beforehand may succeed, too."""
-    for number, run in enumerate(exercise.varied.runs, 1):
-        if run.start == "same" and run.speed[0] < LARGER * run.turn[1]:
-            yield Fault(
-                "",
-                msg(
-                    "varied run {number} starts where the nominal one does, and the same commands "
-                    "drive a circle {times:.2f} times as large: from {wanted} on, none can stop "
-                    "near a wall in both that does not read the pose",
-                    number=number,
-                    times=run.speed[0] / run.turn[1],
-                    wanted=LARGER,
-                ),
-            )
 
 
 def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], list[Fault]]:

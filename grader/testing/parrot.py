@@ -18,22 +18,14 @@ from grader import grading
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording, Recordings
 from grader.run.opening import open_submission
-from grader.scenes.cast.trace import ROSOUT, CastTrace, SentMessage
+from grader.scenes.cast.trace import ROSOUT, CastTrace
+from grader.scenes.turtlesim.rules import own_inputs
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.submission.program import EntryPoint, Program
 from turtlesim_py.world import events
 from turtlesim_py.world.turtle import TICK_S
 
 PROGRAM: Final = Path(__file__).with_name("submissions") / "parrot.py"
-#: Kinds of a turtle's inputs -> its service below the turtle's name, and the type.
-_SERVICES: Final[Mapping[type[events.Event], tuple[str, str]]] = {
-    events.SetPen: ("set_pen", "turtlesim/srv/SetPen"),
-    events.TeleportAbsolute: ("teleport_absolute", "turtlesim/srv/TeleportAbsolute"),
-    events.TeleportRelative: ("teleport_relative", "turtlesim/srv/TeleportRelative"),
-    events.Spawn: ("", "turtlesim/srv/Spawn"),
-    events.Kill: ("", "turtlesim/srv/Kill"),
-    events.Clear: ("", "std_srvs/srv/Empty"),
-}
 #: What each node has that is none of a program's.
 _USUAL: Final = ("_parameters", "/get_parameter_types", "/get_type_description", "/_action/")
 
@@ -46,11 +38,13 @@ def record(path: Path, exercise: Exercise, recordings: Recordings, folder: Path)
         folder: where the parrot is laid out.
     """
     with open_submission(path, **exercise.opening) as submission:
-        parrot = lay_out(path, submission.programs, recordings.nominal, folder)
+        parrot = lay_out(path, submission.programs, recordings.nominal, folder, exercise.setting)
     return grading.record(parrot, exercise, seed=exercise.varied.seed + 1)
 
 
-def lay_out(path: Path, programs: Iterable[Program], recording: Recording, folder: Path) -> Path:
+def lay_out(
+    path: Path, programs: Iterable[Program], recording: Recording, folder: Path, setting: str
+) -> Path:
     """Return the path of a copy of a right solution whose programs are parrots.
 
     Args:
@@ -58,6 +52,7 @@ def lay_out(path: Path, programs: Iterable[Program], recording: Recording, folde
         programs: those that a submission of it starts.
         recording: of the run that they repeat.
         folder: where it is laid out, a new one.
+        setting: of the exercise.
     """
     copy = folder / path.name
     folder.mkdir(parents=True, exist_ok=True)
@@ -66,7 +61,7 @@ def lay_out(path: Path, programs: Iterable[Program], recording: Recording, folde
     else:
         shutil.copy(path, copy)
     for program in programs:
-        made = source(recording, program.name)
+        made = source(recording, program.name, setting)
         entry = program.entry
         if isinstance(entry, EntryPoint):
             made += f"\n\n{entry.function} = main\n"
@@ -81,10 +76,10 @@ def lay_out(path: Path, programs: Iterable[Program], recording: Recording, folde
     return copy
 
 
-def source(recording: Recording, program: str) -> str:
+def source(recording: Recording, program: str, setting: str = "") -> str:
     """Return the source of one program's parrot."""
     text = PROGRAM.read_text(encoding="utf-8")
-    facts = _recorded(recording, program)
+    facts = _recorded(recording, program, setting)
     # by name: interfaces of a hand-in's own are there for who imports them
     types = {each for node in facts["nodes"] for each in _types(node[2])}
     imports = "".join(f"import {name}\n" for name in sorted(types))
@@ -99,7 +94,7 @@ def _types(node: Mapping[str, Any]) -> Iterator[str]:
             yield ".".join(name.split("/")[:2])
 
 
-def _recorded(recording: Recording, program: str) -> dict[str, Any]:
+def _recorded(recording: Recording, program: str, setting: str) -> dict[str, Any]:
     run = recording.run
     is_one = len(run.programs) < 2
     own = next((each for each in run.programs if each.name == program), run)
@@ -113,7 +108,8 @@ def _recorded(recording: Recording, program: str) -> dict[str, Any]:
                 nodes[name] = _node(cast, name, recording.trace)
     if isinstance(recording.trace, TurtleTrace) and (is_one or run.programs[0].name == program):
         node = next(iter(nodes.values()), None) or nodes.setdefault("/parrot", _nothing())
-        _drive(node, recording.trace, cast if isinstance(cast, CastTrace) else None)
+        peers = cast if isinstance(cast, CastTrace) else None
+        _drive(node, own_inputs(recording.trace, peers, setting))
     listed = [(n.rpartition("/")[2], n.rpartition("/")[0], facts) for n, facts in nodes.items()]
     return {
         "nodes": listed,
@@ -191,32 +187,19 @@ def _is_command(channel: str, trace: object) -> bool:
     return isinstance(trace, TurtleTrace) and channel.endswith("/cmd_vel")
 
 
-def _drive(node: dict[str, Any], trace: TurtleTrace, cast: CastTrace | None) -> None:
-    """Add what a program has sent to turtlesim; what peers have sent is not its own."""
-    peers: dict[tuple[str, int], int] = defaultdict(int)
-    messages: tuple[SentMessage, ...] = () if cast is None else cast.messages
-    driven = {m.topic for m in messages if cast is not None and cast.is_peer(m)}
-    for call in () if cast is None else cast.of_kind("call"):
-        peers[call["service"], round(call.get("sent_ns", 0) / 1e9 / TICK_S)] += 1
+def _drive(node: dict[str, Any], inputs: Iterable[tuple[str, str, events.Event]]) -> None:
+    """Add what a program has sent to turtlesim."""
     node["calls"] = [each for each in node["calls"] if not each[1].startswith("turtlesim/")]
     asked: dict[tuple[str, str], list[Any]] = defaultdict(list)
     commands: dict[str, list[Any]] = defaultdict(list)
-    for event in trace.events:
+    for name, _, event in inputs:
         time_s = (event.tick - 1) * TICK_S
         if isinstance(event, events.CmdVel):
-            topic = f"/{event.turtle}/cmd_vel"
-            if topic not in driven:
-                commands[topic].append((time_s, event.linear, event.angular))
-        elif type(event) in _SERVICES:
-            last, kind = _SERVICES[type(event)]
-            turtle = getattr(event, "turtle", "")
-            name = f"/{turtle}/{last}" if last else f"/{event.op}"
-            near = [key for key in peers if key[0] == name and abs(key[1] - event.tick) < 3]
-            if any(peers[key] for key in near):
-                continue
-            skipped = ("tick", "turtle") if last else ("tick",)
-            names = [each.name for each in fields(event) if each.name not in skipped]
-            values = {name: getattr(event, name) for name in names}
+            commands[name].append((time_s, event.linear, event.angular))
+        elif not isinstance(event, events.RotateAbsolute):
+            values = {each.name: getattr(event, each.name) for each in fields(event)[1:]}
+            values.pop("turtle", None)
+            kind = f"turtlesim/srv/{type(event).__name__}" if values else "std_srvs/srv/Empty"
             asked[name, kind].append((time_s, values))
     node["calls"] += [(*key, requests) for key, requests in asked.items()]
     node["commands"] = [*commands.items()]

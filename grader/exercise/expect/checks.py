@@ -8,12 +8,12 @@ from typing import Any, Final
 
 from grader.exercise.cases import USUAL, RunCase
 from grader.exercise.check import Checks
-from grader.exercise.draws import DRAWN, Draw, Drawn, examples, put_in
+from grader.exercise.draws import DRAWN, Draw, examples, put_in
 from grader.exercise.expect import judging
 from grader.exercise.expect.expectations import Expectation, ExpectedTopic, parse
 from grader.exercise.known_types import KnownTypes, check_time
 from grader.exercise.verdict import Finding
-from grader.recording.recording import Recordings
+from grader.recording.recording import Drawn, Recordings
 from grader.scenes.cast import script
 from grader.system import expressions
 from grader.system.yaml_file import Mistake, expect

@@ -17,10 +17,9 @@ from typing import Any, Final
 
 from grader.exercise.cases import USUAL
 from grader.exercise.comparing import LONGEST_MATCHED, differences, shown
-from grader.exercise.draws import Drawn
 from grader.exercise.expect import expectations as e
 from grader.exercise.verdict import Evidence, Finding
-from grader.recording.recording import Recording, Recordings
+from grader.recording.recording import Drawn, Recording, Recordings
 from grader.ros.fields import field_lines
 from grader.scenes.cast.script import absolute
 from grader.scenes.cast.trace import ROSOUT, TRANSIENT_LOCAL, CastTrace, Event, SentMessage

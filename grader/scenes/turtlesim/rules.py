@@ -25,19 +25,14 @@ def within(
     trace: TurtleTrace, cast: CastTrace | None, rules: Rules
 ) -> tuple[TurtleTrace, Oversteps]:
     """Return the trace in which all that was moved against rules ends there, and how it was."""
-    scenario = strict_json.loads(rules.setting).get("events", []) if rules.setting else []
-    given = [from_json(each) for each in scenario]
+    spawned = {each.name for each in _given(rules.setting) if isinstance(each, Spawn)}
     # one that is killed and spawned again has been teleported
-    kept = {FIRST_TURTLE, *rules.drives, *(each.name for each in given if isinstance(each, Spawn))}
+    kept = {FIRST_TURTLE, *rules.drives, *spawned}
     allowed = {*rules.may, *(f"{each}/cmd_vel" for each in rules.drives)}
     beyond, ends = list[tuple[int, str]](), dict[str, int]()
-    others = Counter([*map(_key, given), *(() if cast is None else _of_peers(cast))])
-    for event in trace.events:
-        name, target = _key(event)[:2]
-        others[_key(event)] -= 1
-        is_of_others = others[_key(event)] >= 0 or event.op not in (CmdVel.op, *INPUTS)
+    for name, target, event in own_inputs(trace, cast, rules.setting):
         is_kept = isinstance(event, Kill) and target in kept
-        if is_of_others or (not is_kept and allowed & {event.op, name[1:]}):
+        if not is_kept and allowed & {event.op, name[1:]}:
             continue
         beyond.append((event.tick * TICK_NS, name))
         for turtle in (target,) if target else trace.trajectories:
@@ -48,6 +43,21 @@ def within(
         for turtle, way in trace.trajectories.items()
     }
     return replace(trace, trajectories=ways), beyond
+
+
+def own_inputs(
+    trace: TurtleTrace, cast: CastTrace | None, setting: str
+) -> Iterator[tuple[str, str, Event]]:
+    """Yield what neither the setting nor peers have sent: '/turtle1/cmd_vel', 'turtle1', event."""
+    others = Counter([*map(_key, _given(setting)), *(() if cast is None else _of_peers(cast))])
+    for event in trace.events:
+        others[_key(event)] -= 1
+        if others[_key(event)] < 0 and event.op in (CmdVel.op, *INPUTS):
+            yield *_key(event)[:2], event
+
+
+def _given(setting: str) -> list[Event]:
+    return [from_json(each) for each in strict_json.loads(setting or "{}").get("events", [])]
 
 
 def _key(event: Event) -> tuple[str, str, object]:

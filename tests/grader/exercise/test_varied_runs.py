@@ -6,7 +6,7 @@ from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
 from grader.recording.subject import Start
 from grader.scenes.turtlesim.driving import twist
-from grader.testing import checking, drive
+from grader.testing import drive
 from tests.grader.testing.exercises import edited
 from turtlesim_py.world.turtle import SIZE_M
 
@@ -73,10 +73,3 @@ def test_the_factors_hold_for_every_turtle_and_outlive_reset_kill_and_spawn():
         way = trace.trajectory(name)
         assert way.linear.max() == 1.5  # the pose says what the turtle does
         assert way.angular.max() == 0.25
-
-
-@pytest.mark.parametrize(("speed", "is_told"), [(1.2, True), (1.5, False)])
-def test_the_author_is_warned_of_a_range_that_a_computed_stop_may_pass(tmp_path, speed, is_told):
-    exercise = varied(tmp_path, count=1, runs=[{**SAME, "speed": [speed, 1.6]}])
-    told = [str(fault.text) for fault in checking._too_alike(exercise)]
-    assert ["drive a circle 1.33 times as large" in text for text in told] == [True] * is_told
