@@ -178,4 +178,3 @@ class Model:
     root: str
     links: Mapping[str, Link]
     joints: Mapping[str, Joint]
-    materials: Mapping[str, Material]
