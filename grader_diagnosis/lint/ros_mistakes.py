@@ -294,11 +294,11 @@ def _stays(source: Source, values: conditions.Values) -> Iterator[Found]:
             name = ast.unparse(each) if last(each) else ""
             if not name or name.isupper() or name in seen:
                 continue
-            if values.assigned(name) and all(map(_is_plain, values.assigned(name))):
-                begins = {ast.unparse(value) for value in values.assigned(name) if value}
-                if len(begins) == 1:
-                    seen.add(name)
-                    yield "stays", name, begins.pop(), each.lineno
+            plain = [v for v in values.assigned(name) if isinstance(v, ast.Constant | ast.UnaryOp)]
+            begins = {ast.unparse(value) for value in plain}
+            if len(begins) == 1 and len(plain) == len(values.assigned(name)):
+                seen.add(name)
+                yield "stays", name, begins.pop(), each.lineno
 
 
 def _plain(given: ast.expr | None, values: conditions.Values) -> Iterator[ast.expr]:
@@ -308,10 +308,6 @@ def _plain(given: ast.expr | None, values: conditions.Values) -> Iterator[ast.ex
     elif given is not None and last(given):
         kept = values.assigned(ast.unparse(given))
         yield from (each for each in kept[:1] if each is not None and _number(each) is not None)
-
-
-def _is_plain(value: ast.expr | None) -> bool:
-    return isinstance(value, ast.Constant | ast.UnaryOp)
 
 
 def _waits(source: Source, _: conditions.Values) -> Iterator[Found]:
@@ -402,7 +398,8 @@ def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
     if makes and not any(_has(each, "init") for each in whole):
         yield "no_init", "", "", (source.function_around(makes[0]) or makes[0]).lineno
     if makes and not any(_has(each, *SPINS, "add_node") for each in whole):
-        yield "no_spin", "", "", _statement(source, makes[0])
+        statement = source.around(makes[0], ast.stmt)
+        yield "no_spin", "", "", getattr(statement, "end_lineno", makes[0].lineno)
     used = {
         last(node)
         for each in whole
@@ -425,11 +422,6 @@ _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Module)
 
 def _has(source: Source, *names: str) -> bool:
     return any(True for _ in source.calls(*names))
-
-
-def _statement(source: Source, call: ast.Call) -> int:
-    statement = source.around(call, ast.stmt)
-    return (getattr(statement, "end_lineno", 0) or call.lineno) if statement else call.lineno
 
 
 def _is_stored(node: ast.AST) -> TypeGuard[ast.Attribute]:

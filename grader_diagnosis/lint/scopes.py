@@ -114,7 +114,7 @@ def not_declared(node: ast.AST, outer: tuple[ast.AST, ...] = ()) -> Iterator[Fou
 
     Yields: the kind of `LintFinding`, the name, the declaration that lacks, and a line.
     """
-    for inner in _functions_in(node):
+    for inner in (each for each in scope_nodes(node) if isinstance(each, Function)):
         scopes = [*outer, node]
         never_read = unread(inner)
         for name, line in _assigned(inner).items():
@@ -131,11 +131,6 @@ def not_declared(node: ast.AST, outer: tuple[ast.AST, ...] = ()) -> Iterator[Fou
         for each in ast.walk(node):
             if isinstance(each, ast.ClassDef):
                 yield from not_declared(each, (node,))
-
-
-def _functions_in(node: ast.AST) -> list[Function]:
-    """Return the functions that a scope defines, without those in its functions and classes."""
-    return [each for each in scope_nodes(node) if isinstance(each, Function)]
 
 
 @lru_cache  # of a module it is asked for each name in each of its functions
