@@ -1,8 +1,7 @@
 """Lints the source of a submission for what is seldom meant; the findings are for a diagnosis.
 
-Runs once, where a submission is read. `LintFinding` of `grader.recording.observations` describes
-each kind. No finding is an error by itself; a rule of the diagnosis reports it where it explains
-one.
+Runs once, where a submission is read. `docs/lint-findings.md` describes each kind. No finding is an
+error by itself; a rule of the diagnosis reports it where it explains one.
 """
 
 from __future__ import annotations
