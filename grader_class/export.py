@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from grader import Exercise, SubmissionError, errors
-from grader.submission import MAX_SOURCE_BYTES, files_below, read_bounded
+from grader.submission import files_below, read_bounded
 from grader.system import files as whole_files
 from grader.system import remove
 from grader.testing import right_solutions
@@ -78,12 +78,7 @@ def kept(folder: Path) -> list[File]:
         return []  # the grader makes no links
     paths = [path for path in folder.rglob("*.py") if path.is_file() and not path.is_symlink()]
     named = sorted((path.relative_to(folder).as_posix(), path) for path in paths)
-    return [File(name, _begin(path)) for name, path in named[:MOST_FILES]]
-
-
-def _begin(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return file.read(MAX_SOURCE_BYTES)
+    return [File(name, read_bounded(path) or b"") for name, path in named[:MOST_FILES]]
 
 
 def _sources(copy: Path) -> Iterator[Path]:

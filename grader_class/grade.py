@@ -33,16 +33,9 @@ from grader import (
     record,
     save_recordings,
 )
-from grader.exercise import (
-    ErrorResult,
-    SubmissionInfo,
-    artifacts,
-    json_file,
-    put_artifacts,
-)
+from grader.exercise import ErrorResult, SubmissionInfo, artifacts, json_file, put_artifacts
 from grader.reports import Report, render
 from grader.run import levels, started_process
-from grader.submission import Submission
 from grader.system import files, make_folder, strict_json
 from grader.text import NOTHING, Message, msg, plain, translations
 from grader_class import export
@@ -158,37 +151,24 @@ def _run(task: Task, exercise: Exercise) -> Recordings | Message:
             opened = held.enter_context(
                 open_submission(path, task.executable, task.launch, **exercise.opening)
             )
-            submission = _without_path(opened)
+            copy = opened.copy
+            assert copy is not None  # what is opened here has a copy of its own
+            # the path may be in the folder of another student who handed in the same; it differs on
+            # each machine, and each time that an archive is unpacked
+            shown = replace(copy, prefix=str(copy.folder), shown=SHOWN)
+            submission = replace(opened, copy=shown)
             recordings = record(
                 submission, exercise, time=task.time, seed=task.seed, hides_seed=task.hides_seed
             )
-            _keep_for_pages(submission, recordings, place)
+            # what the pages of the whole class show of a run: they open no recording
+            export.keep(copy.folder, place / export.SOURCE)
+            files.put(place / THUMB, thumb(recordings))
     except (SubmissionError, UsageError) as error:
         result = ErrorResult.of(error, exercise.max_score)
         files.put(place / ERROR, json_file.text(result.to_json()).encode())
         return result.message
     save_recordings(recordings, place / RECORDING)
     return recordings
-
-
-def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path) -> None:
-    """Write what the pages of the whole class show of a run: they open no recording."""
-    copy = submission.copy
-    if copy is not None:
-        export.keep(copy.folder, place / export.SOURCE)
-    files.put(place / THUMB, thumb(recordings))
-
-
-def _without_path(submission: Submission) -> Submission:
-    """Return the submission with `SHOWN` in the place of its path.
-
-    The path may be in the folder of another student who handed in the same; and it differs on each
-    machine, and each time that an archive is unpacked.
-    """
-    copy = submission.copy
-    if copy is None:
-        return submission
-    return replace(submission, copy=replace(copy, prefix=str(copy.folder), shown=SHOWN))
 
 
 def _loaded(task: Task) -> Recordings | Message | None:

@@ -233,8 +233,10 @@ def _first(
         if end.kind != kind:
             continue
         near = nearest(end, case)
-        if near is None or _has_right_one(case, kind, near):
+        if near is None:
             continue
+        if any(e.kind == kind and (e.name, e.type) == near[1:3] for e in case.ends):
+            continue  # it has the right one as well
         if end.name != near.name and (end.is_met or _meets_itself(case, end)):
             continue
         if end.kind == "subscription" and end.used:
@@ -328,10 +330,6 @@ def _likeness(end: End, other: Endpoint) -> float:
 
 def _last(name: str) -> str:
     return name.rpartition("/")[2]
-
-
-def _has_right_one(case: Case, kind: EndKind, near: Endpoint) -> bool:
-    return any(e.kind == kind and (e.name, e.type) == near[1:3] for e in case.ends)
 
 
 def _meets_itself(case: Case, end: End) -> bool:

@@ -1,6 +1,7 @@
 """Finds cause and line to change in the source, where the run shows their effect only.
 
-A lint finding by itself is not reported: it may be meant. `LintFinding` describes each kind.
+A lint finding by itself is not reported: it may be meant. `docs/lint-findings.md` describes
+each kind.
 """
 
 from __future__ import annotations

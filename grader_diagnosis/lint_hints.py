@@ -1,7 +1,7 @@
 """Explains exceptions where the source shows more than their text.
 
-A lint finding by itself is not reported: it may be meant. `LintFinding` describes each kind. Rules
-yield what they find; the first of all counts.
+A lint finding by itself is not reported: it may be meant. `docs/lint-findings.md` describes each
+kind. Rules yield what they find; the first of all counts.
 """
 
 from __future__ import annotations

@@ -159,7 +159,8 @@ class BuildInterfaces(build_ext):
         module = Path(self.get_ext_fullpath(ext.name))
         built_with = generated / "built_with.txt"
         is_ours = built_with.exists() and built_with.read_text() == _ros_version()
-        if self.force or not is_ours or not _is_newer(module, than=_inputs()):
+        built_at = module.stat().st_mtime if module.exists() else 0.0
+        if self.force or not is_ours or built_at <= max(p.stat().st_mtime for p in _inputs()):
             # no leftovers of interfaces that were renamed or removed
             shutil.rmtree(generated, ignore_errors=True)
             shutil.rmtree(Path(self.build_lib) / package, ignore_errors=True)
@@ -195,7 +196,3 @@ def _inputs() -> list[Path]:
 def _ros_version() -> str:
     """Return a version that differs between ROS releases, which may share build/."""
     return version("ros-rosidl-generator-py")
-
-
-def _is_newer(path: Path, than: list[Path]) -> bool:
-    return path.exists() and path.stat().st_mtime > max(p.stat().st_mtime for p in than)

@@ -52,12 +52,6 @@ def double_names(trees: Mapping[PurePosixPath, ast.Module]) -> dict[str, list[Pu
     return {name: found[name] for name in sorted(found) if len(found[name]) > 1}
 
 
-def is_double_of_ros(paths: list[PurePosixPath]) -> bool:
-    """Whether a name occurs in at most one file that is no double of ROS's API."""
-    others = [p for p in paths if not str(p).startswith(DOUBLES)]
-    return len(others) < 2
-
-
 def main(root: Path) -> None:
     texts = sources(root)
     trees = {path: ast.parse(text) for path, text in texts.items()}
@@ -72,7 +66,11 @@ def main(root: Path) -> None:
         print(f"{name:24}{lines[name]:8,}{modules[name]:9,}")
 
     names = double_names(trees)
-    ours = {name: paths for name, paths in names.items() if not is_double_of_ros(paths)}
+    ours = {
+        name: paths
+        for name, paths in names.items()
+        if sum(not str(path).startswith(DOUBLES) for path in paths) > 1
+    }
     print(f"\nclass names in several modules: {len(ours)}")
     for name, paths in ours.items():
         print(f"  {name}: {', '.join(map(str, paths))}")

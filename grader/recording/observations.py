@@ -168,7 +168,7 @@ class LintFinding:
 
     Attributes:
         kind: what was found; the kinds are those of the diagnoser that looks
-            (`grader_diagnosis.lint.kinds`), and "raises": the exception NAME came to this line.
+            (`docs/lint-findings.md`), and "raises": the exception NAME came to this line.
         name, near: what the kind says of.
     """
 

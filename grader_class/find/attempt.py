@@ -8,7 +8,7 @@ import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from datetime import UTC, datetime, timedelta, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
@@ -23,8 +23,9 @@ _TIME: Final = re.compile(
     r"(?P<year>\d{4})-?(?P<month>\d\d)-?(?P<day>\d\d)"
     r"(?:(?:T|[ _-]+|, )(?P<hour>\d\d)[:.h-]?(?P<minute>\d\d)"
     r"(?:[:.-]?(?P<second>\d\d)(?:[.,](?P<fraction>\d{1,9}))?)?)?"
-    r" ?(?:(?P<utc>Z|UTC)|(?P<sign>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d))?"
+    r" ?(?P<zone>Z|UTC|[+-]\d\d:?\d\d|)"
 )
+_ISO: Final = "{year}-{month}-{day}T{hour}:{minute}:{second}.{fraction}{zone}"
 #: Moodle's format in English, without the day of the week before it.
 _MOODLE: Final = ("%d %B %Y, %I:%M %p", "%d %B %Y, %H:%M")
 _EPOCH: Final = re.compile(r"\d{10}|\d{13}")  # seconds, milliseconds since 1970
@@ -141,16 +142,10 @@ def read_time(text: str) -> datetime | None:
     match = _TIME.fullmatch(text)
     if match is None:
         return _of_moodle(text)
-    year, month, day, hour, minute, second = (int(part or 0) for part in match.groups()[:6])
-    microsecond = int((match["fraction"] or "").ljust(6, "0")[:6])
+    written = _ISO.format(**match.groupdict("00")).replace("UTC", "Z")
     try:
-        at = datetime(year, month, day, hour, minute, second, microsecond)
-        if match["utc"]:
-            return at.replace(tzinfo=UTC)
-        if match["sign"]:
-            ahead = timedelta(hours=int(match["hours"]), minutes=int(match["minutes"]))
-            return at.replace(tzinfo=timezone(-ahead if match["sign"] == "-" else ahead))
-        return at.astimezone()
+        at = datetime.fromisoformat(written)
+        return at if at.tzinfo else at.astimezone()
     except (ValueError, OverflowError, OSError):  # there is no such day, or zone
         return None
 

@@ -156,10 +156,7 @@ def _lay(piece: Piece, place: Path) -> Path | None:
     if stat.S_ISDIR(mode):
         shutil.copytree(piece.path, target, symlinks=True)
     elif stat.S_ISREG(mode):
-        try:
-            os.link(piece.path, target)
-        except OSError:  # another file system, or no permission to link
-            shutil.copyfile(piece.path, target)
+        store.link(str(piece.path), str(target))
     else:
         return None
     return target

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from grader.submission import Function, last, scope_nodes
+from grader.submission import last, scope_nodes
 from grader.system import expressions
 from grader_diagnosis.lint.scopes import Found, Source
 
@@ -191,10 +191,9 @@ def find(source: Source, values: Values) -> Iterator[Found]:
 
 def _where_used(node: ast.expr, source: Source) -> int:
     """Return the line that decides by a condition; that of the `if` which asks its function."""
-    outer = source.around(node, ast.FunctionDef, ast.AsyncFunctionDef)
-    if not isinstance(outer, Function) or not any(
-        isinstance(n, ast.Return) and n.value for n in ast.walk(outer)
-    ):
+    outer = source.function_around(node)
+    returns = (n for n in ast.walk(outer) if isinstance(n, ast.Return)) if outer else ()
+    if outer is None or not any(each.value for each in returns):
         return node.lineno
     for each in source.nodes:
         if isinstance(each, ast.If | ast.While):

@@ -1,8 +1,7 @@
 """Lints the source of a submission for what is seldom meant; the findings are for a diagnosis.
 
-Runs once, where a submission is read. `LintFinding` of `grader.recording.observations` describes
-each kind. No finding is an error by itself; a rule of the diagnosis reports it where it explains
-one.
+Runs once, where a submission is read. `docs/lint-findings.md` describes each kind. No finding is an
+error by itself; a rule of the diagnosis reports it where it explains one.
 """
 
 from __future__ import annotations
@@ -76,9 +75,8 @@ class Names:
                     self.passed |= {last(each) for each in (*args, *(w.value for w in words))}
                 case ast.Lambda(body=body):
                     self.passed |= _called_in(body)
-        for node in source.nodes:  # self.x += 1 reads it as well
-            if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Attribute):
-                self.read.add(node.target.attr)
+                case ast.AugAssign(target=ast.Attribute(attr=name)):
+                    self.read.add(name)
 
     def callbacks(self) -> set[str]:
         """Return the functions that are passed as callbacks, and all that these call."""
@@ -374,10 +372,9 @@ def _called_in(node: ast.AST) -> set[str]:
 
 def _unsent(source: Source) -> Iterator[Found]:
     """Yield requests that are made, where nothing ever calls a service."""
-    for node in source.nodes:
-        match node:
-            case ast.Call(func=ast.Attribute(value=made, attr="Request")):
-                yield "unsent", ast.unparse(made), "", node.lineno
+    for call in source.calls("Request"):
+        if isinstance(call.func, ast.Attribute):
+            yield "unsent", ast.unparse(call.func.value), "", call.lineno
 
 
 # Errors that are never shown ----------------------------------------------------------------------

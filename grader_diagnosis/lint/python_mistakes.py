@@ -65,9 +65,8 @@ def _idle(source: Source) -> Iterator[Found]:
                 yield "shared", ast.unparse(node), "", node.lineno
             case ast.If(test=ast.Constant(value=True)):
                 yield "always", "if True", "", node.lineno
-            case ast.AugAssign(op=ast.Add(), value=ast.Constant(value=int() | float() as value)):
-                if not value:
-                    yield "adds_nothing", ast.unparse(node), "", node.lineno
+            case ast.AugAssign(op=ast.Add(), value=ast.Constant(value=0)):
+                yield "adds_nothing", ast.unparse(node), "", node.lineno
 
 
 def _late(source: Source) -> Iterator[Found]:

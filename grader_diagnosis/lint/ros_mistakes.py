@@ -137,8 +137,8 @@ def _around_spin(source: Source) -> Iterator[Found]:
         if source.around(call, ast.While, ast.For) is None:
             yield "spins_once", "spin_once", "", call.lineno
     for call in source.calls("spin"):
-        function = source.around(call, ast.FunctionDef, ast.AsyncFunctionDef)
-        if isinstance(function, Function) and function.name == "__init__":
+        function = source.function_around(call)
+        if function is not None and function.name == "__init__":
             yield "spins_in_init", "spin", "", call.lineno
 
 
@@ -294,11 +294,11 @@ def _stays(source: Source, values: conditions.Values) -> Iterator[Found]:
             name = ast.unparse(each) if last(each) else ""
             if not name or name.isupper() or name in seen:
                 continue
-            if values.assigned(name) and all(map(_is_plain, values.assigned(name))):
-                begins = {ast.unparse(value) for value in values.assigned(name) if value}
-                if len(begins) == 1:
-                    seen.add(name)
-                    yield "stays", name, begins.pop(), each.lineno
+            plain = [v for v in values.assigned(name) if isinstance(v, ast.Constant | ast.UnaryOp)]
+            begins = {ast.unparse(value) for value in plain}
+            if len(begins) == 1 and len(plain) == len(values.assigned(name)):
+                seen.add(name)
+                yield "stays", name, begins.pop(), each.lineno
 
 
 def _plain(given: ast.expr | None, values: conditions.Values) -> Iterator[ast.expr]:
@@ -308,10 +308,6 @@ def _plain(given: ast.expr | None, values: conditions.Values) -> Iterator[ast.ex
     elif given is not None and last(given):
         kept = values.assigned(ast.unparse(given))
         yield from (each for each in kept[:1] if each is not None and _number(each) is not None)
-
-
-def _is_plain(value: ast.expr | None) -> bool:
-    return isinstance(value, ast.Constant | ast.UnaryOp)
 
 
 def _waits(source: Source, _: conditions.Values) -> Iterator[Found]:
@@ -361,10 +357,9 @@ def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
         if not known or not given or len(followed) >= MOST_FOLLOWED or (known, given) in followed:
             continue
         followed.add((known, given))
-        function = source.around(node, ast.FunctionDef, ast.AsyncFunctionDef)
-        names = [a.arg for a in function.args.args] if isinstance(function, Function) else []
-        names = names[1:] if names[:1] == ["self"] else names
-        if isinstance(function, Function) and given in names:
+        function = source.function_around(node)
+        names = [a.arg for a in function.args.args if a.arg != "self"] if function else []
+        if function is not None and given in names:
             at = names.index(given)
             for call in source.calls(function.name):
                 literal = next((w.value for w in call.keywords if w.arg == given), None)
@@ -374,14 +369,11 @@ def _numbers(source: Source, values: conditions.Values) -> Iterator[Found]:
                     yield "argument", known, ast.unparse(begin), call.lineno
         for each in source.nodes:
             match each:
-                case ast.Assign(targets=[target], value=literal) if last(target) == given:
-                    pass
-                case ast.AnnAssign(target=target, value=literal) if last(target) == given:
-                    pass
-                case _:
-                    continue
-            if literal is not None and _number(literal) is not None:
-                yield "argument", known, ast.unparse(literal), each.lineno
+                case (
+                    ast.Assign(targets=[target], value=ast.expr() as literal)
+                    | ast.AnnAssign(target=target, value=ast.expr() as literal)
+                ) if last(target) == given and _number(literal) is not None:
+                    yield "argument", known, ast.unparse(literal), each.lineno
     for node in source.nodes:
         if isinstance(node, ast.Tuple | ast.Call):
             parts = getattr(node, "elts", None) or getattr(node, "args", [])
@@ -404,9 +396,10 @@ def _forgotten(source: Source, whole: list[Source]) -> Iterator[Found]:
     nodes = {node.name for each in whole for node in each.nodes if _is_node(node)}
     makes += source.calls(*nodes)
     if makes and not any(_has(each, "init") for each in whole):
-        yield "no_init", "", "", _start_of(source, makes[0])
+        yield "no_init", "", "", (source.function_around(makes[0]) or makes[0]).lineno
     if makes and not any(_has(each, *SPINS, "add_node") for each in whole):
-        yield "no_spin", "", "", _statement(source, makes[0])
+        statement = source.around(makes[0], ast.stmt)
+        yield "no_spin", "", "", getattr(statement, "end_lineno", makes[0].lineno)
     used = {
         last(node)
         for each in whole
@@ -429,16 +422,6 @@ _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Module)
 
 def _has(source: Source, *names: str) -> bool:
     return any(True for _ in source.calls(*names))
-
-
-def _statement(source: Source, call: ast.Call) -> int:
-    statement = source.around(call, ast.stmt)
-    return (getattr(statement, "end_lineno", 0) or call.lineno) if statement else call.lineno
-
-
-def _start_of(source: Source, call: ast.Call) -> int:
-    function = source.around(call, ast.FunctionDef, ast.AsyncFunctionDef)
-    return function.lineno if isinstance(function, Function) else call.lineno
 
 
 def _is_stored(node: ast.AST) -> TypeGuard[ast.Attribute]:
@@ -508,16 +491,13 @@ def _fields(source: Source) -> Iterator[Found]:
     for node in source.nodes:
         match node:
             case ast.Attribute(value=ast.Attribute(attr=part), attr=name, ctx=ast.Store()):
-                names = [f"{part}.{name}"] if part in FIELDS else []
-            case ast.Attribute(attr=name, ctx=ast.Store()):
-                names = [name] if name in FIELDS else []
-            case ast.keyword(arg=str() as name):
-                names = [name] if name in FIELDS else []
+                known = f"{part}.{name}"
+            case ast.Attribute(attr=field, ctx=ast.Store()) | ast.keyword(arg=str() as field):
+                known = field
             case _:
                 continue
         given = getattr(source.parents[node], "value", None)
         place = isinstance(given, ast.Constant) and not given.value, node.lineno
-        for name in names:
-            if name not in places or place[0] < places[name][0]:
-                places[name] = place
+        if known.partition(".")[0] in FIELDS and place[0] < places.get(known, (2, 0))[0]:
+            places[known] = place
     yield from (("sets", name, "", line) for name, (_, line) in places.items())

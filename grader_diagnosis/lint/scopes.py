@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 from grader.submission import Function, last, scope_nodes
@@ -32,7 +31,6 @@ CALLBACKS = {
 }
 
 
-@dataclass
 class Source:
     """One file, with what is asked of it again and again.
 
@@ -42,18 +40,12 @@ class Source:
         parents: a node -> the one that it is part of.
     """
 
-    tree: ast.Module
-    nodes: list[ast.AST] = field(default_factory=list)
-    functions: dict[str, Function] = field(default_factory=dict)
-    parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self.nodes += ast.walk(self.tree)
-        for node in self.nodes:
-            for child in ast.iter_child_nodes(node):
-                self.parents[child] = node
-            if isinstance(node, Function):
-                self.functions[node.name] = node
+    def __init__(self, tree: ast.Module) -> None:
+        self.tree, self.nodes = tree, [*ast.walk(tree)]
+        self.functions = {node.name: node for node in self.nodes if isinstance(node, Function)}
+        self.parents: Parents = {
+            child: node for node in self.nodes for child in ast.iter_child_nodes(node)
+        }
 
     @cached_property
     def all_calls(self) -> list[ast.Call]:
@@ -69,6 +61,11 @@ class Source:
         while found is not None and not isinstance(found, kinds):
             found = self.parents.get(found)
         return found
+
+    def function_around(self, node: ast.AST) -> Function | None:
+        """Return the innermost function that a node is in."""
+        found = self.around(node, ast.FunctionDef, ast.AsyncFunctionDef)
+        return found if isinstance(found, Function) else None
 
     @cached_property
     def imported(self) -> list[tuple[ast.ImportFrom, ast.alias]]:
@@ -117,7 +114,7 @@ def not_declared(node: ast.AST, outer: tuple[ast.AST, ...] = ()) -> Iterator[Fou
 
     Yields: the kind of `LintFinding`, the name, the declaration that lacks, and a line.
     """
-    for inner in _functions_in(node):
+    for inner in (each for each in scope_nodes(node) if isinstance(each, Function)):
         scopes = [*outer, node]
         never_read = unread(inner)
         for name, line in _assigned(inner).items():
@@ -134,11 +131,6 @@ def not_declared(node: ast.AST, outer: tuple[ast.AST, ...] = ()) -> Iterator[Fou
         for each in ast.walk(node):
             if isinstance(each, ast.ClassDef):
                 yield from not_declared(each, (node,))
-
-
-def _functions_in(node: ast.AST) -> list[Function]:
-    """Return the functions that a scope defines, without those in its functions and classes."""
-    return [each for each in scope_nodes(node) if isinstance(each, Function)]
 
 
 @lru_cache  # of a module it is asked for each name in each of its functions

@@ -89,7 +89,6 @@ Geometry = Box | Cylinder | Sphere | Mesh
 class Visual:
     """A shape to show; the material is None where none is named, or there is none of that name."""
 
-    name: str
     origin: Origin
     geometry: Geometry
     material: Material | None = None
@@ -99,7 +98,6 @@ class Visual:
 class Collision:
     """Where a link bumps into others."""
 
-    name: str
     origin: Origin
     geometry: Geometry
 
@@ -178,4 +176,3 @@ class Model:
     root: str
     links: Mapping[str, Link]
     joints: Mapping[str, Joint]
-    materials: Mapping[str, Material]

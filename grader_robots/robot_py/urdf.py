@@ -57,7 +57,7 @@ def _model(document: Element, report: Report) -> Model:
     materials = _materials(robot, report)
     links = _links(robot, materials, report)
     joints = _joints(robot)
-    return Model(name, _root(links, joints), links, joints, materials)
+    return Model(name, _root(links, joints), links, joints)
 
 
 def _problem_with_version(version: str) -> str:

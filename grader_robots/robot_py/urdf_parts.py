@@ -142,13 +142,12 @@ def visual(element: Element, report: Report) -> tuple[Visual, str]:
     if named is not None:
         material_name = named.needed("name", "Visual material must contain a name attribute")
         defined = material(named, report, name_suffices=True)
-    return Visual(element.attributes.get("name", ""), origin, shape, defined), material_name
+    return Visual(origin, shape, defined), material_name
 
 
 def collision(element: Element) -> Collision:
     """Return a collision."""
-    origin, shape = element.origin(), geometry(element)
-    return Collision(element.attributes.get("name", ""), origin, shape)
+    return Collision(element.origin(), geometry(element))
 
 
 def inertial(element: Element) -> Inertial:

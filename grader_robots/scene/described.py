@@ -129,13 +129,10 @@ def _model(description: str) -> Model | None:
     return robot
 
 
-def _why_not(trace: package_trace.PackageTrace) -> Message:
+def words(trace: package_trace.PackageTrace) -> Message:
+    """What there is to see, for who cannot."""
+    if (found := solid(trace)) is not None:
+        return found.text
     if _described(trace) is None:
         return msg("no robot description was found")
     return msg("the robot description cannot be drawn")
-
-
-def words(trace: package_trace.PackageTrace) -> Message:
-    """What there is to see, for who cannot."""
-    found = solid(trace)
-    return _why_not(trace) if found is None else found.text

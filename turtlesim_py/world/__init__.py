@@ -1,1 +1,1 @@
-"""The world of the turtles: no ROS, no clock, no files, no threads."""
+"""The world of the turtles: no ROS, no clock, no threads, no files but their pictures."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable
 from functools import cache, lru_cache
+from importlib.resources import files
 from math import ceil, cos, floor, isfinite, radians, sin
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +13,6 @@ from numpy.typing import NDArray
 from turtlesim_py.world.canvas import Canvas
 from turtlesim_py.world.floats import PI
 from turtlesim_py.world.turtle import SPRITES, Sprite
-
-Color = tuple[int, int, int]
-Mask = NDArray[np.bool_]
-Field = NDArray[np.float64]
 
 #: cos and sin where Qt has them ready [deg]. A heading of 0 has to give a sharp picture.
 _QUARTER_TURNS = {
@@ -95,174 +90,23 @@ def _rotated(name: str, clockwise_deg: float) -> NDArray[np.uint8]:
     return turned
 
 
-# The turtles' pictures ----------------------------------------------------------------------------
-#
-# Eleven pictures drawn by code, under the names of turtlesim 1.8.4: a turtle seen from above,
-# its head up, 45 x 45 pixels, since the original uses the height of its pictures as the length of
-# a metre. Shapes are judged at 8 x 8 points in each pixel, by IEEE sums, products and square roots
-# only, so that the pictures are the same bytes on every machine.
-
-#: Edge of a picture [px].
-SIZE_PX: Final = 45
-_POINTS = 8  # along the edge of a pixel
-_Y, _X = (np.mgrid[: SIZE_PX * _POINTS, : SIZE_PX * _POINTS] + 0.5) / _POINTS
-_MIDDLE = SIZE_PX / 2.0
-_SIDES = (-1.0, 1.0)
-
-# The shell, an ellipse: centre and radii [px]
-_SHELL_X, _SHELL_Y = _MIDDLE, 23.8
-_SHELL_RX, _SHELL_RY = 13.0, 14.4
-_OUTLINE_PX = 1.1
-
-_WHITE: Color = (255, 255, 255)
-_PUPIL: Color = (22, 24, 32)
-
-
-@dataclass(frozen=True)
-class Appearance:
-    """How a turtle's picture differs from another's.
-
-    Attributes:
-        skin, shell, mark, line: colours; `mark` for the pattern on the shell, `line` for outlines.
-        pattern: covers the marked points of the shell.
-    """
-
-    skin: Color
-    shell: Color
-    mark: Color
-    line: Color
-    pattern: Callable[[], Mask]
-
-
-def _ellipse(
-    x: float, y: float, rx: float, ry: float, tilt: tuple[float, float] = (1.0, 0.0)
-) -> Mask:
-    """Cover an ellipse around (x, y) [px]; `tilt` is the direction of rx, a vector of length 1."""
-    along = (_X - x) * tilt[0] + (_Y - y) * tilt[1]
-    across = (_Y - y) * tilt[0] - (_X - x) * tilt[1]
-    covered: Mask = (along / rx) * (along / rx) + (across / ry) * (across / ry) <= 1.0
-    return covered
-
-
-def _shell(grow: float = 0.0) -> Mask:
-    return _ellipse(_SHELL_X, _SHELL_Y, _SHELL_RX + grow, _SHELL_RY + grow)
-
-
-def _limbs(grow: float = 0.0) -> Mask:
-    """Cover head, neck, tail and legs, each larger by `grow` [px]."""
-    limbs = _ellipse(_MIDDLE, 6.9, 5.2 + grow, 5.7 + grow)
-    limbs |= _ellipse(_MIDDLE, 11.5, 3.4 + grow, 5.0 + grow)
-    limbs |= _ellipse(_MIDDLE, 39.5, 1.5 + grow, 3.8 + grow)
-    for side in _SIDES:
-        limbs |= _ellipse(_MIDDLE + side * 13.3, 13.4, 7.3 + grow, 3.6 + grow, (side * 0.8, -0.6))
-        limbs |= _ellipse(_MIDDLE + side * 11.3, 35.4, 5.9 + grow, 3.3 + grow, (side * 0.6, 0.8))
-    return limbs
-
-
-def _draw(of: Appearance) -> NDArray[np.uint8]:
-    """Lay opaque shapes one over another, and average the points of each pixel.
-
-    Alpha is the share of these that is covered.
-    """
-    shapes = [(_limbs(_OUTLINE_PX), of.line), (_limbs(), of.skin)]
-    for side in _SIDES:
-        shapes.append((_ellipse(_MIDDLE + side * 3.0, 5.2, 1.7, 2.0), _WHITE))
-        shapes.append((_ellipse(_MIDDLE + side * 2.9, 4.6, 1.05, 1.25), _PUPIL))
-    shapes += [(_shell(_OUTLINE_PX), of.line), (_shell(), of.shell)]
-    shapes.append((of.pattern() & _shell(-1.5), of.mark))
-    points, covered = np.zeros((*_X.shape, 3), np.int64), np.zeros(_X.shape, np.bool_)
-    for shape, color in shapes:
-        points[shape] = color
-        covered |= shape
-    blocks = (SIZE_PX, _POINTS, SIZE_PX, _POINTS)
-    count = covered.reshape(blocks).sum(axis=(1, 3))
-    divisor = np.maximum(count, 1)[..., None]
-    rgb = (points.reshape(*blocks, 3).sum(axis=(1, 3)) + divisor // 2) // divisor
-    alpha = (count * 255 + _POINTS**2 // 2) // _POINTS**2
-    return np.dstack((rgb, alpha)).astype(np.uint8)
-
-
-# Patterns, as if the shell went on for ever
-
-
-def _plates(centers: list[tuple[float, float]]) -> Mask:
-    """Cover what is nearer to one centre, from the middle of the shell, than to all the others."""
-    distances = []
-    for x, y in centers:
-        dx, dy = _X - (_SHELL_X + x), _Y - (_SHELL_Y + y)
-        distances.append(np.sqrt(dx * dx + dy * dy))
-    nearest, second = np.sort(np.stack(distances), axis=0)[:2]
-    plates: Mask = second - nearest > 1.7
-    return plates
-
-
-def _honeycomb() -> Mask:
-    around = [(side * 9.8, y) for side in _SIDES for y in (-5.6, 5.6)]
-    return _plates([(0.0, -10.6), (0.0, 0.0), (0.0, 10.6), *around])
-
-
-def _star() -> Mask:
-    around = [(side * x, y) for side in _SIDES for x, y in ((7.5, -8.5), (11.0, 1.5), (5.0, 10.5))]
-    middle = (0.0, 0.0)
-    return _plates([middle, middle, *around])  # twice: the plate between two that tie is not there
-
-
-def _spots() -> Mask:
-    spots = _ellipse(_SHELL_X, _SHELL_Y, 3.6, 3.6)
-    for side in _SIDES:
-        for x, y in ((0.0, side * 9.6), (side * 7.0, 5.4), (side * 7.0, -5.4)):
-            spots |= _ellipse(_SHELL_X + x, _SHELL_Y + y, 2.4, 2.4)
-    return spots
-
-
-def _rings() -> Mask:
-    rings = np.zeros(_X.shape, np.bool_)
-    for size in (9.6, 7.2, 4.8, 2.4):
-        rings ^= _ellipse(_SHELL_X, _SHELL_Y, size, size * 1.1)
-    return rings
-
-
-def _bands() -> Mask:
-    """Cover bands that bend like a roof seen from above."""
-    height = _Y - _SHELL_Y + np.abs(_X - _SHELL_X) * 0.45
-    bands: Mask = np.floor(height / 3.0) % 2.0 == 0.0
-    return bands
-
-
-def _keys() -> Mask:
-    """Cover the black keys of a piano, and the gaps between the white ones."""
-    keys = np.zeros(_X.shape, np.bool_)
-    for x in (2.6, 7.8):
-        aside = np.abs(np.abs(_X - _SHELL_X) - x)
-        keys |= aside < 0.4
-        keys |= (aside < 1.5) & (_Y < _SHELL_Y + 1.5)
-    return keys
-
-
-_APPEARANCES: Final = {
-    "ardent": Appearance((236, 164, 92), (176, 36, 40), (232, 74, 52), (88, 18, 26), _honeycomb),
-    "bouncy": Appearance((130, 206, 96), (244, 120, 172), (255, 196, 220), (120, 34, 84), _spots),
-    "crystal": Appearance((176, 226, 232), (62, 158, 190), (190, 244, 250), (20, 70, 98), _star),
-    "dashing": Appearance((120, 190, 110), (28, 44, 104), (250, 204, 60), (12, 20, 54), _bands),
-    "eloquent": Appearance((214, 190, 150), (110, 54, 140), (188, 128, 216), (54, 22, 74), _rings),
-    "foxy": Appearance((250, 236, 214), (226, 104, 24), (255, 178, 88), (112, 44, 10), _honeycomb),
-    "galactic": Appearance((150, 132, 210), (34, 22, 66), (120, 226, 232), (14, 8, 34), _spots),
-    "humble": Appearance((150, 190, 84), (112, 82, 44), (176, 140, 80), (52, 38, 20), _star),
-    "iron": Appearance((170, 178, 186), (88, 96, 106), (200, 208, 214), (38, 42, 50), _bands),
-    "jazzy": Appearance((92, 186, 172), (250, 244, 228), (44, 30, 62), (58, 36, 78), _keys),
-    "rolling": Appearance((240, 214, 90), (20, 120, 84), (96, 206, 140), (8, 58, 44), _rings),
-}
-
-
 @cache
 def sprite(name: str) -> NDArray[np.uint8]:
     """Return a turtle's picture, RGBA, shape (45, 45, 4), read-only.
 
+    turtles.png has them in a row, in the order of `SPRITES`: turtles seen from above, their heads
+    up. The original uses the height of its pictures as the length of a metre.
+
     Raises:
         KeyError: no picture has this name.
     """
+    import PIL.Image  # here: few draw a turtle
+
     if name not in SPRITES:
         raise KeyError(f"no turtle picture is named {name!r}, expected one of {', '.join(SPRITES)}")
-    pixels = _draw(_APPEARANCES[name])
+    with (files(__package__) / "turtles.png").open("rb") as file:
+        row = np.asarray(PIL.Image.open(file))
+    left = SPRITES.index(name) * row.shape[0]
+    pixels = row[:, left : left + row.shape[0]].copy()
     pixels.setflags(write=False)
     return pixels

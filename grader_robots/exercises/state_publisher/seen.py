@@ -12,6 +12,7 @@ from grader import Evidence, Finding, Recordings, Tolerances
 from grader.exercise import error_first, how_it_ended
 from grader.scenes.view import Floats
 from grader.text import Message, joined, msg
+from grader.text import listed as listed_texts
 from grader_robots.robot_py.model import Joint
 from grader_robots.scene.motion import joints, odometry
 from grader_robots.scene.trace import TICK_S, RobotTrace
@@ -83,11 +84,7 @@ def sentence(parts: Sequence[Message]) -> Message:
 
 def listed(names: Iterable[str]) -> Message:
     """A few names, as they may stand in a sentence."""
-    each = [repr(name[:40]) for name in names]
-    few = ", ".join(each[:5])
-    if len(each) > 5:
-        return msg("{names} and {count} more", names=few, count=len(each) - 5)
-    return Message.of(few) if few else msg("nothing")
+    return listed_texts((repr(name[:40]) for name in names), 5) or msg("nothing")
 
 
 def rounded(value: float) -> float:

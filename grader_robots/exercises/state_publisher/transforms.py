@@ -12,7 +12,7 @@ import numpy as np
 
 from grader import Checks, Expected, Finding, Tolerances
 from grader.scenes.view import Floats
-from grader.text import Message, msg
+from grader.text import Message, msg, place
 from grader_robots.exercises.state_publisher.seen import RobotRun, listed, of_run, sentence
 from grader_robots.scene.motion import ODOM, Odometry, bare, below, fitted, hung, why_refused
 from grader_robots.scene.view import FROM_CENTRE
@@ -149,7 +149,8 @@ def _circle(way: Odometry, tolerances: Tolerances) -> list[WayFault]:
     )
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     if float(steps.sum()) < tolerances["way_least_m"]:
-        text = msg("the robot stays where it is, at {place}", place=_place(points[0]))
+        at = place(float(points[0, 0]), float(points[0, 1]))
+        text = msg("the robot stays where it is, at {place}", place=at)
         return [WayFault(text, CIRCLE + HEADING, help)]
     if not math.isfinite(radius) or off > tolerances["round_share"] * radius:
         return [WayFault(msg("its way is no circle"), CIRCLE, help)]
@@ -263,10 +264,6 @@ def heading_errors(way: Odometry) -> Floats:
     goes = np.arctan2(steps[moves, 1], steps[moves, 0])
     off: Floats = (yaw[1:-1][moves] - goes + math.pi) % (2 * math.pi) - math.pi
     return off
-
-
-def _place(point: Floats) -> Message:
-    return msg("({x:.2f}, {y:.2f})", x=point[0], y=point[1])
 
 
 @checks()

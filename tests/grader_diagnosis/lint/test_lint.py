@@ -1,6 +1,7 @@
 """What a look at a student's source shows, and what it is silent about."""
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,6 @@ import yaml
 from grader.recording.observations import LintFinding, SourceLine
 from grader.run.opening import open_submission
 from grader_diagnosis.lint import lint
-from grader_diagnosis.lint.kinds import KINDS
 from tests.hand_ins import SUBMISSIONS
 
 TUTORIALS = SUBMISSIONS / "tutorials"
@@ -17,6 +17,8 @@ SETUP = """from setuptools import setup
 setup(name="spiral", entry_points={"console_scripts": ["draw = spiral.draw:main"]})
 """
 CASES = yaml.safe_load(Path(__file__).with_name("lint.yaml").read_text(encoding="utf-8"))
+PAGE = Path(__file__).parents[3] / "docs" / "lint-findings.md"
+KINDS = set(re.findall(r"^\| `(\w+)` \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE))
 #: What only gives a place to something that a run has shown.
 PLACES = {
     *("sets", "constant", "never_read", "never_set", "no_super", "imports", "at_wall", "at_middle"),
@@ -27,7 +29,7 @@ PLACES = {
 
 def found_in(sources):
     found = lint.find(lint.parsed_of(sources), sources, lambda _: False)
-    assert {finding[0] for _, finding in found} <= KINDS.keys()
+    assert {finding[0] for _, finding in found} <= KINDS
     return [LintFinding(*each[:3], SourceLine(file, each[3])) for file, each in found]
 
 

@@ -30,7 +30,7 @@ TYPES = st.sampled_from(list(JointType))
 def chain(*joints: Joint) -> Model:
     names = {"root", *(joint.child for joint in joints), *(joint.parent for joint in joints)}
     links = {name: Link(name) for name in sorted(names)}
-    return Model("test", "root", links, {joint.name: joint for joint in joints}, {})
+    return Model("test", "root", links, {joint.name: joint for joint in joints})
 
 
 def joint(kind: str, name: str = "j", parent: str = "root", child: str = "tip", **more) -> Joint:

@@ -18,7 +18,7 @@ def test_the_pictures_are_the_same_bytes_on_every_machine():
     assert digest == "6b0395581f0f7b7538b023489cec535649807eeb2a87bd7632e321fb1b6bbe85"
 
 
-def test_a_picture_is_drawn_once_and_cannot_be_spoilt():
+def test_a_picture_is_read_once_and_cannot_be_spoilt():
     assert sprite("iron") is sprite("iron")
     with pytest.raises(ValueError, match="read-only"):
         sprite("iron")[0, 0, 0] = 1
