@@ -82,16 +82,13 @@ class Parser(argparse.ArgumentParser):
         raise Misuse(message, self)
 
 
-def _tr_of_number(one: str, many: str, n: float) -> str:
-    return tr(one, many, n=n)
-
-
 def choose_language(words: Sequence[str]) -> None:
     """Use the language that a call asks for; else that of the user's locale.
 
     It is searched before the call is parsed: errors of the call are in this language as well.
     """
-    vars(argparse).update(_=tr, ngettext=_tr_of_number)  # by which it translates its sentences
+    # by which it translates its sentences
+    vars(argparse).update(_=tr, ngettext=lambda one, many, n: tr(one, many, n=n))
     for word, after in zip_longest(words, words[1:], fillvalue=""):
         name, _, value = word.partition("=")
         language = value or after

@@ -79,7 +79,8 @@ def _judged(exercise: Exercise, subject: Subject) -> Iterator[str]:
     yield "\n".join(_seen_of(exercise, shown))
     yield "\n".join(_waits(shown))
     for check, worth in listed:
-        if text := check_rubric(check, exercise.tolerances):
+        # empty where the author has written no more than a title
+        if text := in_force(translate(check.rubric), exercise.tolerances):
             heading = tr("{title}: {points} points", title=check.title, points=points(worth))
             yield f"### {heading}"
             yield text
@@ -299,15 +300,6 @@ def _wrapped(text: str, indent: str = "") -> str:
     return textwrap.fill(
         text, 100, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
     )
-
-
-def check_rubric(check: Check, tolerances: Mapping[str, Any]) -> str:
-    """Return what a check measures and how its points are computed, as Markdown.
-
-    It is in the language of this process's user, where the exercise has that; empty where the
-    author has written no more than a title.
-    """
-    return in_force(translate(check.rubric), tolerances)
 
 
 def in_force(text: str, tolerances: Mapping[str, Any]) -> str:

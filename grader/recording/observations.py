@@ -17,14 +17,9 @@ from typing import Annotated, Any, Literal, Self
 from grader.system.strict_json import Bounds, from_json, not_negative
 from grader.text.strings import one_line, without_controls
 
-
-def _in_one_line(text: str) -> str:
-    """Remove line breaks and control characters, which break a terminal, a log or XML."""
-    return without_controls(one_line(text), "?")
-
-
-#: So many characters of a text and entries of a kind are kept; later ones are not.
-STRANGERS = Bounds(300, 100, clean=_in_one_line)
+#: So many characters of a text and entries of a kind are kept; later ones are not. Line breaks and
+#: control characters would break a terminal, a log or XML.
+STRANGERS = Bounds(300, 100, clean=lambda text: without_controls(one_line(text), "?"))
 #: So many times of one end the line changes that it is used at.
 MOST_SENT = 200
 

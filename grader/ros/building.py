@@ -71,28 +71,13 @@ def configure(
         *(str(path) for path in sorted((prefix / "include").iterdir()) if path.is_dir()),
     ]
     ext.library_dirs.append(str(prefix / "lib"))
-    ext.libraries += [
-        "rosidl_runtime_c",
-        "rosidl_typesupport_c",
-        "rosidl_typesupport_fastrtps_c",
-        "rosidl_typesupport_fastrtps_cpp",
-        "rosidl_typesupport_introspection_c",
-        "fastcdr",
-        "rmw",
-        "rcutils",
-        "dl",
-        "stdc++",
-    ]
+    supports = ("rosidl_typesupport_c", *TYPE_SUPPORTS)
+    ext.libraries += ["rosidl_runtime_c", *supports, "rosidl_typesupport_fastrtps_cpp"]
+    ext.libraries += ["fastcdr", "rmw", "rcutils", "dl", "stdc++"]
     ext.libraries += [
         f"{dependency}__{library}"
         for dependency in dependencies
-        for library in (
-            "rosidl_generator_c",
-            "rosidl_generator_py",
-            "rosidl_typesupport_c",
-            "rosidl_typesupport_fastrtps_c",
-            "rosidl_typesupport_introspection_c",
-        )
+        for library in ("rosidl_generator_c", "rosidl_generator_py", *supports)
     ]
     ext.extra_compile_args += ["-O1", "-g0", "-w"]
     # Python's flags have -DNDEBUG. Without it a wrong type in a field aborts, as with the

@@ -20,7 +20,7 @@ from grader.recording.scene_and_cast import CastKeeper, merge
 from grader.recording.subject import Keeper, Start, Trace
 from grader.run.limits import RECORDING_BYTES, CpuBudget
 from grader.scenes.scene import Limits
-from grader.system import strict_json
+from grader.system.strict_json import OURS, SPARSE, UNSTORED, from_json, to_json
 from grader.text.message import Message, msg
 
 
@@ -58,29 +58,23 @@ class Plan:
     setting: str = ""
     looks_at_package: bool = False
     inspections: tuple[str, ...] = ()
-    definitions: Mapping[str, str] = field(
-        default_factory=dict, hash=False, metadata=strict_json.SPARSE
-    )
-    cast: Mapping[str, Any] | None = field(default=None, hash=False, metadata=strict_json.SPARSE)
-    hears: tuple[str, ...] = field(default=(), metadata=strict_json.SPARSE)
-    own_definitions: Mapping[str, str] = field(
-        default_factory=dict, hash=False, metadata=strict_json.SPARSE
-    )
-    arguments: tuple[str, ...] = field(default=(), metadata=strict_json.SPARSE)
-    case: str = field(default="", metadata=strict_json.SPARSE)
-    drawn: Drawn = field(default_factory=dict, hash=False, metadata=strict_json.SPARSE)
-    budget: CpuBudget = field(
-        default_factory=CpuBudget, compare=False, metadata=strict_json.UNSTORED
-    )
+    definitions: Mapping[str, str] = field(default_factory=dict, hash=False, metadata=SPARSE)
+    cast: Mapping[str, Any] | None = field(default=None, hash=False, metadata=SPARSE)
+    hears: tuple[str, ...] = field(default=(), metadata=SPARSE)
+    own_definitions: Mapping[str, str] = field(default_factory=dict, hash=False, metadata=SPARSE)
+    arguments: tuple[str, ...] = field(default=(), metadata=SPARSE)
+    case: str = field(default="", metadata=SPARSE)
+    drawn: Drawn = field(default_factory=dict, hash=False, metadata=SPARSE)
+    budget: CpuBudget = field(default_factory=CpuBudget, compare=False, metadata=UNSTORED)
 
     def to_json(self) -> str:
         """Serialise it as an argument of the simulator's process."""
-        return json.dumps(strict_json.to_json(self, strict_json.OURS))
+        return json.dumps(to_json(self, OURS))
 
     @classmethod
     def from_json(cls, text: str) -> Self:
         """Parse what `to_json` has written."""
-        return strict_json.from_json(cls, json.loads(text), strict_json.OURS)
+        return from_json(cls, json.loads(text), OURS)
 
 
 # The recording --------------------------------------------------------------------------------
@@ -122,7 +116,7 @@ def leave(
     is_beside = cast is not None and not scene.has_cast
     kept, by = merge(trace, cast.trace(trace.ticks) if is_beside else None, scene)
     topics = {topic: kind for topic, kind in sorted(published.items()) if topic not in USUAL}
-    facts = strict_json.to_json(_Facts(topics, kept.duration_ns, kept.sha256()), strict_json.OURS)
+    facts = to_json(_Facts(topics, kept.duration_ns, kept.sha256()), OURS)
     head = json.dumps(facts).encode()
     path.write_bytes(head + b"\n" + bag.pack(kept, by)[0])
 
@@ -138,7 +132,7 @@ def fetch(file: int, scene: Keeper) -> tuple[Trace, tuple[PublishedTopic, ...]]:
     try:
         head, _, packed = read_bounded(file, RECORDING_BYTES).partition(b"\n")
         # of bytes, json.loads would guess the encoding
-        facts = strict_json.from_json(_Facts, json.loads(head.decode("utf-8")), strict_json.OURS)
+        facts = from_json(_Facts, json.loads(head.decode("utf-8")), OURS)
         channels = read_mcap(packed, RECORDING_BYTES)
         failure = SceneFailure
         trace = bag.parse_channels(channels, scene, facts.duration_ns, facts.sha256)

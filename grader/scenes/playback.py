@@ -134,9 +134,7 @@ def whole_html(page: Path) -> str:
 def _in_html(data: Any) -> str:
     """Serialise as JSON that an HTML parser cannot mistake for markup."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
-    for letter in "<>&":
-        text = text.replace(letter, f"\\u{ord(letter):04x}")
-    return text
+    return text.translate({ord(sign): f"\\u{ord(sign):04x}" for sign in "<>&"})
 
 
 @cache

@@ -167,7 +167,7 @@ def install(copy: PrivateCopy, set_ups: Iterable[SetUp]) -> PrivateCopy:
             if _within(link, prefix) and _within(to, copy.folder) and safe_files.is_file(to):
                 _link(link, to)
         for name in {*re.findall(_SHARE_OF, "\n".join(each.installed))}:
-            _mark(prefix / _MARKS / name)
+            safe_files.touch(prefix / _MARKS / name)
     _close(prefix, within=copy.folder)
     copy.folder.chmod(0o555)
     return replace(copy, installed=prefix)
@@ -182,12 +182,6 @@ def _link(link: Path, to: Path) -> None:
     with suppress(OSError, ValueError):  # its name is none that a file can have, or there is one
         link.parent.mkdir(parents=True, exist_ok=True)
         link.symlink_to(os.path.relpath(to, link.parent))
-
-
-def _mark(file: Path) -> None:
-    with suppress(OSError):  # its name is none that a file can have
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.touch()
 
 
 def copy_folder(top: Path, into: Path) -> tuple[Message, ...]:

@@ -175,11 +175,15 @@ def read_evaluated(
 
 def _in_copy(found: Callable[[], Submission | Unevaluated], name: str) -> Submission | Unevaluated:
     extensions.load_all(extensions.DIAGNOSES)  # the copy could not
+
+    def answered() -> bytes:
+        _be_confined()
+        return strict_json.line(_answer(found, name))
+
     try:
-        answer = decoded(limited.call(lambda: _answered(found, name), LIMITS))
+        return decoded(limited.call(answered, LIMITS)).submission()
     except limited.LimitHit as hit:
-        answer = _of_hit(hit, name)
-    return answer.submission()
+        raise _error_of(hit, name) from None
 
 
 def read_marks(path: Path, scratch: Path) -> Marks:
@@ -195,19 +199,12 @@ def read_marks(path: Path, scratch: Path) -> Marks:
         return Marks()
 
 
-def _of_hit(hit: limited.LimitHit, name: str) -> _Answer:
-    """Make the answer for a copy that reached a limit and gave none."""
-    too_much = _too_much(hit)
-    if not too_much:
-        return _Answer(failed=f"the process for it {hit.why!s}")
-    return _Answer.of_refusal(
-        SubmissionError(
-            "{name} cannot be read: {too_much}. {plain}",
-            name=shown(name),
-            too_much=too_much,
-            plain=_PLAIN,
-        )
-    )
+def _error_of(hit: limited.LimitHit, name: str) -> GraderError:
+    """Return the error for a copy that reached a limit and gave no answer."""
+    if too_much := _too_much(hit):
+        words = {"name": shown(name), "too_much": too_much, "plain": _PLAIN}
+        return SubmissionError("{name} cannot be read: {too_much}. {plain}", **words)
+    return GraderFailure(f"the submission could not be read: the process for it {hit.why!s}")
 
 
 def _too_much(hit: limited.LimitHit) -> Message:
@@ -228,11 +225,6 @@ def _too_much(hit: limited.LimitHit) -> Message:
 
 
 # In the copy ----------------------------------------------------------------------------------
-
-
-def _answered(found: Callable[[], Submission | Unevaluated], name: str) -> bytes:
-    _be_confined()
-    return strict_json.line(_answer(found, name))
 
 
 def _be_confined() -> None:

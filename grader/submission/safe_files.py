@@ -23,6 +23,13 @@ def is_folder(path: Path) -> bool:
     return False
 
 
+def touch(path: Path) -> None:
+    """Make an empty file, with its folders, unless its name is none that a file can have."""
+    with suppress(OSError, ValueError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+
+
 def read(path: Path, most: int) -> bytes:
     """The first bytes of a file."""
     found = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))

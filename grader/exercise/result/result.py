@@ -266,21 +266,17 @@ def build(
     # where students do not see all, no remark that they read may reveal that all passed
     all_passed = all(v.passed and v.visible in ("now", "points_only") for v in verdicts)
     judged = Judging(now(), system.grader_version(), exercise.sha256)
+    nominal, *varied = (RunSummary.of(recording, all_passed) for recording in recordings)
+    # conditions that it was not made with
+    late = not_followed(recordings.nominal.provenance, exercise.conditions)
     return Result(
         exercise.name,
         submission,
         round(sum(verdict.score for verdict in verdicts), 2),
         round(sum(verdict.max_score for verdict in verdicts), 2),
         tuple(verdicts),
-        _nominal(recordings.nominal, exercise, all_passed),
-        tuple(RunSummary.of(recording, all_passed) for recording in recordings.varied),
+        replace(nominal, flags=(*nominal.flags, *late)),
+        tuple(varied),
         provenance=ResultProvenance(judged, recordings.nominal.provenance),
         diagnosis=diagnosis,
     )
-
-
-def _nominal(recording: Recording, exercise: Exercise, all_passed: bool) -> RunSummary:
-    """Summarise the nominal run, with remarks on conditions that it was not made with."""
-    run = RunSummary.of(recording, all_passed)
-    late = not_followed(recording.provenance, exercise.conditions)
-    return replace(run, flags=(*run.flags, *late))

@@ -7,13 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import Final, Literal
 
 from grader.exercise.result.diagnosis import Diagnosis, costliest
 from grader.exercise.result.result import NotShown, Result
 from grader.exercise.verdict import Verdict, Visible
-from grader.text.message import NOTHING, Message, msg
+from grader.text.message import NOTHING, msg
 
+#: In place of what was found, where only the points are shown.
+_NO_FINDING: Final = {
+    "passed": msg("“{title}” passed. What was found is not shown: only its points are."),
+    "failed": msg(
+        "“{title}” did not pass in full. What was found is not shown: only its points are."
+    ),
+    "not_judged": msg(
+        "“{title}” was not judged. What was found is not shown: only its points are."
+    ),
+}
 #: The reader: a student, a student when the exercise is over, a teacher.
 View = Literal["student", "after_due", "whole"]
 
@@ -50,9 +60,8 @@ def student_view(result: Result, after_due: bool = False) -> Result:
 def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
     """Return a verdict without what is hidden of it, or of others."""
     if verdict.visible == "points_only":
-        verdict = replace(
-            verdict, rationale=_no_finding(verdict), help=NOTHING, evidence=(), expected=()
-        )
+        rationale = _NO_FINDING[verdict.status].given(title=verdict.title or verdict.check)
+        verdict = replace(verdict, rationale=rationale, help=NOTHING, evidence=(), expected=())
     if hidden.isdisjoint(verdict.depends_on):
         return verdict
     left = tuple(name for name in verdict.depends_on if name not in hidden)
@@ -61,22 +70,6 @@ def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
         return verdict
     # No exercise that can be loaded leads here, but a result file may have been changed.
     return replace(verdict, rationale=msg("Not judged: it waits for others."), help=NOTHING)
-
-
-def _no_finding(verdict: Verdict) -> Message:
-    title = verdict.title or Message.of(verdict.check)
-    if verdict.status == "passed":
-        return msg(
-            "“{title}” passed. What was found is not shown: only its points are.", title=title
-        )
-    if verdict.status == "failed":
-        return msg(
-            "“{title}” did not pass in full. What was found is not shown: only its points are.",
-            title=title,
-        )
-    return msg(
-        "“{title}” was not judged. What was found is not shown: only its points are.", title=title
-    )
 
 
 def _diagnosis(found: Diagnosis | None, shown: Sequence[Verdict]) -> Diagnosis | None:

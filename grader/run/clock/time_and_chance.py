@@ -59,7 +59,7 @@ def replace_clocks(scheduler: Scheduler) -> None:
     time.perf_counter, time.perf_counter_ns = time.monotonic, time.monotonic_ns
     time.process_time, time.process_time_ns = _seconds(0), _nanoseconds(0)
     time.thread_time, time.thread_time_ns = time.process_time, time.process_time_ns
-    os.times = _times
+    os.times = lambda: os.times_result((time.process_time(), 0.0, 0.0, 0.0, time.monotonic()))
     resource.getrusage = _getrusage
     time.clock_gettime_ns = _clock_gettime_ns
     time.clock_gettime = lambda clk_id: _clock_gettime_ns(clk_id) / 1e9
@@ -108,10 +108,6 @@ def _clock_gettime_ns(clk_id: int) -> int:
     if clk_id in (time.CLOCK_PROCESS_CPUTIME_ID, time.CLOCK_THREAD_CPUTIME_ID):
         return time.process_time_ns()
     return int(pass_on(real.clock_gettime_ns, clk_id))
-
-
-def _times() -> os.times_result:
-    return os.times_result((time.process_time(), 0.0, 0.0, 0.0, time.monotonic()))
 
 
 def _getrusage(who: int, /) -> resource.struct_rusage:

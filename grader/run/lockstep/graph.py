@@ -109,10 +109,6 @@ def _split(full: str) -> tuple[str, str]:
     return name, space or "/"
 
 
-def _joined(name: str, space: str) -> str:
-    return f"{space.rstrip('/')}/{name}"
-
-
 # Of one node ----------------------------------------------------------------------------------
 
 _KINDS = (
@@ -134,7 +130,7 @@ def _known(which: str, name: str, space: str) -> str:
     if (name, space) not in _nodes():
         words = f"cannot get {which} names and types for nonexistent node: error not set"
         as_python_does(_rclpy.NodeNameNonExistentError(words))
-    return _joined(name, space)
+    return f"{space.rstrip('/')}/{name}"
 
 
 # A node's methods -----------------------------------------------------------------------------

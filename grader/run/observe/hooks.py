@@ -32,11 +32,6 @@ PERIOD_S = 0.5
 _SLEEP = time.sleep
 
 
-def install(witness: Witness) -> None:
-    """Have rclpy's objects call; `rclpy.node` is imported by now."""
-    _where_known(_install, witness)
-
-
 def install_in_threads(witness: Witness) -> None:
     """Have threads that end by an exception call, and print it without our frames."""
 
@@ -52,20 +47,21 @@ def install_in_threads(witness: Witness) -> None:
     threading.excepthook = excepthook
 
 
-def install_actions(witness: Witness) -> None:
-    """Have action clients call; `rclpy.action.client` is imported by now."""
-    _where_known(_install_actions, witness)
-
-
-def _where_known(install: Callable[[Witness], None], witness: Witness) -> None:
+def _where_known(install: Callable[[Witness], None]) -> Callable[[Witness], None]:
     """Install hooks, or nothing where rclpy has other internals: half of it would be worse."""
-    try:
-        install(witness)
-    except (AttributeError, ImportError):
-        witness.discard()
+
+    def installed(witness: Witness) -> None:
+        try:
+            install(witness)
+        except (AttributeError, ImportError):
+            witness.discard()
+
+    return installed
 
 
-def _install(witness: Witness) -> None:
+@_where_known
+def install(witness: Witness) -> None:
+    """Have rclpy's objects call; `rclpy.node` is imported by now."""
     import rclpy.client
     import rclpy.executors
     import rclpy.publisher
@@ -104,7 +100,9 @@ def _install(witness: Witness) -> None:
     _after_single_messages(witness, rclpy.wait_for_message)
 
 
-def _install_actions(witness: Witness) -> None:
+@_where_known
+def install_actions(witness: Witness) -> None:
+    """Have action clients call; `rclpy.action.client` is imported by now."""
     from rclpy.action.client import ActionClient
 
     def made(client: Any, _: object) -> None:

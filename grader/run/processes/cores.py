@@ -24,18 +24,15 @@ def share() -> float:
 def _quotas() -> Iterator[float]:
     """Yield the quotas of this process's control groups [cores]; of version 1 they are not read."""
     with suppress(OSError, ValueError, ZeroDivisionError):
-        group = _CGROUPS.joinpath(*_control_group().split("/"))
+        # of version 2, as a path below the root that this process sees
+        lines = _MEMBERSHIP.read_text().splitlines()
+        own = next((line.removeprefix("0::") for line in lines if line.startswith("0::")), "")
+        group = _CGROUPS.joinpath(*own.split("/"))
         for folder in (group, *group.parents):
             if folder.is_relative_to(_CGROUPS) and (folder / "cpu.max").exists():
                 quota, period = (folder / "cpu.max").read_text().split()
                 if quota != "max":
                     yield int(quota) / int(period)
-
-
-def _control_group() -> str:
-    """Return this process's group of version 2, as a path below the root that it sees."""
-    lines = _MEMBERSHIP.read_text().splitlines()
-    return next((line.removeprefix("0::") for line in lines if line.startswith("0::")), "")
 
 
 @contextmanager

@@ -264,7 +264,9 @@ def _find_level(isolated: Isolation, wanted: str) -> Level:
             refusal = insist(partial(_try, level, isolated))
             if refusal is None:
                 return Level(level.level, level.user, refused)
-            if not (refusal.is_final or _is_answer(refusal)):
+            # the trial itself ended, each time, because something that it needs was missing
+            is_answer = refusal.number == errno.ENOENT and refusal.step == TRIAL_STEP
+            if not (refusal.is_final or is_answer):
                 raise NotNow(
                     "whether isolation by {level} is to be had could not be told in {times} "
                     "tries: {why}",
@@ -274,11 +276,6 @@ def _find_level(isolated: Isolation, wanted: str) -> Level:
                 )
             refused.setdefault(level.level, refusal.why)
     return Level("", refused=refused)
-
-
-def _is_answer(refusal: Refusal) -> bool:
-    """Whether the trial itself ended, each time, because something that it needs was missing."""
-    return refusal.number == errno.ENOENT and refusal.step == TRIAL_STEP
 
 
 def _candidates() -> Iterator[Level]:

@@ -13,8 +13,9 @@ import os
 import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from typing import NamedTuple
+
+import psutil
 
 from grader.run.limits import LIMITS, MIB, CpuBudget, RunLimits, size
 from grader.system import linux
@@ -147,7 +148,7 @@ class LimitsGuard:
         A measurement takes a millisecond a process. It gets a tenth of our time, and is made at
         once where the machine's memory shrinks.
         """
-        began, available = time.monotonic(), _available_bytes()
+        began, available = time.monotonic(), psutil.virtual_memory().available
         if began < self._next_close_measurement and available > self._available - HURRY_BYTES:
             return False
         memory = self._family.private_memory_bytes()
@@ -213,10 +214,3 @@ def _private_memory_bytes(pid: int, stat: ProcessStat) -> int:
     parts = (line.split() for line in lines)
     names = (b"Pss_Anon:", b"Pss_Shmem:", b"SwapPss:")
     return sum(int(words[1]) * 1024 for words in parts if words and words[0] in names)
-
-
-def _available_bytes() -> int:
-    """Return the machine's available memory [bytes]; 0 where it is unknown."""
-    with suppress(OSError, IndexError, ValueError), open("/proc/meminfo", "rb") as file:  # noqa: PTH123
-        return int(file.read().partition(b"MemAvailable:")[2].split()[0]) * 1024
-    return 0

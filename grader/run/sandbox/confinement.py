@@ -61,7 +61,9 @@ def confine(order: Mapping[str, Any]) -> None:
     if user == SEPARATE:
         for output in (1, 2):  # so that /dev/stdout and /dev/stderr can be opened
             os.fchown(output, uid, uid)
-        _become(uid)
+        os.setgroups([])
+        os.setresgid(uid, uid, uid)
+        os.setresuid(uid, uid, uid)
     linux.set_capabilities(0)
     linux.forbid_new_privileges()
     # a change of the user makes the process unreadable to itself, and resets the parent's signal
@@ -85,10 +87,3 @@ def _forgo_capabilities() -> None:
         linux.control(linux.PR_CAPBSET_DROP, number)
     linux.control(linux.PR_CAP_AMBIENT, linux.PR_CAP_AMBIENT_CLEAR_ALL)
     linux.control(linux.PR_SET_SECUREBITS, SECURE)
-
-
-def _become(uid: int) -> None:
-    """Change to a separate user and group, without other groups."""
-    os.setgroups([])
-    os.setresgid(uid, uid, uid)
-    os.setresuid(uid, uid, uid)

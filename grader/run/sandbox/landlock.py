@@ -57,13 +57,7 @@ def abi() -> int:
         return 0
 
 
-def restrict(
-    read: Sequence[str],
-    write: Sequence[str],
-    listed: Sequence[str] = (),
-    *,
-    max_abi: int = 1 << 16,
-) -> None:
+def restrict(read: Sequence[str], write: Sequence[str], listed: Sequence[str] = ()) -> None:
     """Restrict the calling thread, and all that it starts, to these files.
 
     It can then neither bind nor connect TCP, nor reach processes outside by signals or abstract
@@ -74,9 +68,8 @@ def restrict(
             there are left out.
         write: in these anything may be done, but for making devices.
         listed: folders in which, and below which, names may be listed and nothing opened for it.
-        max_abi: act like a kernel with this ABI at most.
     """
-    version = min(abi(), max_abi)
+    version = abi()
     if version < 1:
         raise OSError(errno.ENOSYS, "no Landlock here")
     files = sum(rights for since, rights in FILES.items() if version >= since)

@@ -260,11 +260,12 @@ class StudentLink:
         now = time.monotonic()
         if now > self._next_check_s:
             self._next_check_s = now + CPU_CHECK_S
+            spent_s = time.process_time() - self._cpu_before_s - self.excused_cpu_s
             if self._used_cpu_s() > self._patience.run_cpu_s:
                 self.silence = "slow"
             elif self._asleep_s > self._patience.all_asleep_s:
                 raise Refused(ELSEWHERE)
-            elif self._spent_cpu_s() > self._patience.simulator_cpu_s:
+            elif spent_s > self._patience.simulator_cpu_s:
                 self.silence = "flooding"
         return bool(self.silence)
 
@@ -273,6 +274,3 @@ class StudentLink:
         for pid, before_s in self._used_s.items():
             self._used_s[pid] = max(before_s, linux.process_stat(pid).cpu_s)
         return sum(self._used_s.values())
-
-    def _spent_cpu_s(self) -> float:
-        return time.process_time() - self._cpu_before_s - self.excused_cpu_s

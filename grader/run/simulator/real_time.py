@@ -79,8 +79,7 @@ class GradedSimulator(SceneRun):
 
     def run(self) -> None:
         """Serve until the run is over, then save the recording."""
-        self._link.setblocking(False)
-        self._send("ready")
+        send_message(self._link, "ready")
         reason: Reason = ""
 
         def tick() -> bool:
@@ -101,7 +100,7 @@ class GradedSimulator(SceneRun):
         self._note_topics()
         self._save(self._file, self._published)
         flags = [flag.serialise() for flag in (*self._scene_flags(), *self._flags)]
-        self._send("done", reason=reason, flags=flags)
+        send_message(self._link, "done", reason=reason, flags=flags)
 
     def _start(self) -> None:
         if not self._running:
@@ -126,7 +125,8 @@ class GradedSimulator(SceneRun):
         self._ticks += 1
         if self._ticks % PROGRESS_TICKS == 1:
             self._note_topics()
-            self._send("progress", seconds=round(self._simulation.ticks * STEP_NS / 1e9, 1))
+            seconds = round(self._simulation.ticks * STEP_NS / 1e9, 1)
+            send_message(self._link, "progress", seconds=seconds)
 
     def _note_topics(self) -> None:
         """Note on which topics the submission publishes, by the graph: often a name is wrong."""
@@ -154,14 +154,9 @@ class GradedSimulator(SceneRun):
         has_node = self._node.count_publishers(EVENTS) > self._ours
         return time.monotonic() > self._start_at_s or has_node
 
-    def _send(self, what: str, **more: str | float | list[str]) -> None:
-        self._link.setblocking(True)
-        send_message(self._link, what, **more)
-        self._link.setblocking(False)
-
     def _receive(self) -> None:
         try:
-            text = self._link.recv(4096)
+            text = self._link.recv(4096, socket.MSG_DONTWAIT)
         except BlockingIOError:
             return
         except ConnectionError:
@@ -224,7 +219,9 @@ class WallWire:
         try:
             made = self.node.create_subscription(message, topic, print, qos, raw=True)
         except rclpy_implementation.RCLError:  # a peer has another type there
-            self._others.append(_node(f"{RECORDER}_{len(self._others)}", _context()))
+            context = Context()
+            rclpy.init(args=[], context=context)
+            self._others.append(_node(f"{RECORDER}_{len(self._others)}", context))
             made = self._others[-1].create_subscription(message, topic, print, qos, raw=True)
         self._taps.append((topic, kind, made))
 
@@ -254,8 +251,8 @@ class WallWire:
         self._looks += 1
         if self._looks % EVERY_TICKS:
             return None
-        known = {*ours, *map(_called, (self.node, *self._others))}
-        return tuple(sorted({each for each in self._graph() if each.node not in known}))
+        ours = ours | {each.get_fully_qualified_name() for each in (self.node, *self._others)}
+        return tuple(sorted({each for each in self._graph() if each.node not in ours}))
 
     def _graph(self) -> Iterator[EndpointInfo]:
         node = self.node
@@ -283,16 +280,6 @@ def _node(name: str, context: Context | None) -> Node:
     return Node(name, context=context, start_parameter_services=False, enable_rosout=False)
 
 
-def _context() -> Context:
-    made = Context()
-    rclpy.init(args=[], context=made)
-    return made
-
-
-def _called(node: Node) -> str:
-    return str(node.get_fully_qualified_name())
-
-
 def _joined(namespace: str, name: str) -> str:
     return f"{namespace.rstrip('/')}/{name}"
 
@@ -306,7 +293,6 @@ def main(argv: list[str]) -> int:
     try:
         GradedSimulator(link, Path(argv[1]), plan, first_node_s, argv[4]).run()
     except SceneFailure as failure:
-        link.setblocking(True)
         send_message(link, "failed", reason=failure.message.serialise())
     rclpy.shutdown()
     return 0

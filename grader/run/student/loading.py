@@ -89,10 +89,6 @@ class ProgramStart(NamedTuple):
     arguments: Sequence[str] = ()
     beside: Sequence[str] = ()
 
-    @property
-    def is_script(self) -> bool:
-        return Path(self.target).is_absolute()
-
 
 def call(start: ProgramStart, on_error: Callable[[BaseException], None]) -> int:
     """Run a submission's program to its end; return its exit code.
@@ -124,7 +120,7 @@ def call(start: ProgramStart, on_error: Callable[[BaseException], None]) -> int:
 
 def run(start: ProgramStart) -> object:
     """Start a submission's program; return what its function returned."""
-    if start.is_script:  # what is installed for `ros2 run` may end in anything
+    if Path(start.target).is_absolute():  # what is installed for `ros2 run` may end in anything
         must_be_text(start.target)
         if start.function is None:
             runpy.run_path(start.target, run_name="__main__")

@@ -182,17 +182,17 @@ class PeerNode:
             self._later(time_s, lambda n=n: say(n))  # type: ignore[misc]
 
     def _hear(self, _: str, entry: script.PeerSubscription) -> None:
+        topic = absolute(entry.topic)
+
+        def got(message: Any) -> None:
+            values = self._recorder.plain(message)
+            self._recorder.event("got", peer=self.name, topic=topic, values=values)
+
         def begin() -> None:
             _, kind = self._type(entry, "topic", entry.topic)
-            self.node.create_subscription(
-                kind, entry.topic, lambda message: self._got(entry.topic, message), _qos(entry.qos)
-            )
+            self.node.create_subscription(kind, entry.topic, got, _qos(entry.qos))
 
-        self._begin(entry, begin, "topic", absolute(entry.topic))
-
-    def _got(self, topic: str, message: Any) -> None:
-        values = self._recorder.plain(message)
-        self._recorder.event("got", peer=self.name, topic=absolute(topic), values=values)
+        self._begin(entry, begin, "topic", topic)
 
     def _broadcast(self, _: str, entry: script.PeerFrame) -> None:
         durability = "volatile" if entry.rate else "transient_local"

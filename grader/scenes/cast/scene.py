@@ -72,9 +72,6 @@ class GraphSimulation(Simulation):
         shown = {"lanes": timeline.lanes(made), "labels": timeline.labels(made)}
         send({"t": made.duration_ns / 1e9, **shown, "items": changed})
 
-    def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
-        return self.tick(now_ns), ()
-
     def trace(self) -> CastTrace:
         made: CastTrace = self._cast.trace(self.ticks)
         return made

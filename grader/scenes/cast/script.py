@@ -206,6 +206,10 @@ class PeerFrame:
     def topic(self) -> str:
         return "/tf" if self.rate else "/tf_static"
 
+    @property
+    def types(self) -> tuple[str, ...]:
+        return (TF,)
+
 
 @dataclass(frozen=True)
 class Peer:
@@ -247,7 +251,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "goals": Kind(PeerGoal, "action", {"t"}, None, "action"),
     "actions": Kind(PeerAction, "action", None, "action", "action_client"),
     "parameters": Kind(PeerParameters),
-    "frames": Kind(PeerFrame, values={"t"}),
+    "frames": Kind(PeerFrame, "topic", {"t"}, "publisher", "subscription"),
 }
 #: Types of what has one, for a mistake.
 _EXAMPLES: Final = {
@@ -288,29 +292,27 @@ def heard(peers: Mapping[str, Peer], hears: Iterable[str]) -> list[str]:
     return sorted([*recorded, *(absolute(each.topic) for each in entries if not each.begin)])
 
 
+def _named(peer: Peer) -> Iterator[tuple[Kind, str, Any]]:
+    """Yield all of a peer that has a name on the graph, with its kind and this name."""
+    for key, kind in KINDS.items():
+        if kind.named_by:
+            for entry in getattr(peer, key).values():
+                yield kind, absolute(getattr(entry, kind.named_by)), entry
+
+
 def endpoints(peers: Mapping[str, Peer]) -> Iterator[Endpoint]:
     """Yield what a program may meet, once for each type that it may have."""
     for node, peer in peers.items():
-        for key, kind in KINDS.items():
-            if kind.met is None:
-                continue
-            for entry in getattr(peer, key).values():
-                name = absolute(getattr(entry, kind.named_by))
+        for kind, name, entry in _named(peer):
+            if kind.met is not None:
                 for each in entry.types:
                     yield Endpoint(kind.met, name, each, absolute(node), entry.begin)
-        for frame in peer.frames.values():
-            yield Endpoint("publisher", frame.topic, TF, absolute(node))
 
 
 def roles(peers: Mapping[str, Peer]) -> Iterator[Role]:
     """Yield what a program has on the graph that faces these peers."""
     for peer in peers.values():
-        for key, kind in KINDS.items():
-            if kind.facing is not None:
-                for entry in getattr(peer, key).values():
-                    yield Role(kind.facing, absolute(getattr(entry, kind.named_by)))
-        for frame in peer.frames.values():
-            yield Role("subscription", frame.topic)
+        yield from (Role(kind.facing, name) for kind, name, _ in _named(peer) if kind.facing)
         for each in peer.parameters.values():
             yield from (Role("parameter", name) for name in (*each.set, *each.get))
 

@@ -90,6 +90,8 @@ def _of(number: int, event: Event, program: str) -> Iterator[dict[str, Any]]:
     item = {"id": f"e{number}", "t": begin, "from": peer, "to": [program], "kind": kind}
     if end_ns is not None:
         item["end"] = end_ns / _SECOND
+    if "feedback" in event:
+        item["marks"] = [time_ns / _SECOND for time_ns, _ in event["feedback"]]
     match kind:
         case "call" if "sent_ns" in event:
             yield item | {"what": event["service"], "text": _answered(event, "request", "response")}
@@ -98,12 +100,9 @@ def _of(number: int, event: Event, program: str) -> Iterator[dict[str, Any]]:
             text = _answered(event, "request", "response")
             yield item | turned | {"what": event["service"], "text": text}
         case "goal" if "sent_ns" in event:
-            marks = [time_ns / _SECOND for time_ns, _ in event["feedback"]]
-            text = _answered(event, "goal", "result")
-            yield item | {"what": event["action"], "text": text, "marks": marks}
+            yield item | {"what": event["action"], "text": _answered(event, "goal", "result")}
         case "action":
-            marks = [time_ns / _SECOND for time_ns, _ in event["feedback"]]
-            turned = {"from": program, "to": [peer], "kind": "goal", "marks": marks}
+            turned = {"from": program, "to": [peer], "kind": "goal"}
             yield item | turned | {"what": event["action"], "text": _answered(event, "goal", "")}
         case "parameter" if "sent_ns" in event:
             verb = "set" if "set" in event else "get"

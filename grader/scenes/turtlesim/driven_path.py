@@ -273,8 +273,9 @@ class DrivenPath:
     def evidence(self, row: int, note: Message) -> Evidence:
         """Make evidence of the place and time at a row; -1 is the last."""
         tick = int(self.ticks[row])
-        x, y = round(float(self.x[row]), 3), round(float(self.y[row]), 3)
-        return self._evidence(tick, note, x, y)
+        place = [round(float(each[row]), 3) for each in (self.x, self.y)]
+        x, y = place if all(map(math.isfinite, place)) else (None, None)
+        return Evidence(round(tick * self.tick_s, 3), note, x, y, self.number, tick)
 
     def at(self, tick: int, note: Message) -> Evidence:
         """Make evidence of the first reading at or after a tick, or the last one.
@@ -282,15 +283,8 @@ class DrivenPath:
         Where there is no reading at all, it has no place.
         """
         if not len(self):
-            return self._evidence(tick, note)
+            return Evidence(round(tick * self.tick_s, 3), note, run=self.number, tick=tick)
         return self.evidence(self.row_at(tick), note)
-
-    def _evidence(
-        self, tick: int, note: Message, x: float | None = None, y: float | None = None
-    ) -> Evidence:
-        if x is not None and not (math.isfinite(x) and math.isfinite(y or 0.0)):
-            x = y = None
-        return Evidence(round(tick * self.tick_s, 3), note, x, y, self.number, tick)
 
 
 def _changes(values: Floats) -> Mask:

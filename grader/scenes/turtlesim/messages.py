@@ -22,10 +22,10 @@ import numpy as np
 import numpy.typing as npt
 
 from grader.recording.mcap import Channel
-from grader.recording.subject import BagMessage
+from grader.recording.subject import BagMessage, Pixels
 from grader.ros.bag_types import BagTypes
 from grader.ros.cdr import MARK, CdrReader, string, string_of
-from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace, check
+from grader.scenes.turtlesim.trace import Log, TurtleTrace, check
 from grader.scenes.view import Times
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import CmdVel, Event, EventError, from_json, to_json

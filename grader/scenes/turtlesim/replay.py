@@ -54,7 +54,9 @@ def animate(trace: TurtleTrace, start: Start | None) -> dict[str, Any]:
     replay = _Replay(trace, start)
     is_exact = replay.goes_as_recorded()
     if not is_exact:
-        replay = _Replay(trace, _first_place(trace))
+        way = trace.trajectory()
+        seen = Start(*map(float, (way.x[0], way.y[0], way.theta[0]))) if len(way) else None
+        replay = _Replay(trace, seen)
         replay.follow()
     return {**replay.animation.to_json(trace.ticks), "exact": is_exact, "calls": _calls(trace)}
 
@@ -67,12 +69,6 @@ def _calls(trace: TurtleTrace) -> list[dict[str, Any]]:
     ]
     calls = [*map(to_json, trace.events), *logs]
     return sorted(calls, key=lambda call: int(call["tick"]))
-
-
-def _first_place(trace: TurtleTrace) -> Start | None:
-    """Return where turtle1 was seen first."""
-    way = trace.trajectory()
-    return Start(*map(float, (way.x[0], way.y[0], way.theta[0]))) if len(way) else None
 
 
 class _Replay:

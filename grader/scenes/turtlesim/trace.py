@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
-from grader.recording.subject import Start, Trace
+from grader.recording.subject import Pixels, Start, Trace
 from turtlesim_py.world import events as inputs
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import (
@@ -32,7 +31,6 @@ from turtlesim_py.world.stroke import SIZE_PX
 from turtlesim_py.world.trajectory import Trajectory
 from turtlesim_py.world.turtle import SIZE_M
 
-Pixels = npt.NDArray[np.uint8]
 Value = TypeVar("Value", int, str)
 #: The turtle that exercises are about.
 FIRST_TURTLE = "turtle1"

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from grader.recording.subject import Pixels
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.text import strings as text
 from grader.text.message import NOTHING, Message, joined, msg
@@ -31,8 +31,6 @@ from turtlesim_py.world.events import (
     TeleportRelative,
 )
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
-
-Pixels = npt.NDArray[np.uint8]
 
 QUADRANTS = {
     1: msg("top right (quadrant I)"),

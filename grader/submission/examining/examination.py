@@ -249,9 +249,12 @@ class Examination:
             if launch.problem is not None:
                 continue
             with suppress(Ended):
-                again = attempt(partial(_lacking_files, self._answer(launch.file)))
+                again = attempt(
+                    partial(strict_json.from_json, Evaluated, self._answer(launch.file))
+                )
                 known = {each.name for each in launch.lacking}
-                if other := next((name for name in again if name not in known), ""):
+                files = (each.name for each in again.launch.lacking if each.kind == "file")
+                if other := next((name for name in files if name not in known), ""):
                     found[number] = replace(launch, moved=other[:1000])
 
 
@@ -277,11 +280,6 @@ def _left_out(files: Sequence[str]) -> LaunchFile:
     text = msg("was left out, with {more} more: {most} launch files at most are looked at")
     what = text.given(more=len(files) - 1, most=_MOST_LAUNCHES)
     return LaunchFile(files[0], Obstacle("unknown", it(what)))
-
-
-def _lacking_files(answer: Any) -> list[str]:
-    launch = strict_json.from_json(Evaluated, answer).launch
-    return [each.name for each in launch.lacking if each.kind == "file"]
 
 
 def _renumbered(node: LaunchedNode, numbers: list[int]) -> LaunchedNode:

@@ -456,10 +456,10 @@ class LaunchRecord:
 
     def xacro(self, words: list[str]) -> commands.Ended:
         """What xacro does: its exit code, and what it prints to either side."""
-        return commands.xacro([self._given(word) for word in words])
-
-    def _given(self, word: str) -> str:
-        return word if word.startswith("-") or ":=" in word else self.path(word)
+        given = [
+            each if each.startswith("-") or ":=" in each else self.path(each) for each in words
+        ]
+        return commands.xacro(given)
 
     def _by_argument(self, node: dict[str, Any]) -> list[dict[str, Any]]:
         """The file that a robot_state_publisher reads where it has no parameter, with a warning."""

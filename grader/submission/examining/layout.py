@@ -171,9 +171,7 @@ def _shown(names: list[str]) -> tuple[str, ...]:
 
 def _touch(path: Path, prefix: Path) -> None:
     if Path(os.path.normpath(path)).is_relative_to(prefix):
-        with suppress(OSError, ValueError):  # its name is none that a file can have
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.touch()
+        safe_files.touch(path)
 
 
 def _make_known(package: SourcePackage, name: str, prefix: Path) -> None:

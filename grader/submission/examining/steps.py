@@ -148,7 +148,7 @@ def step(work: Callable[[], Any], own: Own) -> Any:
     if _account.why_closed:
         raise Ended.by_limit(_account.why_closed)
     try:
-        answered = _read(limited.call(answer, LIMITS, _account.watch()))
+        return _read(limited.call(answer, LIMITS, _account.watch()))
     except limited.NoEnd as hit:
         raise Ended.by_limit(hit.why if isinstance(hit, limited.Stalled) else _NO_END) from None
     except limited.LimitHit as hit:
@@ -160,9 +160,6 @@ def step(work: Callable[[], Any], own: Own) -> Any:
         raise Ended.by_limit(NONSENSE) from None
     finally:
         leftovers.end()
-    if isinstance(answered, Obstacle):
-        raise Ended(answered)
-    return answered[0]
 
 
 def attempt(work: Callable[[], Made], file: str = "") -> Made:
@@ -187,14 +184,14 @@ def attempt(work: Callable[[], Made], file: str = "") -> Made:
         raise Ended(Obstacle("unknown", it(what), file)) from error
 
 
-def _read(answer: bytes) -> Obstacle | tuple[Any]:
-    """An answer, which the stranger's code could have written itself."""
+def _read(answer: bytes) -> Any:
+    """What an answer says was returned; the stranger's code could have written it itself."""
     answered = json.loads(answer.decode("ascii"))
     if not isinstance(answered, dict) or answered.keys() not in ({"made"}, {"problem"}):
         raise ValueError(str(NONSENSE))
     if "problem" in answered:
-        return strict_json.from_json(Obstacle, answered["problem"])
-    return (answered["made"],)
+        raise Ended(strict_json.from_json(Obstacle, answered["problem"]))
+    return answered["made"]
 
 
 def _limit_processes() -> None:
