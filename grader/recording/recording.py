@@ -38,7 +38,7 @@ def _a_value(value: Any) -> Any:
     return value
 
 
-_TEXT: Final = re.compile(r"[\w .-]{1,100}", re.ASCII)
+_TEXT: Final = re.compile(r"[\w .-]{1,100}")
 Value = Annotated[Any, _a_value]
 #: What was drawn for a run, by its names.
 Drawn = Mapping[str, Value]

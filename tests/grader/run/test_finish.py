@@ -27,7 +27,7 @@ RUN = Run("virtual", "crashed", -11, wall_s=1.23456, isolation="ROS domain 77", 
 RUN = replace(RUN, programs=(ProgramRun("a-1", "b", "a", "crashed", -11),))
 ENDING = Ending(RUN, "printed\n")
 KNOWN = (Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, (C,), "turtlesim")
-PLAN = Plan(*KNOWN, case="late")
+PLAN = Plan(*KNOWN, case="late", drawn={"a": 7})
 TOPICS = (PublishedTopic("/a", "b/msg/C"),)
 
 
@@ -61,6 +61,7 @@ def test_a_recording_has_everything_about_its_run(trace):
         seed=42,
         interfaces="turtlesim",
         case="late",
+        drawn={"a": 7},
         programs=RUN.programs,
     )
     assert (made.topics, made.output) == (TOPICS, "printed\n")

@@ -28,6 +28,7 @@ def test_every_field_and_its_type_survive_the_way_to_another_process_as_one_line
         {"own/msg/Num": "int8 num\n"},
         ("2", "3"),
         "late",
+        {"a": 7},
     )
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))

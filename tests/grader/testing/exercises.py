@@ -22,14 +22,14 @@ from turtlesim_py.world.events import CmdVel
 checks = Checks()
 
 
-@checks()
+@checks(parrot="who drives ahead needs to hear nothing")
 def commands(recordings: Recordings, tolerances: Tolerances) -> Finding:
     '''It sends commands.'''
     count = len(TurtleTrace.of(recordings.nominal.trace).of_kind(CmdVel))
     return Finding(min(count, 1), f"{count} commands came.", "Does it publish?")
 
 
-@checks(after=("commands",))
+@checks(after=("commands",), parrot="who drives ahead needs to hear nothing")
 def far(recordings: Recordings, tolerances: Tolerances) -> Finding:
     '''It drives for half a metre.'''
     recording = recordings.nominal
