@@ -66,8 +66,13 @@ def done(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 @checks(after=("serves",))
 def still(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """Of 2 sides it draws nothing."""
+    """Of 2 sides it draws nothing.
+
+    Of 4 sides it draws something.
+    """
     path = _path(recordings, 3)
+    if _path(recordings, 0).length_m <= STILL_M:
+        return Finding(0, msg("Asked for 4 sides, turtle1 stayed where it was, too."), SENDS)
     if path.length_m <= STILL_M:
         return Finding(1, msg("turtle1 stayed where it was."))
     text = msg("Asked for 2 sides, turtle1 drove {way:.2f} m.", way=path.length_m)
