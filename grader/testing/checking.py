@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from grader.exercise.asking import OF_FILES, Answers, NoFinding, NotReached
 from grader.exercise.check import answers, judge_by
@@ -245,15 +244,11 @@ def _parroted(exercise: Exercise, trial: Trial) -> Iterator[Fault]:
             max_score=verdict.max_score,
         )
         yield Fault(verdict.check, text)
-    is_told = any(has_something_to_hear(case.cast) for case in exercise.cases)
+    peers = (exercise.cases[0].cast or {}).values()
+    is_told = any({*peer} - {"subscriptions"} for peer in peers)
     if is_told and excused > MOST_EXCUSED * exercise.max_score:
         text = msg("`parrot` excuses {n:g} points; at most a quarter may be", n=excused)
         yield Fault("", text)
-
-
-def has_something_to_hear(cast: Mapping[str, Any] | None) -> bool:
-    """Whether peers send, ask or serve anything."""
-    return any({*peer} - {"subscriptions"} for peer in (cast or {}).values())
 
 
 def _never_failing(examination: Examination) -> Iterator[Fault]:

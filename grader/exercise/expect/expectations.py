@@ -147,6 +147,7 @@ class ExpectedLog(Expectation):
 
     Attributes:
         log: the text; a pattern; or with `each` a text with the fields of a message.
+        also: without these two, further lines that have to be there.
         each: a topic, for each of whose messages there is such a line: the program's,
         heard: or those that the program has heard: the peers', else its own. Lines count of nodes
             that hear them, messages from when one does.
@@ -154,13 +155,14 @@ class ExpectedLog(Expectation):
     """
 
     log: str
+    also: tuple[str, ...] = ()
     each: str = ""
     heard: str = ""
     level: Literal["", "debug", "info", "warn", "error", "fatal"] = ""
     count: ExpectedCount = ExpectedCount()
     within: Seconds = 0.2
 
-    names: ClassVar[Names] = {"log": None}
+    names: ClassVar[Names] = {"log": None, "also": None}
 
     @property
     def topics(self) -> tuple[str, ...]:

@@ -30,6 +30,8 @@ class Life(NamedTuple):
     Attributes:
         born_m, way_m: how far turtle1 was at its beginning, and at its end [m]; inf where there was
             none.
+        ahead_m: how near turtle1 comes to where it began within ten seconds if it drives on as it
+            did then [m].
         is_killed: whether it was killed, and not still there at the end of the run.
     """
 
@@ -40,6 +42,7 @@ class Life(NamedTuple):
     y: float
     born_m: float
     way_m: float
+    ahead_m: float
     is_killed: bool
 
 
@@ -86,8 +89,9 @@ def catches(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """turtle1 catches eight.
 
     At least {least} turtles are killed when turtle1 is within {catch_m} m of them. Fewer are a part
-    of the points. One that is spawned within {born_m} m of turtle1 does not count, here and below.
-    In one more run turtle1 starts elsewhere; the worse counts, here and below.
+    of the points. One that is spawned within {born_m} m of turtle1, or where it comes within ten
+    seconds if it drives on as it did, does not count, here and below. In one more run turtle1
+    starts elsewhere; the worse counts, here and below.
     """
     return _worst(_catches(_lives(trace), tolerances) for trace in _traces(recordings))
 
@@ -155,7 +159,9 @@ def _seen(life: Life) -> Evidence:
 
 def _prey(lives: list[Life], tolerances: Tolerances) -> list[Life]:
     """Return those that were killed, and for which turtle1 had to drive."""
-    return [life for life in lives if life.is_killed and life.born_m >= tolerances["born_m"]]
+    born_m, catch_m = tolerances["born_m"], tolerances["catch_m"]
+    killed = [life for life in lives if life.is_killed]
+    return [life for life in killed if life.born_m >= born_m and life.ahead_m > catch_m]
 
 
 def _lives(trace: TurtleTrace) -> list[Life]:
@@ -172,8 +178,21 @@ def _lives(trace: TurtleTrace) -> list[Life]:
             born_m, way_m = (_apart(way, row, hunter) for row in (first, last))
             is_killed = tick < trace.ticks and any((name, tick + n) in kills for n in range(3))
             place = (float(way.x[last]), float(way.y[last]))
-            lives.append(Life(name, int(way.ticks[first]), tick, *place, born_m, way_m, is_killed))
+            ways_m = born_m, way_m, _ahead(way, first, hunter)
+            lives.append(Life(name, int(way.ticks[first]), tick, *place, *ways_m, is_killed))
     return sorted(lives, key=lambda life: life.first)
+
+
+def _ahead(way: Trajectory, row: int, hunter: Trajectory) -> float:
+    """How near the hunter comes in ten seconds if it drives on as it does [m]; inf without one."""
+    at = int(np.searchsorted(hunter.ticks, way.ticks[row]))
+    if at == len(hunter):
+        return math.inf
+    times_s = np.arange(0, 10, STEP_S)
+    headings = hunter.theta[at] + hunter.angular[at] * times_s
+    east, north = (hunter.linear[at] * STEP_S * np.cumsum(f(headings)) for f in (np.cos, np.sin))
+    away = np.hypot(hunter.x[at] + east - way.x[row], hunter.y[at] + north - way.y[row])
+    return float(np.nanmin(away, initial=math.inf))
 
 
 def _apart(way: Trajectory, row: int, hunter: Trajectory) -> float:

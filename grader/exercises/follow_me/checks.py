@@ -65,7 +65,7 @@ def distance(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """It keeps its distance.
 
     From {from_s} s on turtle2 is {nearest_m} to {farthest_m} m from turtle1, for {enough%} of the
-    time; less of it is a part of the points.
+    time; less of it is a part of the points, less than {chance%} none.
     """
     return _kept(recordings.nominal, 0, tolerances)
 
@@ -75,7 +75,7 @@ def behind(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """It stays behind.
 
     For {enough_behind%} of that time it is at this distance, and behind turtle1; less of it is a
-    part of the points.
+    part of the points, less than {chance%} none.
     """
     found = _following(recordings.nominal, tolerances["from_s"])
     is_right = _is_near(found, tolerances) & found.is_behind
@@ -84,7 +84,7 @@ def behind(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if share >= tolerances["enough_behind"]:
         return Finding(1, text)
     help_ = msg("Drive to a place behind turtle1: its x less a metre times cos(theta).")
-    return Finding(share / tolerances["enough_behind"], text, help_)
+    return Finding(_part(share, tolerances["enough_behind"], tolerances), text, help_)
 
 
 @checks(after=("spawned",))
@@ -117,7 +117,11 @@ def _kept(recording: Recording, run: int, tolerances: Tolerances) -> Finding:
     help_ = msg("Does it read where turtle1 is, again and again, and drive there fast enough?")
     if float((found.away_m < tolerances["nearest_m"]).mean()) > (1 - share) / 2:
         help_ = msg("It comes too near: does it slow down, and keep a metre behind?")
-    return Finding(share / enough, text, help_, (seen,))
+    return Finding(_part(share, enough, tolerances), text, help_, (seen,))
+
+
+def _part(share: float, enough: float, tolerances: Tolerances) -> float:
+    return share / enough if share >= tolerances["chance"] else 0.0
 
 
 def _is_near(found: Following, tolerances: Tolerances) -> NDArray[np.bool_]:

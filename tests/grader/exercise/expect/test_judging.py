@@ -135,6 +135,15 @@ def test_in_real_time_a_check_says_that_it_knows_no_more_than_a_subscription():
     assert "nobody" not in str(judged(wanted, HEARS, *FIVE, *LOGGED).rationale)
 
 
+def test_in_real_time_all_messages_together_may_take_a_little_longer():
+    wanted = {"topic": "chatter", "rate": {"hz": 2, "tolerance": 0.05}}
+    late = [text(at_s, "/chatter", "Hello") for at_s in (0.5, 1.0, 1.7, 2.0, 2.8)]
+    slow = [text(0.6 * n, "/chatter", "Hello") for n in range(1, 9)]
+    passes(wanted, TALKS, *late, time="real", length_s=3)
+    fails("1.74 times a second", wanted, TALKS, *late, length_s=3)
+    fails("1.67 times a second", wanted, TALKS, *slow, time="real", length_s=5)
+
+
 def test_of_several_programs_the_lines_of_those_count_that_hear():
     wanted = {"log": 'Publishing: "{data}"', "heard": "chatter"}
     programs = {"/talker": "talker-1", "/ns/listener": "listener-2"}
