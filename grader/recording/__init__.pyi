@@ -7,6 +7,7 @@ from grader.recording.recording import Run as Run
 from grader.recording.subject import BagMessage as BagMessage
 from grader.recording.subject import Endpoint as Endpoint
 from grader.recording.subject import EndpointKind as EndpointKind
+from grader.recording.subject import OneTrace as OneTrace
 from grader.recording.subject import Pictures as Pictures
 from grader.recording.subject import Pixels as Pixels
 from grader.recording.subject import Start as Start

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
-from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol
+from typing import Any, ClassVar, Final, Literal, NamedTuple, Protocol, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -107,6 +107,21 @@ class Trace(Protocol):
 
     def sha256(self) -> str:
         """A hash of all motion and all inputs; equal hashes mean equal runs."""
+
+
+class OneTrace:
+    """What classes of traces have in common."""
+
+    @classmethod
+    def of(cls, trace: object) -> Self:
+        """Narrow the type of a recording's trace.
+
+        Raises:
+            TypeError: it is a trace of another subject.
+        """
+        if not isinstance(trace, cls):
+            raise TypeError(f"expected a {cls.__name__}, found a {type(trace).__name__}")
+        return trace
 
 
 class BagMessage(NamedTuple):

@@ -19,6 +19,7 @@ from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recording, Recordings
 from grader.run.opening import open_submission
 from grader.scenes.cast.trace import ROSOUT, CastTrace
+from grader.scenes.turtlesim.messages import TWIST, of_input
 from grader.scenes.turtlesim.rules import own_inputs
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.submission.program import EntryPoint, Program
@@ -61,17 +62,17 @@ def lay_out(
     else:
         shutil.copy(path, copy)
     for program in programs:
-        made = source(recording, program.name, setting)
         entry = program.entry
+        assert entry is not None
         if isinstance(entry, EntryPoint):
-            made += f"\n\n{entry.function} = main\n"
-            module = f"{entry.module.replace('.', '/')}.py"
-            file = next(iter(sorted(copy.rglob(module))), copy) if copy.is_dir() else copy
+            name = f"{entry.module.replace('.', '/')}.py"
         else:
-            assert entry is not None
-            made += f"\n\n{entry.function or 'main'} = main\n"
-            made += "" if entry.function else '\n\nif __name__ == "__main__":\n    main()\n'
-            file = next(iter(sorted(copy.rglob(entry.path.name))), copy) if copy.is_dir() else copy
+            name = entry.path.name
+        file = next(iter(sorted(copy.rglob(name))), copy) if copy.is_dir() else copy
+        owner, _, function = (entry.function or "").rpartition(".")
+        made = source(recording, program.name, setting)
+        made += f"\n\nclass {owner}:\n    {function} = main\n" if owner else ""
+        made += f"\n\n{function} = main\n" if function else "\n\nmain()\n"
         file.write_text(made, encoding="utf-8")
     return copy
 
@@ -195,11 +196,11 @@ def _drive(node: dict[str, Any], inputs: Iterable[tuple[str, str, events.Event]]
     for name, _, event in inputs:
         time_s = (event.tick - 1) * TICK_S
         if isinstance(event, events.CmdVel):
-            commands[name].append((time_s, event.linear, event.angular))
+            commands[name].append((time_s, of_input(event).data.hex()))
         elif not isinstance(event, events.RotateAbsolute):
             values = {each.name: getattr(event, each.name) for each in fields(event)[1:]}
             values.pop("turtle", None)
             kind = f"turtlesim/srv/{type(event).__name__}" if values else "std_srvs/srv/Empty"
             asked[name, kind].append((time_s, values))
     node["calls"] += [(*key, requests) for key, requests in asked.items()]
-    node["commands"] = [*commands.items()]
+    node["topics"] += [(topic, (TWIST, 1, 2, 10), said) for topic, said in commands.items()]

@@ -16,9 +16,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final, Literal, NamedTuple, Self
+from typing import Any, Final, Literal, NamedTuple
 
-from grader.recording import BagMessage, BagTypes, Channel, Trace, string, string_of
+from grader.recording import BagMessage, BagTypes, Channel, OneTrace, string, string_of
 from grader.text import Message, msg
 from grader_robots.robot_py.robot_state import JointState, Placed, Robot, RobotState
 
@@ -102,7 +102,7 @@ class Heard(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class RobotTrace:
+class RobotTrace(OneTrace):
     """A recorded run.
 
     Attributes:
@@ -112,17 +112,6 @@ class RobotTrace:
 
     ticks: int
     messages: tuple[Heard, ...] = ()
-
-    @classmethod
-    def of(cls, trace: Trace) -> Self:
-        """A recording's trace as what it is.
-
-        Raises:
-            TypeError: it is another scene's.
-        """
-        if not isinstance(trace, cls):
-            raise TypeError(f"expected a trace of a robot, found a {type(trace).__name__}")
-        return trace
 
     @property
     def duration_ns(self) -> int:

@@ -94,8 +94,7 @@ def _in_case(found: Finding, case: str, number: int) -> Finding:
 
 
 def _judged(expectation: e.Expectation, recording: Recording) -> Finding:
-    trace = recording.trace if recording.cast is None else recording.cast
-    assert isinstance(trace, CastTrace)
+    trace = CastTrace.of(recording.cast or recording.trace)
     within = getattr(expectation, "within", None)
     if recording.run.time == "real" and within is not None:  # others have the processor, too
         expectation = replace(expectation, **{"within": within + REAL_LATE_S})

@@ -29,8 +29,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     setup = trace.setup
     own = {*trace.others, *((setup.name, setup.told) if setup else ())}
     by, place = (setup.file, setup.place) if setup else ("setup.py", "data_files")
-    cast = recordings.nominal.trace
-    assert isinstance(cast, CastTrace)
+    cast = CastTrace.of(recordings.nominal.trace)
     nodes = {event["node"] for event in cast.of_kind("endpoint")} - {"/"}
     worst = Finding(
         0,

@@ -36,8 +36,7 @@ def parameter(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 
 def _follows(recording: Recording, turtle: str, tolerances: Tolerances) -> Finding:
-    cast = recording.cast
-    assert isinstance(cast, CastTrace)
+    cast = CastTrace.of(recording.cast)
     path = DrivenPath(recording, TurtleTrace.of(recording.trace).trajectory(turtle))
     sent = cast.transforms("/tf")
     frames = {(t["header"]["frame_id"], t["child_frame_id"]) for _, t in sent}

@@ -32,7 +32,7 @@ def serves(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """
     if "sent_ns" in _call(recordings.nominal):
         return Finding(1, msg("draw_polygon is there."))
-    return no_service(_cast(recordings.nominal), *SERVICE).finding
+    return no_service(CastTrace.of(recordings.nominal.cast), *SERVICE).finding
 
 
 @checks(after=("serves",))
@@ -87,13 +87,9 @@ def _mean(found: Iterable[Finding]) -> Finding:
     return replace(worst, share=sum(finding.share for finding in each) / len(each))
 
 
-def _cast(recording: Recording) -> CastTrace:
-    assert isinstance(recording.cast, CastTrace)
-    return recording.cast
-
-
 def _call(recording: Recording) -> dict[str, Any]:
-    return {k: v for event in _cast(recording).of_kind("call", id="draw") for k, v in event.items()}
+    calls = CastTrace.of(recording.cast).of_kind("call", id="draw")
+    return {key: value for event in calls for key, value in event.items()}
 
 
 def _path(recordings: Recordings, run: int) -> DrivenPath:

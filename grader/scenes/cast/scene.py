@@ -97,12 +97,11 @@ class GraphScene(Scene):
         return CastTrace()
 
     def definitions_of(self, made: Trace) -> Mapping[str, str]:
-        assert isinstance(made, CastTrace)
-        return made.definitions
+        return CastTrace.of(made).definitions
 
     def view(self, made: Trace) -> View:
         """Return a table of what was exchanged, as much of it as a page shows at once."""
-        assert isinstance(made, CastTrace)
+        made = CastTrace.of(made)
         listed = timeline.items(made)
         headings = (msg("time [s]"), msg("what"), msg("values"))
         rows = tuple(
@@ -148,8 +147,7 @@ class GraphScene(Scene):
         return [(trace.EVENTS, STRING)]
 
     def to_messages(self, made: Trace) -> list[BagMessage]:
-        assert isinstance(made, CastTrace)
-        return trace.to_messages(made)
+        return trace.to_messages(CastTrace.of(made))
 
     def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
         return trace.from_channels(channels, duration_ns)

@@ -145,8 +145,7 @@ def render(playback: Playback) -> str:
 
 
 def _run(title: str, run: PlayedRun) -> dict[str, Any]:
-    trace = run.trace
-    assert isinstance(trace, CastTrace)
+    trace = CastTrace.of(run.trace)
     return {
         **{"title": title, "outcome": run.outcome, "ticks": trace.ticks},
         **{"lanes": lanes(trace), "labels": labels(trace)},

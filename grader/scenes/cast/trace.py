@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, Final, NamedTuple
 
 from grader.recording.mcap import Channel
-from grader.recording.subject import BagMessage
+from grader.recording.subject import BagMessage, OneTrace
 from grader.ros.bag_types import BagTypes
 from grader.ros.cdr import string, string_of
 from grader.scenes.scene import STEP_NS
@@ -49,7 +49,7 @@ Event = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class CastTrace:
+class CastTrace(OneTrace):
     """What was exchanged in a run.
 
     Attributes:

@@ -69,7 +69,7 @@ def to_messages(trace: TurtleTrace) -> list[BagMessage]:
         BagMessage(end * TICK_NS, topic, IMAGE, _image(pixels, ENCODINGS[topic], end))
         for topic, pixels in ((PATH, trace.canvas), (WINDOW, trace.window))
     )
-    found = chain(map(_input, trace.events), logs, *readings, pictures)
+    found = chain(map(of_input, trace.events), logs, *readings, pictures)
     return sorted(found, key=lambda message: message.time_ns)
 
 
@@ -92,7 +92,7 @@ def _cdr(columns: npt.NDArray[np.float64], layout: np.dtype[np.void]) -> list[by
     return [data[begin : begin + size] for begin in range(0, len(data), size)]
 
 
-def _input(event: Event) -> BagMessage:
+def of_input(event: Event) -> BagMessage:
     """Serialise an input: a velocity command as a Twist, all others as JSON."""
     if isinstance(event, CmdVel):
         fields = np.array([[*event.linear, *event.angular]])

@@ -9,6 +9,7 @@ from typing import Final
 
 from grader.scenes.cast.trace import CastTrace
 from grader.scenes.subject import Oversteps, Rules
+from grader.scenes.turtlesim.messages import TWIST, of_input
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.system import strict_json
 from turtlesim_py.world.arena import TICK_NS
@@ -18,7 +19,6 @@ from turtlesim_py.world.events import CmdVel, Event, Kill, Spawn, from_json
 _HARMLESS: Final = ("clear", "set_pen")
 _MOVING: Final = ("teleport_absolute", "teleport_relative", "rotate_absolute")
 INPUTS: Final = (*_HARMLESS, "kill", "reset", "spawn", *_MOVING)
-_TWIST: Final = "geometry_msgs/msg/Twist"
 
 
 def within(
@@ -63,7 +63,7 @@ def _given(setting: str) -> list[Event]:
 def _key(event: Event) -> tuple[str, str, object]:
     """Return what an input has in common with the message that it came by: name, turtle, values."""
     turtle = getattr(event, "turtle", "")
-    values = (event.linear, event.angular) if isinstance(event, CmdVel) else None
+    values = of_input(event).data if isinstance(event, CmdVel) else None
     name = f"/{turtle}/{event.op}" if turtle else f"/{event.op}"
     return name, turtle or str(getattr(event, "name", "")), values
 
@@ -71,9 +71,8 @@ def _key(event: Event) -> tuple[str, str, object]:
 def _of_peers(cast: CastTrace) -> Iterator[tuple[str, str, object]]:
     """Yield the keys of what peers have sent."""
     for message in cast.messages:
-        if cast.is_peer(message) and message.type == _TWIST:
-            linear, angular = (tuple(each.values()) for each in cast.values(message).values())
-            yield message.topic, message.topic.split("/")[1], (linear, angular)
+        if cast.is_peer(message) and message.type == TWIST:
+            yield message.topic, message.topic.split("/")[1], message.data
     for event in (*cast.of_kind("call"), *cast.of_kind("goal")):
         if "sent_ns" in event:
             name = str(event.get("service") or event["action"])

@@ -85,8 +85,8 @@ class Turtlesim(Scene):
         return NOTHING
 
     def within(self, trace: Trace, cast: Trace | None, rules: Rules) -> tuple[Trace, Oversteps]:
-        assert cast is None or isinstance(cast, CastTrace)
-        return within(TurtleTrace.of(trace), cast, rules)
+        peers = None if cast is None else CastTrace.of(cast)
+        return within(TurtleTrace.of(trace), peers, rules)
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Return places at a distance from the centre of the window; the same for the same seed."""

@@ -11,11 +11,11 @@ import json
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Self, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from grader.recording.subject import Pixels, Start, Trace
+from grader.recording.subject import OneTrace, Pixels, Start
 from turtlesim_py.world import events as inputs
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import (
@@ -50,7 +50,7 @@ class Log(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class TurtleTrace:
+class TurtleTrace(OneTrace):
     """A recorded run of turtlesim.
 
     Attributes:
@@ -68,17 +68,6 @@ class TurtleTrace:
     logs: tuple[Log, ...]
     canvas: Pixels
     window: Pixels
-
-    @classmethod
-    def of(cls, trace: Trace) -> Self:
-        """Narrow the type of a recording's trace.
-
-        Raises:
-            TypeError: it is a trace of another scene.
-        """
-        if not isinstance(trace, cls):
-            raise TypeError(f"expected a trace of turtlesim, found a {type(trace).__name__}")
-        return trace
 
     @property
     def duration_ns(self) -> int:

@@ -50,8 +50,6 @@ class Parrot(Node):
                 self.declare_parameter(parameter, value)
         for topic, (kind, *quality), messages in facts["topics"]:
             self._say(topic, kind_of(kind), quality, messages)
-        for topic, commands in facts.get("commands", ()):
-            self._drive(topic, commands)
         for time_s, level, text in facts["logs"]:
             self.due.append((time_s, partial(self._log, level, text)))
         for service, kind, responses in facts["services"]:
@@ -73,15 +71,6 @@ class Parrot(Node):
         publisher = self.create_publisher(kind, topic, profile)
         for time_s, data in messages:
             message = deserialize_message(bytes.fromhex(data), kind)
-            self.due.append((time_s, partial(publisher.publish, message)))
-
-    def _drive(self, topic: str, commands: list[Any]) -> None:
-        kind = kind_of("geometry_msgs/msg/Twist")
-        publisher = self.create_publisher(kind, topic, 10)
-        for time_s, linear, angular in commands:
-            message = kind()
-            for part, values in ((message.linear, linear), (message.angular, angular)):
-                part.x, part.y, part.z = values
             self.due.append((time_s, partial(publisher.publish, message)))
 
     def _log(self, level: int, text: str) -> None:

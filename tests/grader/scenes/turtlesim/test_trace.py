@@ -57,5 +57,5 @@ def test_a_turtle_that_never_was_has_an_empty_trajectory(trace):
 
 
 def test_another_scene_s_trace_is_refused():
-    with pytest.raises(TypeError, match="expected a trace of turtlesim, found a Log"):
+    with pytest.raises(TypeError, match="expected a TurtleTrace, found a Log"):
         TurtleTrace.of(Log(1, "INFO", "turtlesim", "no trace"))
