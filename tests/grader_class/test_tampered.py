@@ -129,12 +129,12 @@ def test_a_class_file_whose_values_cannot_be_is_named(graded, tmp_path, values):
         ClassFile.read(tmp_path)
 
 
-def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(folder):
+def test_of_a_source_that_is_larger_than_any_nothing_is_shown_and_no_link_followed(folder):
     kept = folder / export.SOURCE
     (source,) = kept.iterdir()
     replaced(source, is_huge)
     (file,) = export.kept(kept)
-    assert len(file.data) == export.MAX_SOURCE_BYTES
+    assert file.data == b""
     link = folder / "link"
     link.symlink_to(kept)
     assert export.kept(link) == []

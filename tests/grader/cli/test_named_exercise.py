@@ -140,7 +140,12 @@ def test_a_hand_in_fits_the_exercise_of_which_it_has_all_on_the_graph(roles, nam
     assert sorted(grading.fitting_exercises(Marks(programs=1, roles=found))) == names
 
 
+def test_two_programs_fit_the_exercise_of_two():
+    roles = (Role("publisher", "/topic"), Role("subscription", "/topic"))
+    assert grading.fitting_exercises(Marks(programs=2, roles=roles)) == ["talker_listener"]
+
+
 def test_where_several_fit_one_has_to_be_chosen(tmp_path):
-    marks = Marks(programs=2, roles=(Role("publisher", "/topic"), Role("subscription", "/topic")))
+    marks = Marks(programs=1, roles=(Role("publisher", "/topic"), Role("subscription", "/topic")))
     with pytest.raises(UsageError, match=r"fits several exercises \(.*talker.*--exercise NAME"):
         grading.exercise_for(tmp_path, marks)
