@@ -20,6 +20,8 @@ from turtlesim_py.world.trajectory import Trajectory
 
 checks = Checks()
 STEP_S = TICK_NS / 1e9
+#: Who drives on as it does comes by what lies on its way [s].
+AHEAD_S = 10.0
 NONE = msg("No turtle was spawned.")
 SPAWN = msg("Does the spawner reach /spawn, and does its timer run?")
 
@@ -89,9 +91,9 @@ def catches(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """turtle1 catches eight.
 
     At least {least} turtles are killed when turtle1 is within {catch_m} m of them. Fewer are a part
-    of the points. One that is spawned within {born_m} m of turtle1, or where it comes within ten
-    seconds if it drives on as it did, does not count, here and below. In one more run turtle1
-    starts elsewhere; the worse counts, here and below.
+    of the points; each that is killed from afar takes one back. One that is spawned within {born_m}
+    m of turtle1, or where it comes within ten seconds if it drives on as it did, does not count,
+    here and below. In one more run turtle1 starts elsewhere; the worse counts, here and below.
     """
     return _worst(_catches(_lives(trace), tolerances) for trace in _traces(recordings))
 
@@ -101,18 +103,20 @@ def _catches(lives: list[Life], tolerances: Tolerances) -> Finding:
     killed = _prey(lives, tolerances)
     caught = [each for each in killed if each.way_m <= tolerances["catch_m"]]
     text = msg("Turtles that turtle1 caught: {n}, expected {least}.", n=len(caught), least=least)
-    if len(caught) >= least:
+    far = len(killed) - len(caught)
+    if len(caught) - far >= least:
         return Finding(1, text)
     help_ = msg("Is turtle1 fast enough, and does it take the nearest first?")
-    if len(killed) - len(caught) > len(caught):
-        text = msg("{text} {n} were killed from afar.", text=text, n=len(killed) - len(caught))
+    if far:
+        text = msg("{text} {n} were killed from afar.", text=text, n=far)
         help_ = msg("Kill a turtle only when turtle1 says that it is there.")
     elif len(lives) < least:
         text = msg("{text} Spawned were {n} in all.", text=text, n=len(lives))
         help_ = SPAWN
     elif not caught:
         help_ = msg("Does turtle1 drive to a turtle, and is that killed then?")
-    return Finding(len(caught) / least, text, help_, tuple(map(_seen, caught[-1:])))
+    share = max(0, len(caught) - far) / least
+    return Finding(share, text, help_, tuple(map(_seen, caught[-1:])))
 
 
 @checks()
@@ -120,7 +124,7 @@ def near(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """None is killed from afar.
 
     Each turtle that is killed is so when turtle1 is within {catch_m} m of it. What counts is their
-    share.
+    share, beyond a half.
     """
     return _worst(_near(_lives(trace), tolerances) for trace in _traces(recordings))
 
@@ -136,7 +140,8 @@ def _near(lives: list[Life], tolerances: Tolerances) -> Finding:
     text = msg("{n} of {all} turtles were killed from afar: turtle1 was {way:.2f} m from {name}.",
                n=len(far), all=len(killed), way=first.way_m, name=first.name)  # fmt: skip
     help_ = msg("Kill a turtle only when turtle1 says that it is there.")
-    return Finding(1 - len(far) / len(killed), text, help_, (_seen(first),))
+    share = max(0, 1 - 2 * len(far) / len(killed))
+    return Finding(share, text, help_, (_seen(first),))
 
 
 def _traces(recordings: Recordings) -> Iterator[TurtleTrace]:
@@ -176,32 +181,22 @@ def _lives(trace: TurtleTrace) -> list[Life]:
             first, last = part[0], part[-1]
             tick = int(way.ticks[last])
             born_m, way_m = (_apart(way, row, hunter) for row in (first, last))
+            ways_m = born_m, way_m, _apart(way, first, hunter, AHEAD_S)
             is_killed = tick < trace.ticks and any((name, tick + n) in kills for n in range(3))
             place = (float(way.x[last]), float(way.y[last]))
-            ways_m = born_m, way_m, _ahead(way, first, hunter)
             lives.append(Life(name, int(way.ticks[first]), tick, *place, *ways_m, is_killed))
     return sorted(lives, key=lambda life: life.first)
 
 
-def _ahead(way: Trajectory, row: int, hunter: Trajectory) -> float:
-    """How near the hunter comes in ten seconds if it drives on as it does [m]; inf without one."""
-    at = int(np.searchsorted(hunter.ticks, way.ticks[row]))
-    if at == len(hunter):
-        return math.inf
-    times_s = np.arange(0, 10, STEP_S)
-    headings = hunter.theta[at] + hunter.angular[at] * times_s
-    east, north = (hunter.linear[at] * STEP_S * np.cumsum(f(headings)) for f in (np.cos, np.sin))
-    away = np.hypot(hunter.x[at] + east - way.x[row], hunter.y[at] + north - way.y[row])
-    return float(np.nanmin(away, initial=math.inf))
-
-
-def _apart(way: Trajectory, row: int, hunter: Trajectory) -> float:
-    """How far the hunter was [m]; inf where there was none."""
+def _apart(way: Trajectory, row: int, hunter: Trajectory, ahead_s: float = 0) -> float:
+    """How near the hunter comes if it drives on so long as it does [m]; inf where there is none."""
     at = int(np.searchsorted(hunter.ticks, way.ticks[row]))
     if at == len(hunter) or hunter.ticks[at] != way.ticks[row]:
         return math.inf
-    way_m = math.hypot(way.x[row] - hunter.x[at], way.y[row] - hunter.y[at])
-    return way_m if math.isfinite(way_m) else math.inf
+    headings = hunter.theta[at] + hunter.angular[at] * np.arange(0, ahead_s, STEP_S)
+    steps = hunter.linear[at] * STEP_S * np.array([np.cos(headings), np.sin(headings)])
+    ways = np.cumsum(np.c_[[hunter.x[at] - way.x[row], hunter.y[at] - way.y[row]], steps], axis=1)
+    return float(np.fmin.reduce(np.hypot(*ways), initial=math.inf))
 
 
 def _waits(trace: TurtleTrace, lives: list[Life], most: int) -> list[tuple[float, float]]:

@@ -61,7 +61,7 @@ def test_a_parrot_has_what_needs_nothing_heard_and_no_more(key, name, path, tmp_
     excused = {check.name for check in exercise.checks if check.parrot}
     by_chance = [v.score / v.max_score for v in verdicts if v.check not in excused and v.max_score]
     assert max(by_chance, default=0) <= BY_CHANCE
-    assert sum(v.score for v in verdicts if v.check in excused) == EARNED[name]
+    assert sum(v.score for v in verdicts if v.check in excused) <= EARNED[name]
 
 
 def test_a_parrot_hears_nothing(tmp_path):
