@@ -60,7 +60,7 @@ class HandIn:
         attempt: counts from 1.
         at: when it was handed in, with its time zone; None where the export does not contain it.
         problem: why there is nothing to grade, as a sentence for teacher and student.
-        is_marked_late: whether the export says that it is late, and not when it was handed in.
+        is_marked_late: whether the export says that it is late.
     """
 
     id: str

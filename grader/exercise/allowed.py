@@ -79,5 +79,6 @@ def read_allowed(data: Mapping[str, Any], subject: Subject, setting: str) -> All
     unknown = [each for each in may if each.rpartition("/")[2] not in subject.inputs]
     for key, found in zip(KEYS, (unknown, () if subject.inputs else drives), strict=True):
         known = ", ".join(subject.inputs) or msg("none")
-        expect(not found, (key,), "expected some of {known}, found {found}", found, known=known)
+        what = "expected some of {known}, found {found}"
+        expect(not found, (key,), what, [*found], known=known)
     return Allowed(subject, Rules(may, drives, setting))

@@ -18,7 +18,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from grader.exercise.draws import DRAWN, Draw, examples, put_in
+from grader.exercise.draws import DRAWN, Draw, examples, extremes, put_in
 from grader.recording.recording import Drawn
 from grader.recording.subject import Endpoint, Role
 from grader.system.yaml_file import Mistake, decoded, expect
@@ -119,7 +119,7 @@ def read_cases(
         expect(is_known, at, what, change, known=", ".join(known))
         count = change.get(DRAWN, 1)
         fits = isinstance(count, int) and count > 0 and (bool(draws) or DRAWN not in change)
-        what = "expected how many runs, of an exercise with `draw`; found {found}"
+        what = "expected a number of runs, each with other values of `draw`, which has to be there"
         expect(fits, (*at, DRAWN), what, count)
         cases += count * [_case(name, _changed(usual, change), definitions, end_s, draws, at)]
     fits = len(cases) <= MOST_CASES + 1
@@ -137,9 +137,10 @@ def _case(
     at: tuple[str, ...],
 ) -> RunCase:
     written = {key: data[key] for key in (CAST, ARGUMENTS) if data.get(key)}
-    made = {key: put_in(value, examples(draws), (*at, key)) for key, value in written.items()}
-    made = {**data, **made}
-    cast = _cast(made, definitions, end_s, at)
+    for drawn in (*extremes(draws), examples(draws)):
+        made = {key: put_in(value, drawn, (*at, key)) for key, value in written.items()}
+        made = {**data, **made}
+        cast = _cast(made, definitions, end_s, at)
     arguments = _texts(made, ARGUMENTS, at)
     return RunCase(name, cast, _texts(data, HEARS, at), arguments, written)
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from string import ascii_lowercase
 from typing import Any, Final
@@ -23,12 +23,13 @@ from typing import Any, Final
 from grader.recording.recording import Drawn, Value
 from grader.system.expressions import ExpressionError, with_fields
 from grader.system.yaml_file import Mistake, decoded, expect
-from grader.text.message import Message, msg
 
 #: The key, the name in expressions; of a case, how many further runs it has.
 DRAW, DRAWN = "draw", "drawn"
 #: So many values an exercise may draw; a word has so many letters at most.
 MOST_DRAWS, LONGEST_WORD = 20, 40
+#: A drawn number is no larger, and no less than its negative: that of 64 bits.
+LARGEST: Final = 2**63 - 1
 #: Digits of a drawn number behind the point.
 DIGITS: Final = 2
 _NAME: Final = re.compile(r"[a-z]\w{0,40}", re.ASCII)
@@ -48,27 +49,26 @@ class Draw:
     example: Value
     integer: tuple[int, int] | None = None
     number: tuple[float, float] | None = None
-    word: int = 0
-    one_of: tuple[Value, ...] = ()
+    word: int | None = None
+    one_of: tuple[Value, ...] | None = None
 
     def __post_init__(self) -> None:
-        if sum(map(bool, (self.integer, self.number, self.word, self.one_of))) != 1:
-            raise ValueError("expected one of integer, number, word, one_of")
+        given = [self.integer, self.number, self.word, self.one_of]
+        if sum(each is not None for each in given) != 1:
+            raise ValueError("expected exactly one of integer, number, word, one_of")
         low, high = self.integer or self.number or (0, 0)
-        if low > high or not 0 <= self.word <= LONGEST_WORD:
-            raise ValueError(f"expected two numbers, the lower first, or at most {LONGEST_WORD}")
+        if not -LARGEST <= low <= high <= LARGEST:
+            raise ValueError(f"expected two numbers of at most {LARGEST}, the lower one first")
+        if self.word is not None and not 1 <= self.word <= LONGEST_WORD:
+            raise ValueError(f"word: expected 1 to {LONGEST_WORD} letters, found {self.word}")
+        if self.one_of == ():
+            raise ValueError("one_of: expected values, found none")
 
     @property
-    def range_text(self) -> Message:
-        """What it is, for the sheet."""
-        if self.word:
-            return msg("a word of {n} letters", n=self.word)
-        if self.one_of:
-            return msg("one of {values}", values=", ".join(map(str, self.one_of)))
-        low, high = self.integer or self.number or (0, 0)
-        if self.integer:
-            return msg("a whole number from {low} to {high}", low=low, high=high)
-        return msg("a number from {low:g} to {high:g}", low=low, high=high)
+    def extremes(self) -> tuple[Value, ...]:
+        """What it may become at most, for trying."""
+        word = "" if self.word is None else "a" * self.word
+        return self.one_of or self.integer or self.number or (word,)
 
     def value(self, chance: random.Random) -> Value:
         """Draw one."""
@@ -82,7 +82,7 @@ class Draw:
             return chance.randint(*self.integer)
         if self.number:
             return round(chance.uniform(*self.number), DIGITS)
-        return "".join(chance.choices(ascii_lowercase, k=self.word))
+        return "".join(chance.choices(ascii_lowercase, k=self.word or 0))
 
 
 def read_draws(data: Mapping[str, Any]) -> dict[str, Draw]:
@@ -98,13 +98,19 @@ def read_draws(data: Mapping[str, Any]) -> dict[str, Draw]:
     for name in given:
         is_name = isinstance(name, str) and _NAME.fullmatch(name) is not None
         expect(is_name, (DRAW, str(name)), "expected a name such as a, found {found}", name)
-    draws: dict[str, Draw] = decoded(dict[str, Draw], given, DRAW)
-    return draws
+    return {name: decoded(Draw, each, DRAW, name) for name, each in given.items()}
 
 
 def examples(draws: Mapping[str, Draw]) -> Drawn:
     """Return the examples, by their names."""
     return {name: each.example for name, each in draws.items()}
+
+
+def extremes(draws: Mapping[str, Draw]) -> Iterator[Drawn]:
+    """Yield the examples with each of the values that one may become at most."""
+    for name, each in draws.items():
+        for value in each.extremes:
+            yield {**examples(draws), name: value}
 
 
 def draw(draws: Mapping[str, Draw], seed: int, run: int) -> Drawn:

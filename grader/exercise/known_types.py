@@ -14,6 +14,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from grader.exercise.comparing import is_number, is_range
 from grader.ros.fields import Field, parse
 from grader.scenes.cast import script
@@ -124,7 +126,10 @@ class KnownTypes:
         elif base in ("float32", "float64") or (is_expected and _WHOLE.fullmatch(base)):
             fits, wanted = is_number(value), msg("a number")
         elif _WHOLE.fullmatch(base):
-            fits, wanted = is_number(value) and isinstance(value, int), msg("a whole number")
+            bounds = np.iinfo("uint8" if base in ("byte", "char") else base)
+            fits = type(value) is int and bounds.min <= value <= bounds.max
+            words = {"low": str(bounds.min), "high": str(bounds.max)}
+            wanted = msg("a whole number from {low} to {high}", **words)
         elif not isinstance(value, Mapping) and not is_expected:
             fits, wanted = False, msg("fields with values")
         else:

@@ -206,13 +206,9 @@ def _runs(exercise: Exercise, subject: Subject) -> str:
         the_thing=translate(subject.the_thing),
     )
     drawn = tr(
-        "What others send and ask is drawn anew for each run: {values}.",
-        values="; ".join(
-            tr("{name}, {what}, such as {example}",
-               name=f"`{name}`", what=translate(each.range_text), example=each.example)
-            for name, each in exercise.draws.items()
-        ),
-    )  # fmt: skip
+        "What others send and ask is drawn for each run, such as {values}.",
+        values=", ".join(f"`{name}` {each.example}" for name, each in exercise.draws.items()),
+    )
     more = {
         drawn: exercise.draws,
         elsewhere: varied.count and not varied.runs,

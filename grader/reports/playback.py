@@ -61,7 +61,7 @@ def _played_run(number: int, recording: Recording) -> PlayedRun:
         outcome = tr("{outcome}; {begins}", outcome=outcome, begins=start.words)
     after = recording.run.simulated_s
     return PlayedRun(
-        wording.run_name(number),
+        wording.with_drawn(wording.run_name(number), recording.run.drawn),
         tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
         recording.trace,
         start,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Final
 
 from grader.exercise.result.result import NotShown, Result, ResultProvenance
@@ -101,6 +102,12 @@ def points(value: float) -> str:
 def run_name(number: int) -> str:
     """Name a run; 0 is the nominal one."""
     return tr("Varied run {number}", number=number) if number else tr("Nominal run")
+
+
+def with_drawn(title: str, drawn: Mapping[str, object]) -> str:
+    """Add what was drawn for a run to its title."""
+    values = ", ".join(f"{name} = {value}" for name, value in drawn.items())
+    return tr("{title}; drawn: {values}", title=title, values=values) if values else title
 
 
 def title_of(verdict: Verdict) -> str:

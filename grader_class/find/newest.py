@@ -108,7 +108,7 @@ def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
         attempt=attempt.number,
         at=attempt.at,
         problem=problem,
-        is_marked_late=attempt.is_marked_late and attempt.at is None,
+        is_marked_late=attempt.is_marked_late,
     )
 
 

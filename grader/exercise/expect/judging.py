@@ -477,7 +477,8 @@ def _line(
     if len(found) < wanted.count.at_least:
         raise _not_logged([(None, text)], log, trace, wanted, recording)
     _expect_count(wanted.count, len(found), msg("such lines"))
-    return msg("{n} lines like {text} were logged.", n=len(found), text=shown(text))
+    return msg("A line like {text} was logged.", "{n} lines like {text} were logged.",
+               n=len(found), text=shown(text))  # fmt: skip
 
 
 def _not_logged(
@@ -512,13 +513,18 @@ def _not_logged(
             PART,
         )
     lines = [line for _, line in log.lines]
-    help_ = msg("Compare the text letter by letter.")
+    if time_ns is not None and (found := log.times(text, 0, INF)):
+        nearest_ns = min(found, key=lambda each: abs(each - time_ns))
+        said = msg("{text} was logged at {at} s, for what came at {time} s.", text=shown(text),
+                   at=_seconds(nearest_ns), time=_seconds(time_ns))  # fmt: skip
+        return Lacks(said, msg("Log it when that comes, or goes."), time_ns)
+    help_ = msg("Does your program get to where it logs that?")
     if near := [] if isinstance(text, re.Pattern) else nearest(text, lines[-SEARCHED:]):
         said = msg("{text} was not logged; there is {near}.", text=shown(text), near=shown(near[0]))
+        help_ = msg("Compare the text letter by letter.")
     elif lines:
         last = shown(lines[-1])
         said = msg("{text} was not logged; the last line was {last}.", text=shown(text), last=last)
-        help_ = msg("Does your program get to where it logs that?")
     else:
         said = msg("{text} was not logged; nothing was.", text=shown(text))
     line = next(iter([*near, *lines[-1:]]), "")

@@ -20,8 +20,8 @@ from turtlesim_py.world.trajectory import Trajectory
 
 checks = Checks()
 STEP_S = TICK_NS / 1e9
-#: Who drives on as it does comes by what lies on its way [s].
-AHEAD_S = 10.0
+#: So few places may lie in a line by chance.
+FEW = 4
 NONE = msg("No turtle was spawned.")
 SPAWN = msg("Does the spawner reach /spawn, and does its timer run?")
 
@@ -32,8 +32,8 @@ class Life(NamedTuple):
     Attributes:
         born_m, way_m: how far turtle1 was at its beginning, and at its end [m]; inf where there was
             none.
-        ahead_m: how near turtle1 comes to where it began within ten seconds if it drives on as it
-            did then [m].
+        ahead_m: how near turtle1 comes to where it began while it lives if it drives on as it did
+            then [m].
         is_killed: whether it was killed, and not still there at the end of the run.
     """
 
@@ -54,17 +54,17 @@ def spawns(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
     The first at most {first_s} s after the start, and the next at most {spawn_s} s after the one
     before, or after fewer than {most_alive} lived again; {slack_s} s more cost nothing. What
-    counts is the share of the waits that are no longer. At least half are spawned {born_m} m or
-    more from turtle1.
+    counts is the share of the waits that are no longer. The places are random: along x and y they
+    deviate from their mean by {spread_m} m or more (standard deviation). Others count for nothing,
+    here and below.
     """
     trace = TurtleTrace.of(recordings.nominal.trace)
     lives = _lives(trace)
     if not lives:
         return Finding(0, NONE, SPAWN)
-    near_m = sorted(life.born_m for life in lives)[len(lives) // 2]
-    if near_m < tolerances["born_m"]:
-        text = msg("Half of {n} turtles were spawned within {way:.2f} m of turtle1.",
-                   n=len(lives), way=near_m)  # fmt: skip
+    if (spread_m := _spread(lives)) < tolerances["spread_m"]:
+        text = msg("Turtles were spawned all in one place or line: they deviate by {way:.2f} m.",
+                   way=spread_m)  # fmt: skip
         return Finding(0, text, msg("Draw each place from the whole window."))
     waits = _waits(trace, lives, tolerances["most_alive"])
     most = [tolerances["spawn_s"]] * len(waits)
@@ -92,8 +92,8 @@ def catches(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
     At least {least} turtles are killed when turtle1 is within {catch_m} m of them. Fewer are a part
     of the points; each that is killed from afar takes one back. One that is spawned within {born_m}
-    m of turtle1, or where it comes within ten seconds if it drives on as it did, does not count,
-    here and below. In one more run turtle1 starts elsewhere; the worse counts, here and below.
+    m of turtle1, or where it comes anyway if it drives on as it did, does not count, here and
+    below. In one more run turtle1 starts elsewhere; the worse counts, here and below.
     """
     return _worst(_catches(_lives(trace), tolerances) for trace in _traces(recordings))
 
@@ -165,8 +165,15 @@ def _seen(life: Life) -> Evidence:
 def _prey(lives: list[Life], tolerances: Tolerances) -> list[Life]:
     """Return those that were killed, and for which turtle1 had to drive."""
     born_m, catch_m = tolerances["born_m"], tolerances["catch_m"]
-    killed = [life for life in lives if life.is_killed]
+    is_spread = _spread(lives) >= tolerances["spread_m"]
+    killed = [life for life in lives if life.is_killed and is_spread]
     return [life for life in killed if life.born_m >= born_m and life.ahead_m > catch_m]
+
+
+def _spread(lives: list[Life]) -> float:
+    """The smaller standard deviation of the places along x and y [m]; inf of few."""
+    places = [(life.x, life.y) for life in lives]
+    return float(np.std(places, axis=0).min()) if len(lives) > FEW else math.inf
 
 
 def _lives(trace: TurtleTrace) -> list[Life]:
@@ -181,7 +188,7 @@ def _lives(trace: TurtleTrace) -> list[Life]:
             first, last = part[0], part[-1]
             tick = int(way.ticks[last])
             born_m, way_m = (_apart(way, row, hunter) for row in (first, last))
-            ways_m = born_m, way_m, _apart(way, first, hunter, AHEAD_S)
+            ways_m = born_m, way_m, _apart(way, first, hunter, len(part) * STEP_S)
             is_killed = tick < trace.ticks and any((name, tick + n) in kills for n in range(3))
             place = (float(way.x[last]), float(way.y[last]))
             lives.append(Life(name, int(way.ticks[first]), tick, *place, *ways_m, is_killed))

@@ -37,7 +37,8 @@ def parameter(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 def _follows(recording: Recording, turtle: str, tolerances: Tolerances) -> Finding:
     cast = CastTrace.of(recording.cast)
-    path = DrivenPath(recording, TurtleTrace.of(recording.trace).trajectory(turtle))
+    trace = TurtleTrace.of(recording.trace)
+    path = DrivenPath(recording, trace.trajectory(turtle))
     sent = cast.transforms("/tf")
     frames = {(t["header"]["frame_id"], t["child_frame_id"]) for _, t in sent}
     own = [(at, t) for at, t in sent if (WORLD, turtle) == _names(t)]
@@ -51,6 +52,10 @@ def _follows(recording: Recording, turtle: str, tolerances: Tolerances) -> Findi
         text = msg("{found} transforms from world to {turtle} came, expected {least} or more.",
                    **words)  # fmt: skip
         return Finding(0, text, msg("Send one for each pose that comes."))
+    if more := {child for _, child in frames} & {*trace.trajectories} - {turtle}:
+        text = msg("Called for {turtle}, it sent the frame of {others}, too.",
+                   turtle=turtle, others=", ".join(sorted(more)))  # fmt: skip
+        return Finding(0, text, msg("The parameter turtlename says whose frame it is to send."))
     late_ticks = math.ceil(tolerances["late_s"] / path.tick_s)
     for time_ns, each in own:
         last = path.row_at(int(time_ns / 1e9 / path.tick_s))

@@ -256,9 +256,7 @@ def _view(report: Report, number: int, on_paper: bool) -> RunView:
 
 def _title(report: Report, number: int) -> str:
     summary = report.varied_runs[number - 1] if number else report.run
-    drawn = ", ".join(f"{name} = {value}" for name, value in summary.drawn.items())
-    title = _name(summary, number)
-    return tr("{title}; drawn: {values}", title=title, values=drawn) if drawn else title
+    return wording.with_drawn(_name(summary, number), summary.drawn)
 
 
 def _name(summary: RunSummary, number: int) -> str:

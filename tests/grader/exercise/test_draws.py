@@ -75,7 +75,8 @@ def loaded(folder, request="{a: '=drawn.a', b: 1}", response="'=drawn.a + 1'", c
         ({"request": "{a: '=drawn.c'}"}, "there is no value drawn.c here, only a"),
         ({"request": "{a: '=drawn.a / 2 + 0.25'}"}, "expected a whole number"),
         ({"response": "'=drawn.c'"}, "there is no value drawn.c here, only a"),
-        ({"cases": "{more: {drawn: 0}}"}, "expected how many runs"),
+        ({"request": "{a: '=drawn.a * 10 ** 18'}"}, "a whole number from -9223372036854775808"),
+        ({"cases": "{more: {drawn: 0}}"}, "expected a number of runs"),
         ({"cases": "{more: {drawn: 30}}"}, "expected at most 20 runs, found 30"),
     ],
 )
@@ -87,8 +88,11 @@ def test_what_cannot_be_drawn_is_a_mistake_of_the_exercise(tmp_path, given, said
 @pytest.mark.parametrize(
     ("one", "said"),
     [
-        ({"example": 1}, "expected one of integer, number, word, one_of"),
-        ({"integer": [3, 1], "example": 1}, "the lower first"),
+        ({"example": 1}, "line 5: draw: a: expected exactly one of integer, number, word, one_of"),
+        ({"integer": [3, 1], "example": 1}, "the lower one first"),
+        ({"number": [0, 10**19], "example": 1}, "the lower one first"),
+        ({"word": 0, "example": 1}, "expected 1 to 40 letters, found 0"),
+        ({"one_of": [], "example": 1}, "one_of: expected values, found none"),
         ({"one_of": ["{x}"], "example": 1}, "expected a number or a word"),
         ({"word": 3}, "example"),
     ],
