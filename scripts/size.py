@@ -16,8 +16,8 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
-#: Folders of programs that are handed in.
-STUDENTS = {"starter", "reference", "right", "submissions"}
+#: Folders of students' programs.
+STUDENTS = {"starter", "reference", "right"}
 #: Rooms of grader/ that are not the core.
 AROUND_THE_CORE = {"grader/exercises"}
 #: Folders whose classes have the names of ROS's.

@@ -96,21 +96,18 @@ def _types(node: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _recorded(recording: Recording, program: str, setting: str) -> dict[str, Any]:
-    run = recording.run
+    run, trace = recording.run, recording.trace
+    casts = [each for each in (recording.cast, trace) if isinstance(each, CastTrace)]
+    cast = casts[0] if casts else CastTrace()
     is_one = len(run.programs) < 2
     own = next((each for each in run.programs if each.name == program), run)
-    cast = recording.trace if recording.cast is None else recording.cast
     nodes: dict[str, dict[str, Any]] = {}
-    if isinstance(cast, CastTrace):
-        whose = cast.programs
-        endpoints = cast.of_kind("endpoint")
-        for name in dict.fromkeys(e["node"] for e in endpoints if e["node"] != "/"):
-            if is_one or program in whose.get(name, "").split(", "):
-                nodes[name] = _node(cast, name, recording.trace)
-    if isinstance(recording.trace, TurtleTrace) and (is_one or run.programs[0].name == program):
-        node = next(iter(nodes.values()), None) or nodes.setdefault("/parrot", _nothing())
-        peers = cast if isinstance(cast, CastTrace) else None
-        _drive(node, own_inputs(recording.trace, peers, setting))
+    for name in dict.fromkeys(each["node"] for each in cast.of_kind("endpoint")):
+        if name != "/" and (is_one or program in cast.programs.get(name, "").split(", ")):
+            nodes[name] = _node(cast, name)
+    if isinstance(trace, TurtleTrace) and (is_one or run.programs[0].name == program):
+        node = next(iter(nodes.values()), None) or nodes.setdefault("/parrot", _node(cast, ""))
+        _drive(node, own_inputs(trace, cast, setting))
     listed = [(n.rpartition("/")[2], n.rpartition("/")[0], facts) for n, facts in nodes.items()]
     return {
         "nodes": listed,
@@ -119,14 +116,10 @@ def _recorded(recording: Recording, program: str, setting: str) -> dict[str, Any
     }
 
 
-def _nothing() -> dict[str, Any]:
-    keys = ("topics", "logs", "services", "calls", "actions", "goals")
-    return {"parameters": {}, **{key: [] for key in keys}}
-
-
-def _node(cast: CastTrace, name: str, trace: object) -> dict[str, Any]:
+def _node(cast: CastTrace, name: str) -> dict[str, Any]:
     """Return what a node has sent."""
-    made = _nothing()
+    keys = ("topics", "logs", "services", "calls", "actions", "goals")
+    made: dict[str, Any] = {"parameters": {}, **{key: [] for key in keys}}
     for event in cast.of_kind("endpoint", node=name):
         kind, _, channel = event["channel"].partition(" ")
         action = channel.removesuffix("/_action/send_goal")
@@ -140,7 +133,7 @@ def _node(cast: CastTrace, name: str, trace: object) -> dict[str, Any]:
                 made["goals"].append((action, base, [_at(e, "goal") for e in sent]))
         elif any(part in channel for part in _USUAL) or channel == "/parameter_events":
             continue
-        elif kind == "topic" and event["writes"] and not _is_command(channel, trace):
+        elif kind == "topic" and event["writes"]:
             quality = (event["type"], event["reliability"], event["durability"], event["depth"])
             messages = [m for m in cast.sent(channel) if m.node in (name, "")]
             said = [(m.time_ns / 1e9, m.data.hex()) for m in messages if m.type == event["type"]]
@@ -184,10 +177,6 @@ def _logs(cast: CastTrace, name: str) -> Iterable[tuple[float, int, str]]:
             yield each.time_ns / 1e9, values["level"], values["msg"]
 
 
-def _is_command(channel: str, trace: object) -> bool:
-    return isinstance(trace, TurtleTrace) and channel.endswith("/cmd_vel")
-
-
 def _drive(node: dict[str, Any], inputs: Iterable[tuple[str, str, events.Event]]) -> None:
     """Add what a program has sent to turtlesim."""
     node["calls"] = [each for each in node["calls"] if not each[1].startswith("turtlesim/")]
@@ -203,4 +192,5 @@ def _drive(node: dict[str, Any], inputs: Iterable[tuple[str, str, events.Event]]
             kind = f"turtlesim/srv/{type(event).__name__}" if values else "std_srvs/srv/Empty"
             asked[name, kind].append((time_s, values))
     node["calls"] += [(*key, requests) for key, requests in asked.items()]
+    node["topics"] = [each for each in node["topics"] if not each[0].endswith("/cmd_vel")]
     node["topics"] += [(topic, (TWIST, 1, 2, 10), said) for topic, said in commands.items()]

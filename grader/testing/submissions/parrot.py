@@ -15,6 +15,7 @@ from typing import Any
 import rclpy
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
@@ -27,12 +28,13 @@ def kind_of(name: str) -> Any:
     return getattr(importlib.import_module(f"{package}.{kind}"), last)
 
 
-def fill(message: Any, values: dict[str, Any]) -> None:
+def filled(message: Any, values: dict[str, Any]) -> Any:
     for name, value in values.items():
         if isinstance(value, dict):
-            fill(getattr(message, name), value)
+            filled(getattr(message, name), value)
         else:
             setattr(message, name, value)
+    return message
 
 
 class Parrot(Node):
@@ -51,19 +53,23 @@ class Parrot(Node):
         for topic, (kind, *quality), messages in facts["topics"]:
             self._say(topic, kind_of(kind), quality, messages)
         for time_s, level, text in facts["logs"]:
-            self.due.append((time_s, partial(self._log, level, text)))
+            # of its own: from one line a logger logs at one level only
+            logger = get_logger(self.get_logger().name)
+            self.due.append((time_s, partial(logger.log, text, level)))
         for service, kind, responses in facts["services"]:
             self._serve(service, kind_of(kind), iter(responses))
         for service, kind, requests in facts["calls"]:
             client = self.create_client(kind_of(kind), service)
             for time_s, values in requests:
-                self.due.append((time_s, partial(self._ask, client, values)))
+                request = filled(client.srv_type.Request(), values)
+                self.due.append((time_s, partial(client.call_async, request)))
         for action, kind, goals in facts["actions"]:
             self._act(action, kind_of(kind), iter(goals))
         for action, kind, goals in facts["goals"]:
             sender = ActionClient(self, kind_of(kind), action)
             for time_s, values in goals:
-                self.due.append((time_s, partial(self._send, sender, values)))
+                goal = filled(sender._action_type.Goal(), values)
+                self.due.append((time_s, partial(sender.send_goal_async, goal)))
 
     def _say(self, topic: str, kind: Any, quality: list[int], messages: list[Any]) -> None:
         reliability, durability, depth = quality
@@ -73,22 +79,11 @@ class Parrot(Node):
             message = deserialize_message(bytes.fromhex(data), kind)
             self.due.append((time_s, partial(publisher.publish, message)))
 
-    def _log(self, level: int, text: str) -> None:
-        logger = self.get_logger()
-        by_level = {10: logger.debug, 20: logger.info, 30: logger.warning, 40: logger.error}
-        by_level.get(level, logger.fatal)(text)
-
     def _serve(self, service: str, kind: Any, responses: Any) -> None:
         def answer(_: Any, response: Any) -> Any:
-            fill(response, next(responses, {}))
-            return response
+            return filled(response, next(responses, {}))
 
         self.create_service(kind, service, answer)
-
-    def _ask(self, client: Any, values: Any) -> None:
-        request = client.srv_type.Request()
-        fill(request, values)
-        client.call_async(request)
 
     def _act(self, action: str, kind: Any, goals: Any) -> None:
         told: list[Any] = []
@@ -101,22 +96,13 @@ class Parrot(Node):
         async def execute(handle: Any) -> Any:
             goal = told[-1]
             for values in goal["feedback"]:
-                feedback = kind.Feedback()
-                fill(feedback, values)
-                handle.publish_feedback(feedback)
+                handle.publish_feedback(filled(kind.Feedback(), values))
             ends = {"succeeded": handle.succeed, "canceled": handle.abort}
             ends.get(goal["status"], handle.abort)()
-            result = kind.Result()
-            fill(result, goal["result"])
-            return result
+            return filled(kind.Result(), goal["result"])
 
         more = {"goal_callback": judged, "cancel_callback": lambda _: CancelResponse.ACCEPT}
         self._server = ActionServer(self, kind, action, execute, **more)
-
-    def _send(self, client: Any, values: Any) -> None:
-        goal = client._action_type.Goal()
-        fill(goal, values)
-        client.send_goal_async(goal)
 
 
 def main(args: Any = None) -> None:
