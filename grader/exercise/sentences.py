@@ -96,11 +96,7 @@ def remarks(recording: Recording, all_passed: bool = False) -> list[Message]:
         )
     elif recording.run.outcome == "crashed":
         found.append(_ending(recording))
-    published = [topic.topic for topic in recording.topics]
-    found += load_subject(recording.scene).remarks(
-        recording.trace, published, recording.run.interfaces
-    )
-    return found
+    return found + load_subject(recording.scene).remarks(recording)
 
 
 def not_followed(origin: Provenance | None, conditions: Mapping[str, float]) -> list[Message]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
+from grader.recording.recording import Recording
 from grader.recording.subject import Endpoint, Keeper, Start, Trace, load_keeper
 from grader.scenes.view import Plane, View
 from grader.text.message import NOTHING, Message, msg
@@ -52,13 +53,8 @@ class Subject(Keeper):
         """Return the trace as a page shows it."""
         return View()
 
-    def remarks(self, trace: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
-        """Return what a reader of any exercise's result should know about the run.
-
-        Args:
-            published: the topics that the submission published on.
-            interfaces: with which the scene was run.
-        """
+    def remarks(self, recording: Recording) -> list[Message]:
+        """Return what a reader of any exercise's result should know about the run."""
         return []
 
     def endpoints(self, trace: Trace, interfaces: str) -> Sequence[Endpoint]:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar, Final
 
 from grader.recording.mcap import Channel
+from grader.recording.recording import Recording
 from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Trace
 from grader.ros.cdr import string, string_of
 from grader.scenes.subject import Subject
@@ -85,9 +86,9 @@ class PackageSubject(Subject):
             parts += each.parts(trace)
         return View(drawn=tuple(drawn), parts=(*parts, *launched.tables(trace)))
 
-    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
+    def remarks(self, recording: Recording) -> list[Message]:
         """Which package was looked at, and what of it could not be."""
-        trace = PackageTrace.of(made)
+        trace = PackageTrace.of(recording.trace)
         if trace.setup is None:
             return []
         found = [

@@ -6,10 +6,12 @@ import math
 import random
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, ClassVar, Final
 
 from grader.recording.mcap import Channel
+from grader.recording.recording import Recording
 from grader.recording.subject import BagMessage, Endpoint, Pictures, Start, Trace
 from grader.scenes.cast.trace import CastTrace
 from grader.scenes.live import LivePage
@@ -18,7 +20,7 @@ from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, 
 from grader.scenes.subject import Oversteps, Rules
 from grader.scenes.turtlesim import interfaces, messages, view, words
 from grader.scenes.turtlesim.interfaces import endpoints_of
-from grader.scenes.turtlesim.rules import INPUTS, within
+from grader.scenes.turtlesim.rules import INPUTS, own_inputs, within
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, USUAL_START, TurtleTrace
 from grader.scenes.view import View
 from grader.text.message import NOTHING, Message, msg
@@ -182,8 +184,13 @@ class Turtlesim(Scene):
 
         return odd_traces(start)
 
-    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
-        return list(words.remarks(TurtleTrace.of(made), published, interfaces))
+    def remarks(self, recording: Recording) -> list[Message]:
+        trace = TurtleTrace.of(recording.trace)
+        if recording.cast is not None:  # what peers call is none of the submission's
+            inputs = own_inputs(trace, CastTrace.of(recording.cast), "")
+            trace = replace(trace, events=tuple(event for _, _, event in inputs))
+        published = [each.topic for each in recording.topics]
+        return list(words.remarks(trace, published, recording.run.interfaces))
 
 
 def _ways_to_see() -> Iterator[str]:

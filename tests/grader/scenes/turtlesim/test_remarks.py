@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from grader.scenes.subject import load_subject
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.words import remarks
+from tests import archive
 from tests.grader.driving import Spiral, drive
 from turtlesim_py.world.events import (
     Clear,
@@ -75,3 +77,9 @@ def test_a_pen_of_width_0_draws_and_says_so(trace):
         "off = 1."
     ]
     assert told(replace(trace, events=(*trace.events, pens[0]))) == []
+
+
+def test_what_a_peer_calls_is_not_said_of_the_node():
+    recording = archive.recordings("tf2_broadcaster", "right").nominal
+    assert TurtleTrace.of(recording.trace).of_kind(TeleportAbsolute)
+    assert load_subject(recording.scene).remarks(recording) == []
