@@ -77,8 +77,7 @@ def read_allowed(data: Mapping[str, Any], subject: Subject, setting: str) -> All
         return None
     may, drives = (decoded(tuple[str, ...], data.get(key) or [], key) for key in KEYS)
     unknown = [each for each in may if each.rpartition("/")[2] not in subject.inputs]
-    for key, found in zip(KEYS, (unknown, () if subject.inputs else drives), strict=True):
+    for key, found in zip(KEYS, (unknown, [] if subject.inputs else [*drives]), strict=True):
         known = ", ".join(subject.inputs) or msg("none")
-        what = "expected some of {known}, found {found}"
-        expect(not found, (key,), what, [*found], known=known)
+        expect(not found, (key,), "expected some of {known}, found {found}", found, known=known)
     return Allowed(subject, Rules(may, drives, setting))

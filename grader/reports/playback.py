@@ -60,9 +60,10 @@ def _played_run(number: int, recording: Recording) -> PlayedRun:
     if start is not None:
         outcome = tr("{outcome}; {begins}", outcome=outcome, begins=start.words)
     after = recording.run.simulated_s
+    outcome = tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after)
     return PlayedRun(
-        wording.with_drawn(wording.run_name(number), recording.run.drawn),
-        tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
+        wording.run_name(number),
+        wording.with_drawn(outcome, recording.run.drawn),
         recording.trace,
         start,
         _sent(recording),
