@@ -67,8 +67,7 @@ class Draw:
     @property
     def extremes(self) -> tuple[Value, ...]:
         """What it may become at most, for trying."""
-        word = "" if self.word is None else "a" * self.word
-        return self.one_of or self.integer or self.number or (word,)
+        return self.one_of or self.integer or self.number or ("a" * (self.word or 0),)
 
     def value(self, chance: random.Random) -> Value:
         """Draw one."""

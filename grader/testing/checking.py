@@ -79,17 +79,15 @@ def check_exercise(
         changed = filter(None, (_changed(asked, each) for each in recordings))
         for fault in dict.fromkeys([*examine(asked, recordings)[1], *changed]):
             faults.setdefault(fault, []).append(what)
-    problems = [Problem(fault, tuple(on)) for fault, on in faults.items()]
     parrots = [
         Trial(solution, tuple(examine(asked, recorded[name])[0]))
         for solution in solutions
         if (name := f"{PARROT}{solution.name}") in recorded
     ]
-    passed: dict[Fault, list[str]] = {}
     for trial in parrots:
         for fault in _parroted(asked, trial):
-            passed.setdefault(fault, []).append(trial.solution.name)
-    problems += [Problem(fault, tuple(on)) for fault, on in passed.items()]
+            faults.setdefault(fault, []).append(trial.solution.name)
+    problems = [Problem(fault, tuple(on)) for fault, on in faults.items()]
     checks = tuple(asked.points)
     examination = Examination(asked.name, checks, tuple(trials), (), tuple(parrots))
     problems += [Problem(fault) for fault in _never_failing(examination)]

@@ -92,10 +92,12 @@ def add_checks(
     sent = {each.name for peers in casts for each in script.endpoints(peers)}
     there = sorted(sent.union(*(script.heard(peers, hears) for peers in casts)) - unheard)
     for name, expectation in made.items():
-        heard = getattr(expectation, "heard", "")
-        for key in (*expectation.names, *(["heard"] if heard else [])):
-            asked = expressions.looked_up(getattr(expectation, key), "heard")
-            for topic in (asked if key != "heard" else {script.absolute(heard)}) - {*there}:
+        asked = {each: getattr(expectation, each) for each in expectation.names}
+        asked = {key: expressions.looked_up(said, "heard") for key, said in asked.items()}
+        if heard := getattr(expectation, "heard", ""):
+            asked["heard"] = {script.absolute(heard)}
+        for key, wanted in asked.items():
+            for topic in wanted - {*there}:
                 what = "nobody hears {topic} here, only {known}"
                 words = {"topic": repr(topic), "known": listed(there) or msg("none")}
                 raise Mistake((*keys, name, key), what, **words)

@@ -51,9 +51,10 @@ def own_inputs(
     """Yield what neither the setting nor peers have sent: '/turtle1/cmd_vel', 'turtle1', event."""
     others = Counter([*map(_key, _given(setting)), *(() if cast is None else _of_peers(cast))])
     for event in trace.events:
-        others[_key(event)] -= 1
-        if others[_key(event)] < 0 and event.op in (CmdVel.op, *INPUTS):
-            yield *_key(event)[:2], event
+        key = _key(event)
+        others[key] -= 1
+        if others[key] < 0 and event.op in (CmdVel.op, *INPUTS):
+            yield *key[:2], event
 
 
 def _given(setting: str) -> list[Event]:
